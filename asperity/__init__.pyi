@@ -1,5 +1,5 @@
-from asperity.film import Contact as Contact
 from asperity.film import Film as Film
+from asperity.film import FilmContact as FilmContact
 from asperity.film import Switch as Switch
 from asperity.press import PressedMap as PressedMap
 from asperity.press import press as press

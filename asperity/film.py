@@ -174,7 +174,7 @@ class Film(Shown):
 
     def press(
         self, material: MaterialInputs | None = None, load_nN: float | None = None, pixels: int | None = None
-    ) -> "Contact":
+    ) -> "FilmContact":
         """Close a cell of the film onto a flat up to a load, and open it: at central inputs, coupled asperities.
 
         The surface is the one of a scene's nominal curves: random, with the film's spectrum and heights. The cell has
@@ -204,11 +204,11 @@ class Film(Shown):
 
         cycle = run_cycle(inputs, settings, NOMINAL_SEED, load_nN, hold=look)
         pad = partial(film_table, table, described["film"])
-        return Contact(inputs, settings, cycle, *fields[0], _pad=pad, on_grid=on_grid)
+        return FilmContact(inputs, settings, cycle, *fields[0], _pad=pad, on_grid=on_grid)
 
 
 @dataclass(frozen=True, repr=False)
-class Contact(Shown):
+class FilmContact(Shown):
     """A film pressed onto a flat.
 
     Attributes

@@ -16,7 +16,7 @@ class Quench:
     Attributes
     ----------
     start_distance_A : random start: nothing closer than this
-    melt_K, melt_ps, final_K : temperature and time of the melt; temperature of the glass
+    melt_K, melt_ps, final_K, rate_K_ps : temperature and time of the melt; temperature of the glass, cooling rate
     free_below_K : a melt has no shape to keep; below this its network can still change and settles as a glass
     timestep_fs : of the molecular dynamics
     attempts : quenches until one passes the gates; of 28 atoms about one in sixty does
@@ -26,6 +26,7 @@ class Quench:
     melt_K: float = 5000.0
     melt_ps: float = 3.0
     final_K: float = 300.0
+    rate_K_ps: float = 300.0
     free_below_K: float = 2500.0
     timestep_fs: float = 1.0
     attempts: int = 1000

@@ -124,7 +124,7 @@ def load_averages(path: str | Path) -> np.ndarray:
     return np.loadtxt(path, comments="#", ndmin=2)
 
 
-class Workspace:
+class LammpsFolder:
     """A directory for what a killed run needs to go on; emptied when anything the run depends on changed.
 
     It may have come from elsewhere.  What LAMMPS executes is therefore written anew at every start, restart files and
@@ -166,7 +166,7 @@ class Workspace:
 
 def run_lammps(
     script: str,
-    workspace: Workspace,
+    workspace: LammpsFolder,
     variables: Mapping[str, object | Sequence[object]],
     on_step: Callable[[int], None] | None = None,
     processes: int = 1,

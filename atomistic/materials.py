@@ -33,8 +33,8 @@ Count = Annotated[int, Field(ge=1)]
 Element = Annotated[str, Field(pattern=r"^[A-Z][a-z]?$")]
 ElementPair = Annotated[str, Field(pattern=r"^[A-Z][a-z]?-[A-Z][a-z]?$")]
 Vector = tuple[float, float, float]
-Row = tuple[int, int, int]
-Supercell = tuple[Count, Count, Count] | tuple[Row, Row, Row]
+Repeats = tuple[int, int, int]
+Supercell = tuple[Count, Count, Count] | tuple[Repeats, Repeats, Repeats]
 
 
 class _Section(Settings):

@@ -1,7 +1,6 @@
 """The documentation site. `make docs` writes it to docs/_build/html, without network; every warning is an error."""
 
 import importlib.metadata
-import sys
 from pathlib import Path
 
 import SurfaceTopography  # noqa: F401  (autodoc imports with TYPE_CHECKING set, which its pydantic models do not bear)
@@ -9,12 +8,7 @@ import SurfaceTopography  # noqa: F401  (autodoc imports with TYPE_CHECKING set,
 from evidence.pages import figures, write_pages
 
 ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(ROOT / "docs"))
-
-from settings_tables import write_tables  # noqa: E402
-
 write_pages(ROOT / "docs" / "evidence")
-write_tables(ROOT / "docs" / "_build" / "settings_tables.md")
 
 project = "Asperity"
 author = copyright = "The Asperity developers"

@@ -257,7 +257,6 @@ def make_calculator(
     return PyscfGamma(
         store=store,
         xc=xc,
-        basis=dft.basis,
         cutoff_Ha=cutoff_Ha,
         mesh=commensurate_mesh(largest_cell, cutoff_Ha),
         tolerance_Ha=SCF.forces_tolerance_Ha if forces else SCF.energy_tolerance_Ha,

@@ -19,6 +19,9 @@ from atomistic.elastic.relaxation import strained
 from atomistic.lammps import Progress
 from atomistic.settings import DftSettings
 
+STRAINS = (-0.03, -0.015, 0.0, 0.015, 0.03)
+"""Linear isotropic strains of a scan; commit 9151035b has the study that varied them (`accuracy/elastic.csv`)."""
+
 
 @dataclass(frozen=True)
 class ScanPoint:
@@ -62,7 +65,6 @@ def scan_rows(
     atoms: Atoms,
     xc: str,
     dft: DftSettings,
-    strains: Sequence[float],
     store: Store | None = None,
     start: Sequence[Solution] = (),
     rejected: str = "",
@@ -78,12 +80,12 @@ def scan_rows(
     if xc == "LDA":
         atoms = strained(atoms, -0.012)  # its volume is some 4 % smaller than that of GGA
     if rejected:
-        volumes = [float(strained(atoms, strain).get_volume()) for strain in strains]
-        points = [ScanPoint(s, v, float("nan"), False, 0.0, rejected) for s, v in zip(strains, volumes, strict=True)]
+        volumes = [float(strained(atoms, strain).get_volume()) for strain in STRAINS]
+        points = [ScanPoint(s, v, float("nan"), False, 0.0, rejected) for s, v in zip(STRAINS, volumes, strict=True)]
     else:
-        calculator = make_calculator(dft, xc, atoms.cell.array * (1 + max(strains)), store)
+        calculator = make_calculator(dft, xc, atoms.cell.array * (1 + max(STRAINS)), store)
         calculator.history = list(start)
-        points = scan_volumes(atoms, calculator, strains, progress)
+        points = scan_volumes(atoms, calculator, STRAINS, progress)
     head = {"structure": name, "xc": xc, "ions": "clamped", "atoms": len(atoms)}
     return [{**head, **asdict(point)} for point in points]
 

@@ -73,8 +73,7 @@ def fit_equation_of_state(volumes_A3: Sequence[float], energies_eV: Sequence[flo
     volume, energy = np.asarray(volumes_A3, float), np.asarray(energies_eV, float)
     if len(np.unique(volume)) < MIN_POINTS:
         raise InputError(
-            f"equation of state: {len(np.unique(volume))} different volumes, at least {MIN_POINTS} are needed; "
-            "give more strains (elastic.strains)"
+            f"equation of state: {len(np.unique(volume))} different volumes, at least {MIN_POINTS} are needed"
         )
     if not (np.all(np.isfinite(energy)) and np.all(volume > 0)):
         raise InputError("equation of state: volumes must be positive and energies finite")

@@ -5,6 +5,7 @@ E = 3 B (1 − 2ν),   1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂       
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ SAMPLE_COLUMNS = {
     "xc": ("1", "functional: 0 GGA, 1 GGA + (LDA - GGA)"),
 }
 """Unit and long name of each array of samples, as elastic/e_star.h5 states them."""
+SAMPLES = 20_000
+"""Samples of E*, of which its quantiles and the page are made."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,7 @@ def functional_shift(moduli: Sequence[Modulus]) -> dict[str, Any]:
     return {"mean_GPa": mean, "std_GPa": std, "interval_95_GPa": [mean - half, mean + half], "structures": both}
 
 
-def variance_shares(
+def mean_and_deviation(
     B_GPa: Sequence[float] | np.ndarray,
     B_error_GPa: Sequence[float] | np.ndarray,
     shift_GPa: float,
@@ -64,49 +67,32 @@ def variance_shares(
     other_E: tuple[float, float],
     other_nu: float,
     ions: tuple[float, float] = (1.0, 0.0),
-) -> dict[str, Any]:
-    """Mean, standard deviation and first-order and total shares of the variance of E*, without sampling error.
+) -> tuple[float, float]:
+    """Mean and standard deviation of E*, GPa, without sampling error.
 
     The inputs are independent: structure (the ensemble, equal weights), the error of its fit (normal), functional
     (GGA or GGA + shift, equal weights), ions that follow the strain (a normal factor on B), ν (uniform), E of the other
-    body (normal).  Gauss quadrature makes a weighted grid on which the analysis of variance is exact.
+    body (normal).  Gauss quadrature makes a weighted grid of them.
     """
     B, B_error = np.asarray(B_GPa, float), np.asarray(B_error_GPa, float)
     normal, normal_weights = np.polynomial.hermite_e.hermegauss(5)
     nodes_nu, weights_nu = np.polynomial.legendre.leggauss(12)
     nodes_E, weights_E = np.polynomial.hermite_e.hermegauss(9)
-    axes = {  # values and weights, which add to one
-        "structure": (np.arange(len(B)), np.full(len(B), 1 / len(B))),
-        "fit": (normal, normal_weights / normal_weights.sum()),
-        "functional": (np.array([0.0, shift_GPa]), np.full(2, 0.5)),
-        "ions": (ions[0] + ions[1] * normal, normal_weights / normal_weights.sum()),
-        "poisson_ratio": (0.5 * (nu[0] + nu[1]) + 0.5 * (nu[1] - nu[0]) * nodes_nu, weights_nu / 2),
-        "counter_body": (other_E[0] + other_E[1] * nodes_E, weights_E / weights_E.sum()),
-    }
-    values, weights = zip(*axes.values(), strict=True)
-    structure, error, functional, follow, ratio, E = (axis.ravel() for axis in np.meshgrid(*values, indexing="ij"))
-    of_structure = B[structure.astype(int)] + error * B_error[structure.astype(int)]
-    grid = plane_strain_modulus((of_structure + functional) * follow, ratio, E, other_nu).reshape(
-        [len(v) for v in values]
+    axes = (  # values and weights
+        (np.arange(len(B)), np.full(len(B), 1 / len(B))),
+        (normal, normal_weights),
+        (np.array([0.0, shift_GPa]), np.full(2, 0.5)),
+        (ions[0] + ions[1] * normal, normal_weights),
+        (0.5 * (nu[0] + nu[1]) + 0.5 * (nu[1] - nu[0]) * nodes_nu, weights_nu),
+        (other_E[0] + other_E[1] * nodes_E, weights_E),
     )
-
-    def average(array: np.ndarray, over: Sequence[int]) -> np.ndarray:
-        for axis in sorted(over, reverse=True):
-            array = np.tensordot(array, weights[axis], (axis, 0))
-        return array
-
-    every = range(len(weights))
-    mean = float(average(grid, every))
-    variance = float(average((grid - mean) ** 2, every))
-    shares = {}
-    for axis, name in enumerate(axes):
-        rest = [k for k in every if k != axis]
-        first = float(weights[axis] @ (average(grid, rest) - mean) ** 2)
-        without = (average(grid, [axis]) - mean) ** 2
-        for k in sorted(range(len(rest)), reverse=True):
-            without = np.tensordot(without, weights[rest[k]], (k, 0))
-        shares[name] = {"first_order": first / variance, "total": 1 - float(without) / variance} if variance else {}
-    return {"mean_GPa": mean, "std_GPa": float(np.sqrt(variance)), "shares": shares}
+    values, weights = zip(*axes, strict=True)
+    structure, error, functional, follow, ratio, E = np.meshgrid(*values, indexing="ij")
+    of_structure = B[structure.astype(int)] + error * B_error[structure.astype(int)]
+    grid = plane_strain_modulus((of_structure + functional) * follow, ratio, E, other_nu)
+    weight = reduce(np.multiply.outer, weights)
+    mean = np.average(grid, weights=weight)
+    return float(mean), float(np.sqrt(np.average((grid - mean) ** 2, weights=weight)))
 
 
 def effective_modulus(
@@ -171,16 +157,16 @@ def effective_modulus(
     delta = shift["mean_GPa"] if shift["structures"] else 0.0
     follow = glass.ions_follow or (1.0, 0.0)
     others = (settings.poisson_ratio, (other.young_GPa, other.young_std_GPa), other.poisson_ratio)
-    summary["clamped_GPa"] = variance_shares(B, B_error, delta, *others)["mean_GPa"]
+    summary["clamped_GPa"], _ = mean_and_deviation(B, B_error, delta, *others)
     others = (*others, follow)
-    summary |= variance_shares(B, B_error, delta, *others)
+    summary["mean_GPa"], summary["std_GPa"] = mean_and_deviation(B, B_error, delta, *others)
     jackknife = float("nan")
     if len(B) > 1:
         left_out = [(np.delete(B, k), np.delete(B_error, k)) for k in range(len(B))]
-        means = np.array([variance_shares(*pair, delta, *others)["mean_GPa"] for pair in left_out])
+        means = np.array([mean_and_deviation(*pair, delta, *others)[0] for pair in left_out])
         jackknife = float(np.sqrt((len(B) - 1) / len(B) * np.sum((means - means.mean()) ** 2)))
     rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 51]))
-    n = settings.samples
+    n = SAMPLES
     lda = rng.integers(0, 2, n)
     drawn = rng.integers(0, len(B), n)
     B_samples = B[drawn] + delta * lda

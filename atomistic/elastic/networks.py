@@ -218,7 +218,7 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
     from ase.io import read
 
     from atomistic.lammps import Atoms as LammpsAtoms
-    from atomistic.lammps import Workspace, run_lammps, write_data
+    from atomistic.lammps import LammpsFolder, run_lammps, write_data
 
     elements = tuple(material.formula)
     network: NetworkGlass = material.part("network_glass")
@@ -231,7 +231,7 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         "tersoff": network.tersoff.model_dump(),
         "cores": {pair: core.model_dump() for pair, core in network.cores.items()},
     }
-    workspace = Workspace(work, identity, "nitride.in")
+    workspace = LammpsFolder(work, identity, "nitride.in")
     (workspace / "potential.tersoff").write_text(tersoff_table(network.tersoff), encoding="utf-8")
     (workspace / "cores.in").write_text("\n".join(core_commands(network.cores, elements)) + "\n", encoding="utf-8")
     write_data(
@@ -240,7 +240,7 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         network.masses_u,
     )
     steps_per_ps = 1000 / QUENCH.timestep_fs
-    steps_per_K = steps_per_ps / settings.quench_rate_K_ps
+    steps_per_K = steps_per_ps / QUENCH.rate_K_ps
     run_lammps(
         "nitride.in",
         workspace,

@@ -18,7 +18,7 @@ from atomistic.hardness.readout import OxideBond, PressedCell, Readout, Rows, wi
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
 from atomistic.hardness.stack import Stack, check_film, cut_base, film_properties, lay
 from atomistic.hardness.top_attraction import attract_top, bulk_density_per_A3
-from atomistic.lammps import Atoms, Progress, Workspace, run_lammps
+from atomistic.lammps import Atoms, LammpsFolder, Progress, run_lammps
 from atomistic.materials import Material
 from atomistic.potentials import ForceField, Potential
 from atomistic.settings import ClosingSettings
@@ -80,10 +80,10 @@ def run_closing(
     if base is not None:
         identity["base"] = [base[0].material.model_dump(), base[1].positions_A.sum(axis=0).tolist()]
     place = (run.seed, run.asperity.tiles, round(1000 * run.asperity.amplitude_nm))
-    aside = Workspace(work / "anneal", identity, "anneal.in")
-    cut = cut_body(run, glass, potential, base_thickness_nm(closing, wavelength_nm, protocol), place, protocol, base)
+    aside = LammpsFolder(work / "anneal", identity, "anneal.in")
+    cut = cut_body(run, glass, potential, base_thickness_nm(closing, wavelength_nm, protocol), place, base)
     body = prepare_body(run, cut.atoms, cut.formula, cut.force, closing, protocol, aside, place, progress)
-    workspace = Workspace(work / "closing", identity, "closing.in")
+    workspace = LammpsFolder(work / "closing", identity, "closing.in")
     bond = oxide_bond(body.elements, material, potential)
 
     @cache
@@ -131,7 +131,6 @@ def cut_body(
     potential: Potential,
     base_nm: float,
     place: tuple[int, ...],
-    protocol: Protocol,
     base: tuple[Base, Atoms] | None = None,
 ) -> CutBody:
     """The asperity of a run: of oxide, of the base, or of the base under a film.
@@ -159,7 +158,7 @@ def cut_body(
     check_film(film_nm, RULES.max_area_fraction**0.5 * of.tiles * float(glass.cell_A[0]) / 10)
     cut = lay(cell, glass, of.tiles, amplitude_A, 10 * film_nm, base_A, seed)
     formula = np.array([*(0 for _ in below.elements), *formula_of(glass)])
-    return CutBody(cut, formula, Stack(potential, below, protocol.bond_factor))
+    return CutBody(cut, formula, Stack(potential, below))
 
 
 def oxide_bond(elements: tuple[str, ...], material: Material, potential: Potential) -> OxideBond | None:

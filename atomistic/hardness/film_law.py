@@ -33,8 +33,8 @@ class FilmFit:
     Attributes
     ----------
     bond : standard deviation of ln k by the assumed bonds of film and metal: films with bonds half and 1.5 times as
-        deep have stresses that differ by 4 % with a scatter of 10 % (accuracy/hardness.csv of scene films), seven times
-        as much in k.
+        deep have stresses that differ by 4 % with a scatter of 10 % (runs of scene films, commit 9151035b), seven
+        times as much in k.
     bin_nm : of contact length: a run has one mean stress in each.
     least_points, least_thicknesses : mean stresses of films, and their thicknesses.
     trials, draws : values drawn from the prior, and how many of them are kept by their likelihood.
@@ -243,8 +243,7 @@ def fit_films(
     Returns
     -------
     Content of fit.json (docs/hardness.md): the inputs H_film, k and m with their rank correlations, and in `film` what
-    the runs say of the base, how well each law foretells a thickness that its fit had not, the range of L/t, and the
-    film's share of the difference between both hardnesses against L/t.
+    the runs say of the base, how well each law foretells a thickness that its fit had not, and the range of L/t.
     """
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
     unsound = [{"run": point["run"], "status": point["status"]} for point in points if point["sound"] != "True"]
@@ -282,8 +281,5 @@ def fit_films(
         "base_GPa": summary(base),
         "left_out": {name: left_out(name, of) for name in LAWS},
         "length_over_thickness": [float(of.length_over_thickness.min()), float(of.length_over_thickness.max())],
-        "share": [
-            {"length_over_thickness": at, **summary(1 / (1 + k * at**m))} for at in np.geomspace(0.5, 10, 30).tolist()
-        ],
     }
     return result

@@ -15,14 +15,14 @@ from scipy.spatial import KDTree
 from asperity.guards.errors import InputError
 from atomistic.constants import AVOGADRO
 from atomistic.covalent import random_places
-from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
+from atomistic.lammps import Atoms, LammpsFolder, Progress, load_data, run_lammps, write_data
 from atomistic.materials import SEARCHED_A, SHORTEST_BOND_A, Material, OxideGlass
 from atomistic.potentials import ForceField, Potential
 from atomistic.settings import GlassSettings
 
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
 MELT_K, FINAL_K = 4000.0, 300.0  # every shipped potential melts in some ps; the temperature of the closings
-TIMESTEP_FS = 2.0  # energy is kept to 0.2 meV per atom and ps, also in the melt (stability/hardness.csv)
+TIMESTEP_FS = 2.0  # energy is kept to 0.2 meV per atom and ps, also in the melt
 
 
 def cations(material: Material, potential: Potential) -> tuple[str, ...]:
@@ -54,7 +54,7 @@ def _formula(material: Material, potential: Potential) -> Mapping[str, int]:
 
 
 def write_forcefield(
-    workspace: Workspace, potential: ForceField, elements: tuple[str, ...], energy_scale: float
+    workspace: LammpsFolder, potential: ForceField, elements: tuple[str, ...], energy_scale: float
 ) -> None:
     """Write the tables of a potential and the commands that use them (file `pairs`) into a workspace.
 
@@ -101,7 +101,7 @@ def make_glass(
         "constants": [MELT_K, FINAL_K, TIMESTEP_FS, segment_steps],
     }
     return run_segments(
-        Workspace(work, identity, "glass.in"),
+        LammpsFolder(work, identity, "glass.in"),
         potential,
         elements,
         lambda: random_start(material, potential, settings, seed),
@@ -114,7 +114,7 @@ def make_glass(
 
 
 def run_segments(
-    workspace: Workspace,
+    workspace: LammpsFolder,
     force: ForceField,
     elements: tuple[str, ...],
     start: Callable[[], Atoms],

@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 from asperity.guards.errors import InputError
 from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import run_segments
-from atomistic.lammps import Atoms, Progress, Workspace
+from atomistic.lammps import Atoms, LammpsFolder, Progress
 from atomistic.materials import Eam
 
 
@@ -127,7 +127,7 @@ class Metal(Base):
         wide_A, segments = tiles * edge_A, _segments()
         identity = {"metal": self.material.model_dump(), "edge": wide_A, "seed": seed, "segments": segments}
         body = run_segments(
-            Workspace(work, identity, "glass.in"),
+            LammpsFolder(work, identity, "glass.in"),
             self,
             self.elements,
             lambda: _wide_enough(self, wide_A, seed),

@@ -15,7 +15,7 @@ from atomistic.constants import AVOGADRO
 from atomistic.covalent import Quench, core_commands, random_places, tersoff_table
 from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import NEAREST_START_A, density_g_cm3, run_segments, unlike_neighbours
-from atomistic.lammps import Atoms, Progress, Workspace
+from atomistic.lammps import Atoms, LammpsFolder, Progress
 from atomistic.materials import NetworkGlass
 
 
@@ -72,7 +72,7 @@ class Network(Base):
         segments = _segments()
         identity = {"network": self.material.model_dump(), "edge": edge_A, "seed": seed, "segments": segments}
         glass = run_segments(
-            Workspace(work, identity, "glass.in"),
+            LammpsFolder(work, identity, "glass.in"),
             self,
             self.elements,
             lambda: self._random_start(edge_A, seed),

@@ -234,7 +234,7 @@ def find_hardness(
     elif fraction[-1] < rules.stop_area_fraction:
         status = (
             f"rejected: stopped before its rule, on {fraction[-1]:.2f} of the cell instead of "
-            f"{rules.stop_area_fraction:g}; raise closing.depth_over_amplitude"
+            f"{rules.stop_area_fraction:g}; its travel ended; raise its amplitude_nm"
         )
     else:
         status = "yield"

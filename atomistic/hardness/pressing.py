@@ -10,7 +10,7 @@ from atomistic.hardness.glass import write_forcefield
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.readout import PressedCell
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
-from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
+from atomistic.lammps import Atoms, LammpsFolder, Progress, load_data, run_lammps, write_data
 from atomistic.potentials import ForceField
 from atomistic.settings import ClosingSettings
 
@@ -42,7 +42,7 @@ def plan_closing(closing: ClosingSettings, run: ClosingRun, protocol: Protocol =
     """Divide the run into samples (for averages) and segments (for restart files)."""
     timestep = protocol.timestep_fs / 1000 / np.sqrt(run.energy_scale)  # the same share of a vibration's period
     anneal = round(closing.anneal_ps / timestep)
-    travel = 10 * protocol.approach_nm + 10 * closing.depth_over_amplitude * run.asperity.amplitude_nm
+    travel = 10 * protocol.approach_nm + 10 * protocol.depth_over_amplitude * run.asperity.amplitude_nm
     speed = closing.speed_m_s / 100
     per_sample = protocol.averaged_travel_A / protocol.samples / (speed * timestep)
     sample = max(5, 5 * round(per_sample / 5))
@@ -65,7 +65,7 @@ def prepare_body(
     potential: ForceField,
     closing: ClosingSettings,
     protocol: Protocol,
-    workspace: Workspace,
+    workspace: LammpsFolder,
     place: tuple[int, ...],
     progress: Progress | None = None,
 ) -> Atoms:
@@ -116,7 +116,7 @@ def press_body(
     protocol: Protocol,
     plan: Plan,
     place: tuple[int, ...],
-    workspace: Workspace,
+    workspace: LammpsFolder,
     complete: Callable[[PressedCell, int], bool],
     progress: Progress | None = None,
 ) -> tuple[PressedCell, Plan]:

@@ -9,7 +9,7 @@ from scipy.spatial import KDTree
 from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.asperity import TOP_ATOMS
 from atomistic.hardness.contact_area import Area, contact_area
-from atomistic.lammps import Workspace, load_averages, load_dump
+from atomistic.lammps import LammpsFolder, load_averages, load_dump
 
 Rows = list[dict[str, float]]
 Bonds = set[tuple[int, int]]
@@ -74,7 +74,7 @@ class Readout:
 
     def __init__(
         self,
-        workspace: Workspace,
+        workspace: LammpsFolder,
         segment_steps: int,
         timestep_ps: float,
         per_average: int,
@@ -121,7 +121,7 @@ class Readout:
         return self._relaxed[segment]
 
 
-def load_samples(workspace: Workspace, segment: int, area: Area, cell: PressedCell) -> dict[int, Sample]:
+def load_samples(workspace: LammpsFolder, segment: int, area: Area, cell: PressedCell) -> dict[int, Sample]:
     """What a segment measured, by step."""
     near = dict(load_dump(workspace / f"near.{segment}"))
     side, axis = (cell.wavelength_A, cell.wavelength_A), (cell.axis_A, cell.axis_A)

@@ -1,7 +1,5 @@
 """Which closing runs a scene asks for, and what all of them have in common (imports nothing heavy)."""
 
-import math
-
 from asperity.guards.settings import Settings
 from atomistic.settings import AsperitySettings, HardnessSettings
 
@@ -16,9 +14,7 @@ class ClosingRun(Settings):
 
 
 class Protocol(Settings):
-    """What all closings have in common, fixed before any hardness was looked at; studies and tests vary it.
-
-    `accuracy/hardness.csv` shows the effect of time step, temperature, wall and base on a scene's own run.
+    """What all closings have in common, fixed before any hardness was looked at; evidence and tests vary it.
 
     Attributes
     ----------
@@ -27,10 +23,10 @@ class Protocol(Settings):
     base_over_contact : thickness of the base over the largest contact; thinner is felt (study `hardness.choices`).
     frozen_nm, thermostat_nm : thickness of the rigid bottom, and of the Langevin layer above it.
     wall_stiffness_eV_A3 : K of a flat, F = K depth^2, times the energy scale.
+    depth_over_amplitude : largest travel below the highest atom, in amplitudes.
     approach_nm : clearance at the start; bonds exchanged on this way are the background.
     averaged_travel_A, samples : travel over which area and force are averaged, snapshots of an average.
     segment_nm : travel between restart files and relaxed snapshots.
-    bond_factor : on the depth of the bonds of film and base, which are assumed.
     """
 
     timestep_fs: float = 3.0
@@ -40,11 +36,11 @@ class Protocol(Settings):
     frozen_nm: float = 0.5
     thermostat_nm: float = 0.7
     wall_stiffness_eV_A3: float = 10.0
+    depth_over_amplitude: float = 2.2
     approach_nm: float = 0.1
     averaged_travel_A: float = 0.25
     samples: int = 5
     segment_nm: float = 0.1
-    bond_factor: float = 1.0
 
 
 PROTOCOL = Protocol()
@@ -73,16 +69,3 @@ def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
         for scale in settings.energy_scales
         if asperity.film_nm is None or scale == max(settings.energy_scales)
     ]
-
-
-def smallest_run(settings: HardnessSettings) -> ClosingRun:
-    """The cheapest run of a scene at its highest energy scale: the thinnest film where there are films."""
-    return min(
-        planned_runs(settings),
-        key=lambda run: (
-            run.asperity.film_nm or math.inf,
-            run.asperity.tiles,
-            run.asperity.amplitude_nm,
-            -run.energy_scale,
-        ),
-    )

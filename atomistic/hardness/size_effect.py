@@ -9,10 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import stdtrit
 from scipy.stats import rankdata
-
-from atomistic.settings import FitSettings
 
 SYSTEMATIC = {
     "rate": 0.05,  # closing speed in use against rest
@@ -21,6 +18,8 @@ SYSTEMATIC = {
     "steepness": 0.06,  # 4 % by another curve between the slopes that were pressed, 4 % by the glasses
 }
 """What moves every run of a scene alike, as standard deviations relative to the hardness (study `hardness.choices`)."""
+H_MACRO_GPA = (0.7, 3.2)
+"""Range of H_macro, from which H' follows (Kim et al. 2013, Table 1)."""
 SLOPES = {0.222: 0.55, 0.444: 1.0, 0.889: 1.31}
 """Hardness of asperities by their RMS slope, over that of the second (study `hardness.choices`, two glasses)."""
 BERKOVICH = 0.358
@@ -36,13 +35,11 @@ class FitRules:
     Attributes
     ----------
     interval : quantiles of the 68 % interval, as in the paper.
-    shapes_alike : amplitudes over wavelength that differ by less than this part are of one shape.
     least_runs, least_share : defended runs needed, and their share of all runs.
     samples : of the joint distribution of H_macro and H'.
     """
 
     interval: tuple[float, float] = (0.16, 0.84)
-    shapes_alike: float = 0.1
     least_runs: int = 6
     least_share: float = 0.5
     samples: int = 2000
@@ -54,7 +51,6 @@ FIT_RULES = FitRules()
 def fit_size_effect(
     points: Sequence[PointRow],
     glasses: Sequence[Mapping],
-    fit: FitSettings,
     energy_scales: Sequence[float],
     area_error: float,
     others: Mapping[str, float] = SYSTEMATIC,
@@ -97,14 +93,13 @@ def fit_size_effect(
     if len(used) < 2:
         result["gate"]["reasons"] = reasons or ["fewer than two points"]
         return result
-    result["size_effect_at_one_shape"] = same_shape_exponents(points)
     # the error of the area lies anywhere within that of its calibration: a uniform distribution
     systematic = {"area": area_error / np.sqrt(3), **others}
     slopes = steepness(used)
     hardness, _, _, scales = _columns(used)
     energies = energy_range(float(np.mean(hardness / scales)), slopes, indentation_GPa, scales)
-    h_macro, h_prime, h_film = literature_samples(used, fit.h_macro_GPa, systematic, energies)
-    low, high = fit.h_macro_GPa
+    h_macro, h_prime, h_film = literature_samples(used, H_MACRO_GPA, systematic, energies)
+    low, high = H_MACRO_GPA
     result["energies"] = list(energies)
     if not slopes:
         reasons.append(f"asperities flatter or steeper than RMS slopes of {min(SLOPES):.2g} to {max(SLOPES):.2g}")
@@ -123,7 +118,7 @@ def fit_size_effect(
     }
     result["H_macro_GPa"] = summary(h_macro)
     result["H_prime_GPa_nm0.5"] = summary(h_prime)
-    result["curve"] = band(h_macro, h_prime, scatter_of_h_prime(used, fit.h_macro_GPa))
+    result["curve"] = band(h_macro, h_prime)
     if result["inputs"]["h_prime"]["a"] <= 0 or low <= 0:
         reasons.append("the fit allows a hardness that falls with decreasing size or is negative: not identifiable")
     result["gate"] = {"passed": not reasons, "reasons": reasons}
@@ -201,87 +196,14 @@ def steepness(points: Sequence[PointRow]) -> dict[str, list[float]]:
     return {"rms_slope": list(SLOPES), "factor": [factor / of_runs for factor in SLOPES.values()]}
 
 
-def scatter_of_h_prime(points: Sequence[PointRow], h_macro_GPa: tuple[float, float]) -> float:
-    """Standard deviation of H' that more runs would average, GPa nm^0.5: between the seeds of an asperity, within runs.
-
-    The law of total variance splits the runs: between energy scales, asperities and seeds, and within a run.
-    """
-    hardness, spread, length, scale = _columns(points)
-    root = np.sqrt(length)
-    h_prime = (hardness - float(np.mean(h_macro_GPa))) * root
-    asperity = np.array([point["asperity"] for point in points])
-    scales, weight = np.unique(scale), 1 / len(np.unique(scale))
-    seed = run = 0.0
-    for one in scales:
-        of_scale = scale == one
-        for name in np.unique(asperity[of_scale]):
-            group = of_scale & (asperity == name)
-            seed += weight * np.sum(group) / np.sum(of_scale) * float(np.var(h_prime[group]))
-        run += weight * float(np.mean((spread[of_scale] * root[of_scale]) ** 2))
-    return float(np.sqrt(seed + run))
-
-
-def same_shape_exponents(points: Sequence[PointRow]) -> dict:
-    """n in H ~ L^-n between runs whose contact takes up the same share of the wavelength, with its 68 % interval.
-
-    There the runs of one shape differ by nothing but their size.  All that reached that share count, also those that
-    the rule on n refuses.  Straight line through the logarithms, Student's t from the scatter about it.
-
-    Returns
-    -------
-    by energy scale; empty for asperities of several shapes, and without a scale that has four runs of two sizes
-    """
-    slopes = [float(point["amplitude_nm"]) / float(point["wavelength_nm"]) for point in points]
-    if max(slopes) > (1 + FIT_RULES.shapes_alike) * min(slopes):
-        return {}
-    exponents = {}
-    for scale in sorted({float(point["energy_scale"]) for point in points}):
-        group = [
-            point
-            for point in points
-            if float(point["energy_scale"]) == scale and np.isfinite(float(point["same_shape_GPa"]))
-        ]
-        length, stress = (
-            np.array([float(point[key]) for point in group]) for key in ("same_shape_length_nm", "same_shape_GPa")
-        )
-        if len(group) < 4 or len({point["asperity"] for point in group}) < 2 or np.any(stress <= 0):
-            continue
-        (slope, _), covariance = np.polyfit(np.log(length), np.log(stress), 1, cov=True)
-        n, half = -float(slope), float(stdtrit(len(group) - 2, FIT_RULES.interval[1]) * np.sqrt(covariance[0, 0]))
-        exponents[f"scale_{scale:g}"] = {
-            "mean": n,
-            "low": n - half,
-            "high": n + half,
-            "runs": len(group),
-            "length_min_nm": length.min(),
-            "length_max_nm": length.max(),
-        }
-    return exponents
-
-
-def band(h_macro: np.ndarray, h_prime: np.ndarray, statistical: float) -> list[dict[str, float]]:
-    """H(L), L = sqrt(A) from 1 to 20 nm, with its 68 % band and the part of that which more runs would narrow.
-
-    Parameters
-    ----------
-    statistical : of `scatter_of_h_prime`.
-    """
+def band(h_macro: np.ndarray, h_prime: np.ndarray) -> list[dict[str, float]]:
+    """H(L), L = sqrt(A) from 1 to 20 nm, with its 68 % band."""
     rows = []
-    low_quantile, high_quantile = FIT_RULES.interval
     for length in np.geomspace(1, 20, 40).tolist():
-        hardness = h_macro + h_prime / np.sqrt(length)
-        low, middle, high = np.quantile(hardness, [low_quantile, 0.5, high_quantile]).tolist()
-        half = statistical / float(np.sqrt(length))
-        rows.append(
-            {
-                "contact_length_nm": length,
-                "low_GPa": low,
-                "median_GPa": middle,
-                "high_GPa": high,
-                "statistical_low_GPa": middle - half,
-                "statistical_high_GPa": middle + half,
-            }
+        low, middle, high = np.quantile(
+            h_macro + h_prime / np.sqrt(length), [FIT_RULES.interval[0], 0.5, FIT_RULES.interval[1]]
         )
+        rows.append({"contact_length_nm": length, "low_GPa": low, "median_GPa": middle, "high_GPa": high})
     return rows
 
 

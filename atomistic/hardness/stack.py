@@ -1,7 +1,7 @@
 """A film of oxide glass on another body: its force field, how it is laid and welded, and what it must look like.
 
 Nobody published how atoms of the two potentials act on each other. The file of the base states an assumption
-(`film_base`): Morse bonds of some pairs and a short-range repulsion of the others. Target `accuracy` varies the depth.
+(`film_base`): Morse bonds of some pairs and a short-range repulsion of the others.
 """
 
 from collections.abc import Iterable, Mapping
@@ -24,16 +24,10 @@ GAP_A = 1.6  # between the surfaces that are laid on each other
 
 @dataclass(frozen=True)
 class Stack:
-    """Oxide on a base, as a force field: the types of the base come first, those of the oxide follow.
-
-    Attributes
-    ----------
-    bond_factor : on the depth of the bonds between both.
-    """
+    """Oxide on a base, as a force field: the types of the base come first, those of the oxide follow."""
 
     oxide: Potential
     base: Base
-    bond_factor: float = 1.0
 
     @property
     def masses_u(self) -> Mapping[str, float]:
@@ -77,8 +71,7 @@ class Stack:
     def bond(self, pair: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Energy (eV) and force (eV/Å) of an atom of the base and an ion, shifted to vanish at the cut-off."""
         below, end = self.base.below_films, np.array([self.oxide.cutoff_A])
-        given = below.bonds[pair].model_dump() | {"D_eV": self.bond_factor * below.bonds[pair].D_eV}
-        morse = Morse(term="morse", **given, source=below.source, confidence="low")
+        morse = Morse(term="morse", **below.bonds[pair].model_dump(), source=below.source, confidence="low")
         (energy, slope), (energy_end, slope_end) = morse.energy_and_slope(r), morse.energy_and_slope(end)
         return energy - energy_end - slope_end * (r - end), slope_end - slope
 

@@ -1,14 +1,13 @@
 """Settings of the atomistic stages, a module each: every key with its default, unit and accepted range."""
 
 from atomistic.settings.elastic import DftSettings, ElasticSettings, NitrideGlassSettings
-from atomistic.settings.hardness import AsperitySettings, ClosingSettings, FitSettings, GlassSettings, HardnessSettings
+from atomistic.settings.hardness import AsperitySettings, ClosingSettings, GlassSettings, HardnessSettings
 
 __all__ = [
     "AsperitySettings",
     "ClosingSettings",
     "DftSettings",
     "ElasticSettings",
-    "FitSettings",
     "GlassSettings",
     "HardnessSettings",
     "NitrideGlassSettings",

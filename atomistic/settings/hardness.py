@@ -29,21 +29,12 @@ class ClosingSettings(Settings):
     """Closing of an asperity against a rigid flat, frictionless and repulsive."""
 
     speed_m_s: float = key(50, "closing speed", "[0.001, 1000] m/s")
-    depth_over_amplitude: float = key(2.2, "largest travel below the highest atom, in amplitudes", "[0.01, 4]")
     stop: Literal["settled", "window"] = key(
         "settled", "end of a run: plateau stress known to 4 % (settled), or contact on half of the cell"
     )
     base_nm: float = key(2.6, "least thickness below the mean height; at least the widest contact", "[1, 100] nm")
     anneal_ps: float = key(5, "time of the anneal of the cut surface and again of its cooling", "[0.001, 10_000] ps")
     processes: int = key(1, "MPI processes of one closing run, started as docs/cluster.md says", "[1, 4096]")
-
-
-class FitSettings(Settings):
-    """Fit of H(A) = H_macro + H' A^-0.25."""
-
-    h_macro_GPa: tuple[float, float] = key(
-        (0.7, 3.2), "range of H_macro, from which H' follows (default: Kim et al. 2013, Table 1)", "GPa"
-    )
 
 
 class HardnessSettings(Settings):
@@ -67,7 +58,6 @@ class HardnessSettings(Settings):
     )
     glass: GlassSettings = GlassSettings()
     closing: ClosingSettings = ClosingSettings()
-    fit: FitSettings = FitSettings()
 
     @model_validator(mode="after")
     def _films_have_a_base(self) -> "HardnessSettings":

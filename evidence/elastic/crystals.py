@@ -28,7 +28,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
             for xc in ("GGA", "LDA") if name in given.crystals else ():
                 atoms = crystal(material, name)
                 dft = settings.dft.model_copy(update={"cutoff_Ha": data.cutoff_Ha or settings.dft.cutoff_Ha})
-                points = scan_rows(name, atoms, xc, dft, settings.strains)
+                points = scan_rows(name, atoms, xc, dft)
                 fit = fit_scan([{key: str(value) for key, value in row.items()} for row in points])
                 kind = xc if xc in data.published else "experiment"
                 known = data.published[kind]

@@ -24,7 +24,7 @@ from atomistic.hardness.glass import make_glass
 from atomistic.hardness.pressing import lammps_seed, plan_closing, prepare_body, press_body
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
 from atomistic.hardness.stack import base_of
-from atomistic.lammps import Atoms, Workspace, load_averages, load_dump
+from atomistic.lammps import Atoms, LammpsFolder, load_averages, load_dump
 from atomistic.materials import load_material, load_materials, oxide_glasses
 from atomistic.potentials import Potential, load_potential
 from atomistic.settings import AsperitySettings, ClosingSettings, GlassSettings
@@ -102,7 +102,7 @@ def on_base(glass: Atoms, potential: Potential, below: Base, work: Path) -> dict
     found = {}
     for name, film_nm in ((base, 0.0), (f"{potential.name} film on {base}", SLAB_FILM_NM)):
         run = _flat_run(1.0, film_nm)
-        found[name] = cut_body(run, glass, potential, SLAB_BASE_NM, (1, 0), PROTOCOL, (below, cell))
+        found[name] = cut_body(run, glass, potential, SLAB_BASE_NM, (1, 0), (below, cell))
     return found
 
 
@@ -126,9 +126,9 @@ def pressed_layers(
     start = plan.segments * plan.segment_steps  # from the clearance to first touch; the slab is pressed after it
     steps = start + round(SLAB_TRAVEL_A / (plan.speed * plan.timestep))
     plan = replace(plan, segments=-(-steps // plan.segment_steps))
-    aside, place = Workspace(work / "anneal", {}, "anneal.in"), (1, 0)
+    aside, place = LammpsFolder(work / "anneal", {}, "anneal.in"), (1, 0)
     annealed = prepare_body(run, slab.atoms, slab.formula, slab.force, closing, protocol, aside, place)
-    workspace = Workspace(work / "pressed", {}, "closing.in")
+    workspace = LammpsFolder(work / "pressed", {}, "closing.in")
     cell, _ = press_body(
         run, annealed, slab.force, closing, protocol, plan, (1, 9), workspace, lambda cell, segments: False
     )

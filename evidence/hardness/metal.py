@@ -23,11 +23,11 @@ from atomistic.hardness.glass import run_segments
 from atomistic.hardness.metal import METAL, PLACES, Metal, crystal, electron_density, embedding_energy, pair_energy
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
-from atomistic.hardness.studies import drift_meV_atom_ps, free_motion, heated
-from atomistic.lammps import Atoms, Workspace
+from atomistic.lammps import Atoms, LammpsFolder
 from atomistic.materials import Eam, load_material
 from atomistic.settings import AsperitySettings, ClosingSettings
 from evidence.hardness.choices import silica_and
+from evidence.hardness.motion import drift_meV_atom_ps, free_motion, heated
 from evidence.record import ROOT
 
 STRAIN = 4e-3
@@ -173,7 +173,7 @@ def dislocated(metal: Metal, whole: Atoms, seed: int, work: Path) -> Atoms:
     steps = round(1000 * LOOP_PS / METAL.timestep_fs)
     parts = [(LOOP_K, LOOP_K), (LOOP_K, METAL.final_K), (METAL.final_K, METAL.final_K)]
     segments = [{"ensemble": "npt_height", "from": start, "to": end, "steps": steps} for start, end in parts]
-    workspace = Workspace(work, {"seed": seed}, "glass.in")
+    workspace = LammpsFolder(work, {"seed": seed}, "glass.in")
     start = whole.take(~missing)
     return run_segments(
         workspace, metal, whole.elements, lambda: start, segments, seed, METAL.timestep_fs, "anneal", None

@@ -18,7 +18,8 @@ from scipy.stats import qmc
 from evidence.pad.closed_form import ClosedForm
 from mesoscale.device.points import Point, point_of, values_at
 from mesoscale.device.pressing import EXACT, pressure_to_compute
-from mesoscale.failure.rate import Attracted, Population, corrected, learn
+from mesoscale.failure.population import Attracted, Population
+from mesoscale.failure.rate import corrected, learn
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings

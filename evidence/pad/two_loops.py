@@ -21,7 +21,8 @@ from evidence.pad.rare_failures import ATTRACTIONS, CUTOFFS_NM, PLATE, TABLE, kn
 from mesoscale.device.known import ENDS, fit_additive, known
 from mesoscale.device.plate import plate_from_settings, solve_on_pad
 from mesoscale.device.points import point_of, values_at
-from mesoscale.failure.rate import Attracted, Population, learn
+from mesoscale.failure.population import Attracted, Population
+from mesoscale.failure.rate import learn
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.uncertainty.rare_events import LEAST, quantiles_of
 

@@ -17,7 +17,7 @@ from mesoscale.calibration.voltages import StickingData, Voltage
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.hardness import HardnessLaw
-from mesoscale.settings import ContactSettings, MeasurementsSettings
+from mesoscale.settings import ContactSettings
 from mesoscale.uncertainty.designs import Run
 
 Array = NDArray[np.float64]
@@ -27,6 +27,8 @@ FIRST_SEED, FIRST_LOCAL_SEED = 1_500_000_000, 1_700_000_000
 """Surfaces of the cycles over the prior, and where the posterior lies, differ from those of all other designs."""
 RESPONSE_ERROR = 0.5
 """Error of the responses that is small enough, in standard deviations of the posterior prediction."""
+ROUNDS, LOCAL_SHARE = 3, 0.375
+"""How often cycles are added where the posterior lies, and how many over those of the whole prior."""
 
 
 @dataclass(frozen=True)
@@ -174,7 +176,6 @@ def calibrate(
     tables: Sequence[Measurements],
     model: Model,
     contact: ContactSettings,
-    settings: MeasurementsSettings,
     progress: Progress | None = None,
 ) -> Calibration:
     """The posterior of the inputs given the measurements.
@@ -192,17 +193,17 @@ def calibrate(
     for data in tables:
         model.check_range(data)
     rng = np.random.default_rng(np.random.SeedSequence([Sampling.seed, 0xCB]))
-    turn = 0
+    turn, more = 0, round(LOCAL_SHARE * len(model.cycles.x))
     while True:
         posterior = model.posterior(tables)
         chain = posterior.draw(progress=progress)
         shares = _error_shares(posterior, chain)
         exact = max(shares.values(), default=0.0) <= RESPONSE_ERROR and (turn > 0 or not shares)
-        if exact or not chain.converged or turn == settings.rounds:
+        if exact or not chain.converged or turn == ROUNDS:
             return Calibration(tuple(tables), model, posterior, chain, posterior.inputs(chain.z), shares)
-        picks, centre = rng.integers(len(chain.z), size=settings.local_runs), chain.z.mean(axis=0)
+        picks, centre = rng.integers(len(chain.z), size=more), chain.z.mean(axis=0)
         x = posterior.inputs(centre + 1.3 * (chain.z[picks] - centre))  # wider, so that its tails are known, too
-        first = turn * settings.local_runs
+        first = turn * more
         runs = [
             Run(first + k, -1, FIRST_LOCAL_SEED + first + k, dict(zip(model.prior.names, row, strict=True)))
             for k, row in enumerate(x.tolist())

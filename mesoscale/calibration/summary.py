@@ -160,8 +160,7 @@ def _remarks(result: Calibration, tables: dict[str, dict[str, Any]]) -> list[str
         worst = max(shares, key=shares.__getitem__)
         remarks.append(
             f"the responses' error is {shares[worst]:.2g} of the posterior's width ({worst}), above "
-            f"{RESPONSE_ERROR:g}; it is part of that width: raise measurements.local_runs or measurements.rounds to "
-            "narrow it"
+            f"{RESPONSE_ERROR:g}; it is part of that width: raise measurements.runs to narrow it"
         )
     return remarks
 

@@ -17,7 +17,7 @@ from mesoscale.contact.pressed import Contact, Row, State
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings, HistorySettings
-from mesoscale.settings.history import DWELL_STEPS
+from mesoscale.settings.history import CREEP_TIME_S, DWELL_STEPS
 
 
 @dataclass(frozen=True)
@@ -41,12 +41,10 @@ class HeldCycle:
 
 def hardness_factor(held_s: np.ndarray | float, settings: HistorySettings) -> np.ndarray:
     """Share of the hardness that is left after a time under load."""
-    time = np.asarray(held_s, dtype=float) / settings.creep_time_s
-    if settings.creep == "power":
-        return (1.0 + settings.creep_exponent * time) ** (-1.0 / settings.creep_exponent)
-    if settings.creep == "logarithmic":
-        return 1.0 / (1.0 + settings.creep_strength * np.log1p(time))
-    return np.ones_like(time)
+    time = np.asarray(held_s, dtype=float) / CREEP_TIME_S
+    if (exponent := settings.creep_exponent) is not None:
+        return (1.0 + exponent * time) ** (-1.0 / exponent)
+    return 1.0 / (1.0 + settings.creep_strength * np.log1p(time))
 
 
 def follow(
@@ -147,9 +145,9 @@ class Hold:
 def _times(settings: HistorySettings, start_s: float) -> np.ndarray:
     """Times of one hold, evenly in ln(1 + t/t0), the start included."""
     end_s = start_s + settings.dwell_s
-    ends = np.log1p(np.array([start_s, end_s]) / settings.creep_time_s)
+    ends = np.log1p(np.array([start_s, end_s]) / CREEP_TIME_S)
     inner = np.linspace(ends[0], ends[1], DWELL_STEPS + 1)[1:-1]
-    return np.array([start_s, *settings.creep_time_s * np.expm1(inner), end_s])
+    return np.array([start_s, *CREEP_TIME_S * np.expm1(inner), end_s])
 
 
 def _from_mean(contact: Contact, row: Row) -> Row:

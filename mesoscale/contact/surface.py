@@ -19,23 +19,20 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
     """Heights (pixels, pixels) in nm by the inputs' q0, hurst and rms and by `settings.surface`.
 
     Contact is at the minima of the heights, so a surface of positive skewness (tall peaks) has deep minima here.
-    The sum of two independent Gaussian surfaces is a Gaussian surface with the sum of their spectra.
     """
     from mesoscale.topography.synthesis import synthesize, synthesize_spectrum
 
     pixels, length, q1, wanted = settings.pixels, settings.length_nm, settings.q1_per_nm, settings.surface
     if q1 is not None:
         check_number("q1", q1, 0.0, settings.nyquist_per_nm * (1.0 + 1e-9), "1/nm (what the grid resolves)")
-    other = wanted.counterface
     if wanted.heights:
         from mesoscale.topography.height_synthesis import synthesize_heights
 
-        rms, psd = math.hypot(inputs.rms, other.rms_nm if other else 0.0), surface_spectrum(inputs, settings)
-        return -synthesize_heights(pixels, length, psd, wanted.heights, rms, seed, q1)
-    if wanted.spectrum is None and other is None:
+        psd = surface_spectrum(inputs, settings)
+        return -synthesize_heights(pixels, length, psd, wanted.heights, inputs.rms, seed, q1)
+    if wanted.spectrum is None:
         return synthesize(pixels, length, inputs.q0, inputs.hurst, inputs.rms, seed, settings.reading.convention, q1)
-    rms = math.hypot(inputs.rms, other.rms_nm if other else 0.0)
-    return synthesize_spectrum(pixels, length, surface_spectrum(inputs, settings), rms, seed, q1)
+    return synthesize_spectrum(pixels, length, surface_spectrum(inputs, settings), inputs.rms, seed, q1)
 
 
 def surface_spectrum(inputs: ContactInputs, settings: ContactSettings) -> Callable[[np.ndarray], np.ndarray]:
@@ -43,22 +40,15 @@ def surface_spectrum(inputs: ContactInputs, settings: ContactSettings) -> Callab
     from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable, slope_from_hurst
 
     wanted, cutoff, convention = settings.surface, shortest_wave(settings), settings.reading.convention
-
-    def rough(rms: float, q0: float, hurst: float) -> RoughSpectrum:
-        return RoughSpectrum.from_rms(rms, q0, slope_from_hurst(hurst, convention), cutoff)
-
+    slope = slope_from_hurst(inputs.hurst, convention)
     if wanted.spectrum is None:
-        spectra = [rough(inputs.rms, inputs.q0, inputs.hurst).psd]
-    else:
-        table = SpectrumTable(wanted.spectrum.q, wanted.spectrum.psd)
-        if wanted.spectrum.q0 is not None and wanted.spectrum.hurst is not None:
-            there = _form(table.q, wanted.spectrum.q0, slope_from_hurst(wanted.spectrum.hurst, convention))
-            here = _form(table.q, inputs.q0, slope_from_hurst(inputs.hurst, convention))
-            table = SpectrumTable(table.q, table.values * here / there)
-        spectra = [table.scaled(inputs.rms, cutoff).psd]
-    if wanted.counterface is not None:
-        spectra.append(rough(wanted.counterface.rms_nm, wanted.counterface.q0, wanted.counterface.hurst).psd)
-    return lambda q: np.sum([c(q) for c in spectra], axis=0)
+        return RoughSpectrum.from_rms(inputs.rms, inputs.q0, slope, cutoff).psd
+    table = SpectrumTable(wanted.spectrum.q, wanted.spectrum.psd)
+    if wanted.spectrum.q0 is not None and wanted.spectrum.hurst is not None:
+        there = _form(table.q, wanted.spectrum.q0, slope_from_hurst(wanted.spectrum.hurst, convention))
+        here = _form(table.q, inputs.q0, slope)
+        table = SpectrumTable(table.q, table.values * here / there)
+    return table.scaled(inputs.rms, cutoff).psd
 
 
 def _form(q: np.ndarray, q0: float, slope: float) -> np.ndarray:

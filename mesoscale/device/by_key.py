@@ -10,7 +10,7 @@ from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
 
 OF_A_BEAM = ("thickness_um", "length_um", "gap_um", "residual_stress_MPa", "dielectric_nm", "hold_voltage_V")
-OF_A_PLATE = ("spring_N_per_m", "electrode_um2", "gap_um", "dielectric_nm", "hold_voltage_V")
+OF_A_PLATE = ("spring_N_per_m", "width_um", "gap_um", "dielectric_nm", "hold_voltage_V")
 FACTORS = (0.7, 0.85, 1.2, 1.4)
 STRESSES_MPA = (-20.0, -10.0, 10.0, 20.0)
 """Steps of the stress, which may be 0; a hold voltage below pull-in never closes the switch, so that its row ends."""
@@ -60,6 +60,5 @@ def _voltages(device: DeviceSettings, law: PadLaw) -> dict[str, Any]:
 
 def value_of(device: DeviceSettings, key: str, pull_in_V: float) -> float:
     """The device's own value; of what it leaves open, what follows from the rest."""
-    follows = {"hold_voltage_V": pull_in_V, "electrode_um2": device.area_um2}
     value = getattr(device, key)
-    return float(follows[key] if value is None else value)
+    return float(pull_in_V if value is None else value)

@@ -21,27 +21,14 @@ for one spot that is a film of its own, a twelfth of the spot's own resistance i
 Contacts, 1967: 0.27 rho / a at uniform current, 0.25 at one potential).
 """
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.contact import Cycle, run_cycle
 from mesoscale.contact.cycle import Branch
-from mesoscale.device.numerics import SWITCH
-from mesoscale.errors import InputError
-from mesoscale.inputs.contact import ContactInputs, contact_of
-from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.memory import rows_at
-from mesoscale.settings import ContactSettings, ResistanceSettings
-from mesoscale.uncertainty.designs import random_runs
 
 Array = NDArray[np.float64]
-
-LEVELS = 8
-"""Forces at which the resistance is given, each twice the last."""
 
 
 @dataclass(frozen=True)
@@ -87,69 +74,27 @@ def diffusive_share(knudsen: Array) -> Array:
     return (1.0 + 0.83 * knudsen) / (1.0 + 1.33 * knudsen)
 
 
-def resistance_Ohm(slope: Array, area_nm2: Array, e_star_GPa: float, settings: ResistanceSettings) -> Array:
-    """Resistance (Ohm) of a contact of stiffness `slope` (N/m) and of its film; any shape."""
-    if settings.resistivities_nOhm_m is None or settings.mean_free_paths_nm is None:
-        raise InputError("resistance.resistivities_nOhm_m = null: give the resistivities of the two bodies in nOhm m")
+def resistance_Ohm(
+    slope: Array,
+    area_nm2: Array,
+    e_star_GPa: float,
+    resistivities_nOhm_m: tuple[float, float],
+    mean_free_paths_nm: tuple[float, float],
+    film_Ohm_um2: float = 0.0,
+) -> Array:
+    """Resistance (Ohm) of a contact of two bodies and of the film on it.
+
+    Parameters
+    ----------
+    slope : stiffness, N/m; any shape, as the area.
+    resistivities_nOhm_m : of the two bodies; gold 22.
+    mean_free_paths_nm : of their electrons; gold 37.7 at 20 C (Gall, J. Appl. Phys. 119 (2016) 085101); 0: Holm alone.
+    film_Ohm_um2 : resistance of a film times its area.
+    """
     radius_nm = 2.0 * area_nm2 * e_star_GPa / (np.pi * slope)  # GPa nm^2 over N/m is nm
-    ohm: Array = settings.film_Ohm_um2 / (area_nm2 * 1e-6)
-    for resistivity, path_nm in zip(settings.resistivities_nOhm_m, settings.mean_free_paths_nm, strict=True):
+    ohm: Array = film_Ohm_um2 / (area_nm2 * 1e-6)
+    for resistivity, path_nm in zip(resistivities_nOhm_m, mean_free_paths_nm, strict=True):
         # of one body; GPa nOhm m over N/m is Ohm, and so is nOhm m nm over nm^2
         ohm = ohm + diffusive_share(path_nm / radius_nm) * e_star_GPa * resistivity / (2.0 * slope)
         ohm = ohm + 2.0 * resistivity * path_nm / (3.0 * area_nm2)
     return ohm
-
-
-def resistance_rows(
-    table: InputTable,
-    contact: ContactSettings,
-    settings: ResistanceSettings,
-    progress: Callable[[float, str], None] | None = None,
-) -> Iterator[dict[str, Any]]:
-    """Rows of device/resistance.csv: each surface at `LEVELS` forces while it closes, opens and closes again.
-
-    Raises
-    ------
-    InputError : no resistivities, or too many surfaces that cannot be computed.
-    """
-    runs, failed = random_runs(table, 0, settings.runs), []
-    for run in runs:
-        inputs, chosen = contact_of(run.values, contact)
-        try:
-            ways = _ways(inputs, chosen, run.seed)
-        except (InputError, ArithmeticError) as error:
-            failed.append(str(error))
-            if len(failed) > (1.0 - SWITCH.solved) * len(runs):
-                raise InputError(f"resistance: of {len(runs)} surfaces, {len(failed)} failed: {failed[-1]}") from None
-            continue
-        for way, (force, slope, area) in ways.items():
-            ohm = resistance_Ohm(slope, area, inputs.e_star, settings)
-            for row in np.stack([force, slope, area, ohm], axis=1).tolist():
-                names = ("force_nN", "stiffness_N_per_m", "contact_area_nm2", "resistance_Ohm")
-                yield {"run": run.index, "seed": run.seed, "way": way, **dict(zip(names, row, strict=True))}
-        if progress:
-            progress((run.index + 1) / len(runs), f"{run.index + 1} of {len(runs)} surfaces")
-
-
-def _ways(inputs: ContactInputs, contact: ContactSettings, seed: int) -> dict[str, Array]:
-    """Force, stiffness (N/m) and area (nm2) of a surface that closes, opens and closes again; shape (3, levels)."""
-    forces: Array = np.array([contact.max_force_nN / 2.0**k for k in reversed(range(LEVELS))])
-    openings, cycle = [], None
-    for force in [*forces, *forces]:
-        cycle = _closed(inputs, contact, seed, float(force), cycle)
-        way = stiffness_of(cycle.opening)
-        openings.append(np.stack([way.force_nN, way.slope, way.area_nm2]))
-    ends = np.stack([opening[:, -1] for opening in openings], axis=1)
-    opened = rows_at(forces, openings[LEVELS - 1][0], openings[LEVELS - 1])
-    return {"closing": ends[:, :LEVELS], "opening": opened, "closing again": ends[:, LEVELS:]}
-
-
-def _closed(inputs: ContactInputs, contact: ContactSettings, seed: int, force_nN: float, before: Cycle | None) -> Cycle:
-    """A cycle up to a force, on the surface that the cycle before left."""
-    if before is None:
-        cycle = run_cycle(inputs, contact, seed, force_nN, keep_surface=True)
-    else:
-        cycle = run_cycle(inputs, contact, seed, force_nN, before.heights, contact_at="lowest", keep_surface=True)
-    if not cycle.converged:
-        raise InputError(f"a contact of {force_nN:.4g} nN did not settle")
-    return cycle

@@ -39,7 +39,7 @@ def collect(
     ------
     InputError : a stage's gate failed, a stage lacks an input, or a range crosses a physical bound.
     """
-    rows, pairs = [], {(pair.first, pair.second): pair.rank for pair in settings.correlations}
+    rows, pairs = [], dict(settings.pairs)
     for names, rank in joint_samples(settings.rows(law)).items():
         pairs.setdefault(names, rank)
     for name, row in settings.rows(law).items():
@@ -112,8 +112,7 @@ def check_literature(settings: InputsSettings) -> dict[str, tuple[float, float]]
     for name, row in rows.items():
         if row.origin == "literature":
             spans[name] = _check_range(name, stated_distribution(name, row), f"inputs.{name}")
-    stated = {(pair.first, pair.second): pair.rank for pair in settings.correlations}
-    correlation_matrix(list(rows), joint_samples(rows) | stated)
+    correlation_matrix(list(rows), joint_samples(rows) | settings.pairs)
     return spans
 
 

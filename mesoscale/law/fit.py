@@ -91,23 +91,6 @@ def contact_separation(separation_nm: Array, repulsive_nN: Array, touch_nm: floa
     return float(h[max(touching[0] - 1, 0)])
 
 
-def separation_at_share(separation_nm: Array, repulsive_nN: Array, share: float) -> float:
-    """The separation where the repulsion reaches a share of its maximum, linear between points; NaN without contact.
-
-    Unlike first contact it depends on how the curve was computed. It is smaller by about rho_r ln(...).
-    """
-    order = np.argsort(separation_nm)[::-1]
-    h, f = np.asarray(separation_nm, float)[order], np.asarray(repulsive_nN, float)[order]
-    if not (f > 0).any():
-        return np.nan
-    target = share * f.max()
-    index = int(np.flatnonzero(f >= target)[0])
-    if index == 0:
-        return float(h[0])
-    between = (target - f[index - 1]) / (f[index] - f[index - 1])
-    return float(h[index - 1] + between * (h[index] - h[index - 1]))
-
-
 def fit_branch(
     separation_nm: ArrayLike,
     repulsive_nN: ArrayLike,

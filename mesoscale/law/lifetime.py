@@ -12,6 +12,7 @@ from mesoscale.law.branches import fit_cycle
 from mesoscale.law.parameters import PARAMETERS
 from mesoscale.settings import ContactSettings, HistorySettings
 from mesoscale.settings.contact import NOMINAL_SEED
+from mesoscale.settings.history import SURFACES
 
 
 def follow_all(
@@ -21,19 +22,12 @@ def follow_all(
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[tuple[int, HeldCycle]]:
     """Seed and cycle of every surface in turn; the first is that of the nominal curves."""
-    for done in range(settings.seeds):
+    for done in range(SURFACES):
         seed = NOMINAL_SEED + done
         for held in follow(inputs, contact, settings, seed):
             yield seed, held
             if progress is not None:
-                progress(
-                    (done + held.number / settings.cycles) / settings.seeds, f"surface {seed}, cycle {held.number}"
-                )
-
-
-def shown_cycles(settings: HistorySettings) -> set[int]:
-    """Cycles whose curves are kept: the first, the second, the last and a few between."""
-    return {1, min(2, settings.cycles), *np.geomspace(1, settings.cycles, 5).round().astype(int).tolist()}
+                progress((done + held.number / settings.cycles) / SURFACES, f"surface {seed}, cycle {held.number}")
 
 
 def cycle_row(seed: int, held: HeldCycle) -> dict[str, Any]:

@@ -119,7 +119,6 @@ class FilmPieces:
         twice[0] = 1.0
         if contact.pixels % 2 == 0:
             twice[-1] = 1.0
-        other = contact.surface.counterface
         self.known = inside & (power > 0)
         self.known[0, 0] = False
         if not self.known.any():
@@ -128,8 +127,7 @@ class FilmPieces:
                 f"wave from {step:.3g} to {shortest_wave(contact):.3g} 1/nm, which is all that a cell has; "
                 "give one that reaches there, or another grid"
             )
-        variance = inputs.rms**2 + (other.rms_nm**2 if other else 0.0)
-        self.power = power * (variance / float((power * twice).sum()))
+        self.power = power * (inputs.rms**2 / float((power * twice).sum()))
 
     @property
     def plane_deviation_nm(self) -> float:

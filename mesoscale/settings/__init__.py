@@ -1,21 +1,19 @@
 """Settings of the mesoscale stages, a module each: every key with its default, unit and accepted range."""
 
 from asperity.guards.settings import Settings
-from mesoscale.settings.contact import ContactSettings, ReadingSettings
+from mesoscale.settings.contact import ContactSettings, ReadingSettings, SceneContact
 from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.failure import FailureSettings
 from mesoscale.settings.history import HistorySettings
-from mesoscale.settings.inputs import TABLE_1, Correlation, DistributionRow, InputRow, InputsSettings
+from mesoscale.settings.inputs import TABLE_1, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
 from mesoscale.settings.pad import PadSettings
-from mesoscale.settings.resistance import ResistanceSettings
 from mesoscale.settings.topography import InstrumentSettings, SyntheticScanSettings, TopographySettings
 from mesoscale.settings.uncertainty import UncertaintySettings
 
 __all__ = [
     "TABLE_1",
     "ContactSettings",
-    "Correlation",
     "DeviceSettings",
     "DistributionRow",
     "FailureSettings",
@@ -27,7 +25,7 @@ __all__ = [
     "MeasurementsSettings",
     "PadSettings",
     "ReadingSettings",
-    "ResistanceSettings",
+    "SceneContact",
     "Settings",
     "SyntheticScanSettings",
     "TopographySettings",

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, Self
 
 from pydantic import model_validator
 
@@ -72,7 +72,6 @@ class AirSettings(Settings):
 
     humidity: float = key(0.0, "relative humidity of the liquid's vapour; 0: dry", "[0, 1)")
     temperature_C: float = key(20.0, "temperature of air and liquid", "[-100, 2000] C")
-    liquid: str = key("water", "its name; others than water need surface tension and molar volume", max_length=60)
     surface_tension_mN_m: float | None = key(
         None, "surface tension of the liquid; null: water's at the temperature", "[0.001, 1e5] mN/m"
     )
@@ -94,14 +93,14 @@ class AirSettings(Settings):
         for angle in self.contact_angles_deg:
             if not 0.0 <= angle <= 180.0:
                 raise ValueError(f"contact_angles_deg: {angle:g} is no contact angle; accepted are 0 to 180 degrees")
-        if self.liquid != "water" and None in (self.surface_tension_mN_m, self.molar_volume_cm3):
+        if (self.surface_tension_mN_m is None) != (self.molar_volume_cm3 is None):
             raise ValueError(
-                f"liquid = {self.liquid}: only water is known; give its surface_tension_mN_m and molar_volume_cm3"
+                "surface_tension_mN_m and molar_volume_cm3 go together: both of another liquid, or neither"
             )
         return self
 
 
-class ContactSettings(Settings):
+class SceneContact(Settings):
     """Mesoscale contact model (docs/contact.md)."""
 
     mechanics: Literal["asperity", "coupled", "adhesive"] = key(
@@ -119,7 +118,6 @@ class ContactSettings(Settings):
     )
     max_force_nN: float = key(7000.0, "repulsive force at which closing turns into opening", "[1e-6, 1e12] nN")
     q1_per_nm: float | None = key(None, "short-wave cut-off of the spectrum; null: Nyquist limit", "[1e-6, 1000] 1/nm")
-    surface: SurfaceSettings = SurfaceSettings()
     attraction: AttractionLaw = key(
         "offset", "eq. 1: A_H/(6 pi (g + D0)^3), or the paper's A_H/(6 pi max(g, D0)^3), of twice more work within D0"
     )
@@ -139,7 +137,7 @@ class ContactSettings(Settings):
     reading: ReadingSettings = ReadingSettings()
 
     @model_validator(mode="after")
-    def _bodies_and_air_suit(self) -> "ContactSettings":
+    def _bodies_and_air_suit(self) -> Self:
         if any(material.thickness_nm == 0.0 for body in self.bodies for material in body):
             raise ValueError("bodies: a layer with thickness_nm = 0 is none; leave it out")
         for body in self.bodies:
@@ -157,6 +155,12 @@ class ContactSettings(Settings):
     def nyquist_per_nm(self) -> float:
         """Largest wave vector that the grid resolves, 1/nm."""
         return math.pi * self.pixels / self.length_nm
+
+
+class ContactSettings(SceneContact):
+    """The contact model with what its surface is made of, which the topography stage finds."""
+
+    surface: SurfaceSettings = SurfaceSettings()
 
     def on_cell(self, length_nm: float) -> "ContactSettings":
         """The same at the same mean pressure on a cell of another side (nm)."""

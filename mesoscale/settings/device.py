@@ -90,13 +90,15 @@ class DeviceSettings(Settings):
     )
     buckled: Literal["up", "down"] = key("up", "side of a buckled beam; up: away from the dielectric")
     temperature_C: float = key(REFERENCE_C, "temperature of the switch", "[-270, 2000] C")
-    expansion_ppm_C: float = key(13.4, "thermal expansion of the beam; the default is nickel's", "[-100, 1000] 1e-6/C")
-    substrate_expansion_ppm_C: float = key(
-        2.6, "thermal expansion of the substrate between the anchors; the default is silicon's", "[-100, 1000] 1e-6/C"
+    excess_expansion_ppm_C: float = key(
+        10.8,
+        "thermal expansion of the beam less the substrate's; default: nickel 13.4, silicon 2.6",
+        "[-1000, 1000] 1e-6/C",
     )
     anchor_um_per_N: float = key(0.0, "how far both anchors together give way to the axial force", "[0, 1e9] um/N")
-    spring_N_per_m: float | None = key(None, "stiffness of a parallel-plate switch; null: a beam", "[0.001, 1e6] N/m")
-    electrode_um2: float | None = key(None, "area of a parallel plate; null: length times width", "[0.0001, 1e9] um^2")
+    spring_N_per_m: float | None = key(
+        None, "stiffness of a plate of length times width; null: a beam", "[0.001, 1e6] N/m"
+    )
     electrode: PartOfBeam = key((0.0, 1.0), "part of the beam over the electrode, from and to", "share of the length")
     contact: PartOfBeam = key((0.0, 1.0), "part over the rough pad, from and to", "share of the length")
     dimple_nm: float = key(0.0, "height of a dimple under the contact part", "[0, 1e5] nm")
@@ -133,7 +135,7 @@ class DeviceSettings(Settings):
     @property
     def area_um2(self) -> float:
         """Area of the electrode, um^2."""
-        return self.electrode_um2 or (self.electrode[1] - self.electrode[0]) * self.length_um * self.width_um
+        return (self.electrode[1] - self.electrode[0]) * self.length_um * self.width_um
 
     @property
     def pad_um2(self) -> float:
@@ -152,7 +154,7 @@ class DeviceSettings(Settings):
     @property
     def heating_MPa(self) -> float:
         """Axial stress by the temperature, -E (alpha_beam - alpha_substrate) (T - 20 C)."""
-        strain = 1e-6 * (self.expansion_ppm_C - self.substrate_expansion_ppm_C) * (self.temperature_C - REFERENCE_C)
+        strain = 1e-6 * self.excess_expansion_ppm_C * (self.temperature_C - REFERENCE_C)
         return -1e3 * self.youngs_modulus_GPa * strain
 
     def shape_at_rest_nm(self, share: ArrayLike) -> NDArray[np.float64]:

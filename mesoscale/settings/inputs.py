@@ -1,7 +1,7 @@
 """Settings of the uncertain inputs."""
 
 import math
-from typing import Any, Literal, Self, cast
+from typing import Annotated, Any, Literal, Self, cast
 
 from pydantic import Field, create_model, field_validator, model_validator
 
@@ -99,14 +99,7 @@ class InputRow(DistributionRow):
         return self
 
 
-class Correlation(Settings):
-    """Dependence of two inputs."""
-
-    first: str = key(..., "name of an input")
-    second: str = key(..., "name of another input")
-    rank: float = key(..., "Spearman's rank correlation of the two", "(-1, 1)")
-
-
+Rank = Annotated[float, Field(gt=-1, lt=1)]
 HardnessLawName = Literal["constant", "paper", "film"]
 TABLE_1 = "Kim et al. (2013), Table 1"
 
@@ -148,7 +141,9 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
         "hardness by contact area: constant, eq. 4 (h_prime), or film on a base (h_film, t_film, k_film, m_film)",
     )
     adhesion: WorkAndRangeSettings | None = key(None, "work and range in place of hamaker and gap_cutoff")
-    correlations: tuple[Correlation, ...] = key((), "rank correlations, besides those that a stage reports")
+    correlations: dict[str, dict[str, Rank]] = key(
+        {}, "rank correlations besides those that a stage reports, such as {rms: {q0: -0.4, hurst: 0.2}}"
+    )
 
     @model_validator(mode="after")
     def _one_attraction(self) -> "InputsSettings":
@@ -174,16 +169,13 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
     @model_validator(mode="after")
     def _known_names(self) -> "InputsSettings":
         names = list(self.rows())
-        for pair in self.correlations:
-            for name in (pair.first, pair.second):
-                if name not in names:
-                    raise ValueError(f"correlations: unknown input {name}; accepted: {', '.join(names)}")
-            if pair.first == pair.second:
-                raise ValueError(f"correlations: {pair.first} with itself; name two inputs")
-            if len({self.rows()[name].varies for name in (pair.first, pair.second)}) > 1:
-                raise ValueError(
-                    f"correlations: of {pair.first} and {pair.second} one is common and one varies with each device"
-                )
+        for pair in self.pairs:
+            if unknown := [name for name in pair if name not in names]:
+                raise ValueError(f"correlations: unknown input {unknown[0]}; accepted: {', '.join(names)}")
+            if pair[0] == pair[1]:
+                raise ValueError(f"correlations: {pair[0]} with itself; name two inputs")
+            if len({self.rows()[name].varies for name in pair}) > 1:
+                raise ValueError(f"correlations: of {' and '.join(pair)} one is common and one varies with each device")
         for name, row in self.rows().items():
             stage = BY_NAME[name].stage
             accepted = dict.fromkeys(("literature", stage, "calibration"))
@@ -192,6 +184,11 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
             if row.origin == "calibration" and row.values is None and stage == "literature":
                 raise ValueError(f"{name}: no stage computes it, so that its prior must be stated: give its values")
         return self
+
+    @property
+    def pairs(self) -> dict[tuple[str, str], float]:
+        """The stated rank correlations (Spearman's) of two inputs."""
+        return {(one, other): rank for one, others in self.correlations.items() for other, rank in others.items()}
 
     def rows(self, law: AttractionLaw = "offset") -> dict[str, InputRow]:
         """The inputs in use, by name; `law` of the attraction that `adhesion` states."""

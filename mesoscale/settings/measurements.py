@@ -35,9 +35,11 @@ class MeasurementsSettings(Settings):
     """Measurements and the calibration of the inputs with them (docs/calibration.md); off without tables."""
 
     tables: tuple[MeasurementTable, ...] = key((), "tables, one of each kind at most; none: not run")
-    runs: int = key(800, "contact cycles over the whole prior behind the responses", "[50, 1_000_000]")
-    local_runs: int = key(300, "contact cycles where the posterior lies, added at a time", "[20, 1_000_000]")
-    rounds: int = key(3, "how often they are added at most, until the responses are exact enough", "[0, 20]")
+    runs: int = key(
+        800,
+        "contact cycles over the whole prior behind the responses; more follow where the posterior lies",
+        "[50, 1_000_000]",
+    )
 
     @model_validator(mode="after")
     def _one_table_of_a_kind(self) -> "MeasurementsSettings":

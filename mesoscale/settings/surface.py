@@ -11,14 +11,6 @@ PsdValue = Annotated[float, Field(ge=1e-60, le=1e60)]
 """As far apart as logarithms of single precision are: of a spectrum by points only the shape counts."""
 
 
-class CounterfaceSettings(Settings):
-    """A second rough surface: the flat meets the sum of both spectra, the effective roughness."""
-
-    q0: float = key(..., "its roll-off wave vector", "[1e-7, 10] 1/nm")
-    hurst: float = key(..., "its Hurst exponent, in contact.reading.convention", "[1e-6, 2]")
-    rms_nm: float = key(..., "its RMS height", "[1e-5, 1e4] nm")
-
-
 class SpectrumSettings(Settings):
     """A spectrum by points instead of the form of eq. 9; only its shape counts, the RMS is that of Table 1."""
 
@@ -50,7 +42,6 @@ class SurfaceSettings(Settings):
     """The contacting surface (docs/topography.md, Surfaces)."""
 
     spectrum: SpectrumSettings | None = key(None, "spectrum by points; null: eq. 9")
-    counterface: CounterfaceSettings | None = key(None, "second rough surface; null: the counterface is flat")
     heights: tuple[Annotated[float, Field(ge=-1000, le=1000)], ...] = key(
         (),
         "measured heights: their values in units of the RMS at the normal variables -5, -4.9, ... 6 (as "

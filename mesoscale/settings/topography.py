@@ -11,8 +11,7 @@ class SyntheticScanSettings(Settings):
     """Synthetic AFM scans with known truth, used when no scans are given (docs/topography.md)."""
 
     small_scans: int = key(8, "number of small scans, of 1 um", "[0, 100]")
-    large_scans: int = key(3, "number of large scans", "[0, 100]")
-    large_length_nm: float = key(10000.0, "side of a large scan", "(0, 1e6] nm")
+    large_scans: int = key(3, "number of large scans, of 10 um", "[0, 100]")
     pixels: int = key(1024, "pixels per side of a scan", "[32, 8192]")
 
 
@@ -62,9 +61,6 @@ class TopographySettings(Settings):
         "auto", "what is subtracted as tilt and form; auto: a quadratic where form is clearly more than roughness"
     )
     line_alignment: Literal["none", "median"] = key("median", "what is subtracted from each scan line")
-    max_missing: float = key(
-        0.05, "largest share of missing pixels that is filled from neighbours; above, the scan is refused", "[0, 0.5]"
-    )
     ranges: Literal["scatter", "interval"] = key(
         "scatter", "range of the inputs: scatter between scans (the paper's), or interval of the typical value"
     )

@@ -1,6 +1,7 @@
 """Stiff and extreme cases of a scene's contact, each judged by physical invariants (target `stability`)."""
 
-from collections.abc import Callable
+import time
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -15,11 +16,9 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.settings.definitions import definition
+from mesoscale.studies.driver import Progress, StudyRow
 
 FINER = 16  # force steps of the path that judges a gain of energy, over those of the cycle
-
-Check = tuple[str, str, str, Callable[[], tuple[bool, str]]]
-"""Case, description, what is checked, and the check."""
 
 
 @dataclass(frozen=True)
@@ -194,16 +193,31 @@ def judge(case: Case, settings: ContactSettings) -> tuple[list[str], str]:
     return broken, detail
 
 
-def stability_checks(inputs: ContactInputs, settings: ContactSettings) -> list[Check]:
-    """The extreme cases on at most 256 pixels a side of the scene's spacing: they cost more than usual ones."""
+def stability_rows(
+    inputs: ContactInputs, settings: ContactSettings, progress: Progress | None = None
+) -> Iterator[StudyRow]:
+    """Rows of stability/contact.csv without the stage; a case that raises has failed.
+
+    The extreme cases have at most 256 pixels a side of the scene's spacing: they cost more than usual ones.
+    """
     pixels = min(settings.pixels, 256)
     length = settings.length_nm * pixels / settings.pixels
     chosen = settings.model_copy(update={"pixels": pixels, "length_nm": length})
     cases = extreme_cases(inputs, chosen)
-    checked = "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow settled"
-    return [(case.name, case.description, checked, partial(_verdict, case, chosen)) for case in cases]
-
-
-def _verdict(case: Case, settings: ContactSettings) -> tuple[bool, str]:
-    broken, detail = judge(case, settings)
-    return not broken, "; ".join([*broken[:5], detail])
+    for done, case in enumerate(cases, 1):
+        started = time.perf_counter()
+        try:
+            broken, detail = judge(case, chosen)
+        except Exception as error:  # whatever it is, it is this case's result
+            broken, detail = [type(error).__name__], " ".join(str(error).split())
+        yield {
+            "case": case.name,
+            "description": case.description,
+            "checks": "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow "
+            "settled",
+            "passed": not broken,
+            "detail": "; ".join([*broken[:5], detail]),
+            "wall_s": round(time.perf_counter() - started, 3),
+        }
+        if progress is not None:
+            progress(done / len(cases), case.name)

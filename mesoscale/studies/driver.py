@@ -1,5 +1,6 @@
 """The one driver of the accuracy studies: a stage declares its numerical choices as knobs, and each try is timed."""
 
+import resource
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
-Row = dict[str, Any]
+StudyRow = dict[str, Any]
 T = TypeVar("T")
 
 
@@ -41,8 +42,8 @@ class Knob:
     cases: Sequence[str] = ("release",)
 
 
-def rows_of(knobs: Sequence[Knob], progress: Progress | None = None) -> Iterator[Row]:
-    """Rows of an accuracy table without the stage: every case of every value of every knob."""
+def rows_of(knobs: Sequence[Knob], progress: Progress | None = None) -> Iterator[StudyRow]:
+    """Rows of an accuracy table without the stage: every case of every value of every knob, and memory held so far."""
     for done, knob in enumerate(knobs):
         metrics = [knob.metric] * len(knob.cases) if isinstance(knob.metric, str) else knob.metric
         for value, error, cost in knob.tries:
@@ -54,8 +55,9 @@ def rows_of(knobs: Sequence[Knob], progress: Progress | None = None) -> Iterator
                     "error": one,
                     "error_metric": metric,
                     "reference": knob.reference,
-                    "wall_s": float(cost[0]),
-                    "cpu_s": float(cost[1]),
+                    "wall_s": round(float(cost[0]), 4),
+                    "cpu_s": round(float(cost[1]), 4),
+                    "peak_rss_MB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
                 }
             if progress:
                 progress((done + 0.5) / len(knobs), f"{knob.name} {value}")

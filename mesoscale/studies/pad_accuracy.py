@@ -5,7 +5,7 @@ the number of points by the quantiles of the release over all points.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -18,7 +18,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.memory import PadLaw
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings, DeviceSettings
-from mesoscale.studies.driver import Array, Knob, Progress, Row, Try, compared, rows_of, timed
+from mesoscale.studies.driver import Array, Knob, Progress, StudyRow, Try, compared, rows_of, timed
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def accuracy_points(
     cells: int,
     progress: Progress | None = None,
     tried: Tried | None = None,
-) -> Iterator[Row]:
+) -> Iterator[StudyRow]:
     """Rows of accuracy/pad.csv.
 
     Parameters
@@ -131,30 +131,6 @@ def _beam(law: PadLaw, device: DeviceSettings, elements: tuple[int, ...]) -> Ite
     if not device.bends:
         return
     finest = 2 * elements[-1]
-    for case, solve, metric, error in (
-        ("release", release_or_nan_V, "deviation, V", lambda some, wanted: abs(some - wanted)),
-        ("attraction that sticks", _sticking, "relative deviation", lambda some, wanted: abs(some / wanted - 1.0)),
-    ):
-        tries = [(count, partial(solve, device, law, count)) for count in elements]
-        compare = compared(partial(solve, device, law, finest), tries, error)
-        yield Knob("elements of the beam", metric, f"{finest} elements", compare, [case])
-
-
-def _sticking(device: DeviceSettings, law: PadLaw, elements: int) -> float:
-    """Least factor on the attraction with which the switch sticks, to 0.1 %; NaN: none found."""
-
-    def sticks(factor: float) -> bool:
-        times = np.array([[1.0], [factor]])
-        flats = replace(law.flats, hamaker=factor * law.flats.hamaker)
-        scaled = replace(law, closing=times * law.closing, opening=times * law.opening, flats=flats)
-        return release_or_nan_V(device, scaled, elements) == 0.0
-
-    low, high = 0.0, 1.0
-    while not sticks(high):
-        low, high = high, 2.0 * high
-        if high > 1e3:
-            return np.nan
-    while high - low > 1e-3 * high:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if sticks(middle) else (middle, high)
-    return high
+    tries = [(count, partial(release_or_nan_V, device, law, count)) for count in elements]
+    compare = compared(partial(release_or_nan_V, device, law, finest), tries)
+    yield Knob("elements of the beam", "deviation, V", f"{finest} elements", compare)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.settings import TopographySettings
-from mesoscale.studies.driver import Knob, Progress, Row, Try, rows_of, timed
+from mesoscale.studies.driver import Knob, Progress, StudyRow, Try, rows_of, timed
 from mesoscale.topography.description.likelihood import fit, skip_blurred_shells
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.description.trusted_range import trusted_range
@@ -21,7 +21,7 @@ Value = tuple[Any, ScanSet, float | None]
 """Value of a knob, the scans, and the tip radius that the analysis is told where it is not the scene's."""
 
 
-def accuracy_points(settings: TopographySettings, progress: Progress | None = None) -> Iterator[Row]:
+def accuracy_points(settings: TopographySettings, progress: Progress | None = None) -> Iterator[StudyRow]:
     """Every value of every knob: RMS error over three surfaces, mean time of one analysis."""
     base = ScanSet(**settings.synthetic.model_dump(), rms_variation=0.0)
     metrics, cases, truth = tuple(METRICS.values()), tuple(METRICS), "truth of the synthetic scans"

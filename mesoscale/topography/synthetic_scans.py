@@ -18,6 +18,7 @@ class ScanSet(SyntheticScanSettings):
 
     seed: int = 1
     small_length_nm: float = 1000.0
+    large_length_nm: float = 10_000.0
     q0: float = Field(default=0.025, description="1/nm, the middle of the paper's range")
     q1: float = Field(default=3.2, description="1/nm, end of the power law")
     slope: float = Field(default=2.84, description="C ~ q^-slope, the paper's H of 0.92 as 2H+1")

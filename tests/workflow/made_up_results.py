@@ -287,32 +287,15 @@ def _hardness(root: Path) -> None:
             [{"step": step, "displacement_nm": step / 1000, "exchanged_bonds": step // 10} for step in steps],
         )
     _write(root / "hardness/points.csv", points)
-    scatter = {"statistical_low_GPa": 6, "statistical_high_GPa": 8}
     fit = {
         "method": "literature",
         "gate": {"passed": False, "reasons": ["only 2 of 9 runs <gave> a hardness"]},
         "H_macro_GPa": {"median": 1.9, "low": 1.1, "high": 2.8},
-        "curve": [
-            {"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9, **scatter} for x in (2.0, 10.0)
-        ],
-        "budget": {
-            "statistical": {"std": 1.0, "share": 0.2, "sources": {"seed": 0.8, "run": 0.6}},
-            "systematic": {"std": 2.0, "share": 0.8, "sources": {"area": 0.3, "energies": 1.9}},
-        },
-        "size_effect_at_one_shape": {
-            "scale_0.5": {
-                **{"mean": -0.3, "low": -0.5, "high": -0.1, "runs": 6},
-                **{"length_min_nm": 2.4, "length_max_nm": 4.4},
-            }
-        },
+        "curve": [{"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9} for x in (2.0, 10.0)],
         "film": {
             "base_GPa": {"low": 4, "median": 5, "high": 6},
             "left_out": {"film": 0.08, "paper": 0.2, "constant": 0.21},
             "length_over_thickness": [1.1, 5.6],
-            "share": [
-                {"length_over_thickness": x, "low": 0.3 / x, "median": 0.4 / x, "high": 0.5 / x}
-                for x in (0.5, 2.0, 10.0)
-            ],
         },
     }
     write_json(root / "hardness/fit.json", fit, PROVENANCE)
@@ -344,7 +327,6 @@ def _elastic(root: Path) -> None:
     gate = {"passed": True, "reasons": []}
     used = [f"a{i:02d}" for i in range(1, 4)]
     e_star = {"mean_GPa": 90.0, "std_GPa": 4.0, "structures_used": used, "notes": ["no broken <bonds>"], "gate": gate}
-    e_star["shares"] = {"structure": {"total": 0.2}, "poisson_ratio": {"total": 0.3}, "counter_body": {"total": 0.5}}
     write_json(root / "elastic/e_star.json", e_star, PROVENANCE)
     values = Dataset(np.random.default_rng(1).normal(90, 4, 500), "GPa", "E*", ("sample",))
     write_h5(root / "elastic/e_star.h5", {"samples": {"e_star_GPa": values}}, {}, PROVENANCE)
@@ -380,7 +362,7 @@ def _topography(root: Path) -> None:
 
 
 def _history(root: Path) -> None:
-    cycles, dwell, groups, facts = [], [], {}, {}
+    cycles, dwell = [], []
     for cycle in (1, 2):
         row = {"seed": 1, "cycle": cycle, "held_s": 10.0 * cycle, "closed_nm": 25.0 - cycle, "last_contact_nm": 29.0}
         row |= {"contact_area_nm2": 1e3, "dissipated_nN_nm": 1e4 / cycle**6, "pull_off_nN": 300.0}
@@ -392,16 +374,8 @@ def _history(root: Path) -> None:
                 "separation_nm": 25.0 - cycle - time / 20,
             }
             dwell.append({"seed": 1, "cycle": cycle, **held, "contact_area_nm2": 1e3, "asperities": 100})
-        facts[f"cycle_{cycle:04d}"] = {"cycle": cycle, "seed": 1}
-        for branch in ("closing", "opening"):
-            h = np.linspace(20, 45, 30)
-            values = {"separation_nm": h, "repulsive_nN": np.where(h < 35, 7e3, 0.0), "attractive_nN": -100 + 0 * h}
-            groups[f"cycle_{cycle:04d}/{branch}"] = {
-                key: Dataset(value, "nN", "made up", ("point",)) for key, value in values.items()
-            }
     _write(root / "history/cycles.csv", cycles)
     _write(root / "history/dwell.csv", dwell)
-    write_h5(root / "history/curves.h5", groups, {"cell_area_nm2": 1e6}, PROVENANCE, facts)
 
 
 def _calibration(root: Path) -> None:
@@ -467,13 +441,6 @@ def _failure(root: Path) -> None:
     control = [{"name": "rms", "failing_if_known": 1e-7}, {"name": "hurst", "failing_if_known": 3e-5}]
     write_json(root / "device/failure.json", rate | {"control_attraction": 1.0, "control": control}, PROVENANCE)
     _write(root / "device/failure.csv", rows)
-    contacts = [
-        {"run": run, "seed": run, "way": way, "force_nN": force, "resistance_Ohm": (1 + run) / force}
-        for run in range(3)
-        for way in ("closing", "opening", "closing again")
-        for force in (10.0, 20.0)
-    ]
-    _write(root / "device/resistance.csv", contacts)
     study = {"lumps": 24, "pull_in": 1e-4, "release": 3e-3, "capacitance": 0.01, "pull_in_V": 70.0, "release_V": 6.0}
     study |= {"reference": 1e-3}
     write_json(root / "device/circuit.json", {"lumps": study}, PROVENANCE)

@@ -3,11 +3,11 @@
 import json
 from types import SimpleNamespace
 
-from mesoscale.settings import ContactSettings
+from mesoscale.settings import ContactSettings, SceneContact
 from workflow.run.contact_settings import contact_settings
 from workflow.scene import Scene
 
-GIVEN = ContactSettings(max_force_nN=5000.0).model_dump(mode="json")
+GIVEN = SceneContact(max_force_nN=5000.0).model_dump(mode="json")
 
 
 def job(folder, described):

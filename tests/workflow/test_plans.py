@@ -65,11 +65,6 @@ def test_a_scene_computes_the_tails_that_it_wants(plan, make_workflow, tmp_path)
     )
 
 
-def test_the_resistance_is_measured_where_a_scene_has_metals(plan):
-    assert "resistance" not in plan("paper") | plan("ci")
-    assert plan("paper", "resistance") == {"inputs", "resistance"}
-
-
 def test_humidity_is_swept_where_a_scene_has_humid_air(plan, make_workflow, tmp_path):
     assert "humidity" not in plan("paper") | plan("ci") | plan("reduced")
     assert "humidity" in plan("humid") & plan("humid", "humidity")
@@ -118,10 +113,9 @@ def test_studies_of_a_scene_leave_out_the_stages_it_does_not_use(plan):
     assert not [rule for rule in studied if any(word in rule for word in foreign)]
 
 
-def test_studies_of_a_scene_cover_every_stage_it_uses(plan, said):
-    """Accuracy of contact, topography, hardness, elastic, uncertainty, pad; stability of contact, hardness, elastic."""
-    assert plan("ci", "accuracy", "stability") >= {"vary_closing", "study"}
-    assert re.search(r"^study +9 ", said("ci", "accuracy", "stability"), re.MULTILINE)
+def test_studies_of_a_scene_cover_every_stage_it_uses(said):
+    """Accuracy of topography and pad; stability of the contact."""
+    assert re.search(r"^study +3 ", said("ci", "accuracy", "stability"), re.MULTILINE)
 
 
 def test_every_file_that_a_scene_makes_is_asked_for_so_that_a_lost_one_is_made_again(make_workflow, tmp_path):

@@ -13,7 +13,7 @@ from workflow.files.results import load_csv, load_h5, load_json
 COMPUTED, LITERATURE, SYNTHETIC = "computed", "literature", "synthetic"
 FEEDING = ("hardness", "elastic", "topography")
 """Stages that a scene may compute without using them."""
-Row = dict[str, str]
+CsvRow = dict[str, str]
 
 
 class Results:
@@ -42,7 +42,7 @@ class Results:
         return sorted(name for name in self.paths if name.startswith(prefix) and name.endswith(suffix))
 
     @cache  # noqa: B019 (one object per report)
-    def csv(self, name: str) -> list[Row]:
+    def csv(self, name: str) -> list[CsvRow]:
         """Rows of a CSV file."""
         return load_csv(self.root / name)
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import draw
 from workflow.report.numbers import cell, show, shown_unit
 from workflow.report.page import Block, DoubtNote, Figure, PageTable, table
@@ -102,7 +102,7 @@ def _statistics(parameters: Mapping[str, Any]) -> Iterator[Block]:
         )
 
 
-def _judgement(rows: Sequence[Row]) -> PageTable:
+def _judgement(rows: Sequence[CsvRow]) -> PageTable:
     short = short_names(list(dict.fromkeys(row["scan"] for row in rows)))
     return table(
         "The scans pressed (their largest square, made periodic), beside surfaces made from their description",

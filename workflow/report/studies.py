@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.numbers import column, number, show
 from workflow.report.page import Block, PageTable, Section, section
 
@@ -25,7 +25,7 @@ def studies(results: Results) -> list[Section]:
     return sections
 
 
-def _accuracy(tables: dict[str, list[Row]]) -> Iterator[Block]:
+def _accuracy(tables: dict[str, list[CsvRow]]) -> Iterator[Block]:
     yield "Error against run time"
     yield (
         "What each numerical choice costs and buys. Recommended is the cheapest value whose largest error over all "
@@ -36,7 +36,7 @@ def _accuracy(tables: dict[str, list[Row]]) -> Iterator[Block]:
     yield PageTable("Recommended settings", (*names, "at (s)", "against"), lines, heads=2)
 
 
-def _stability(tables: dict[str, list[Row]]) -> Iterator[Block]:
+def _stability(tables: dict[str, list[CsvRow]]) -> Iterator[Block]:
     failed = [f"{stage}: {row['case']}" for stage, rows in tables.items() for row in rows if not _passed(row)]
     total = sum(map(len, tables.values()))
     yield "Stability"
@@ -45,9 +45,9 @@ def _stability(tables: dict[str, list[Row]]) -> Iterator[Block]:
         yield "Not passed: " + "; ".join(failed) + "."
 
 
-def curves(rows: list[Row]) -> dict[tuple[str, str], list[tuple[str, float, float]]]:
+def curves(rows: list[CsvRow]) -> dict[tuple[str, str], list[tuple[str, float, float]]]:
     """By knob and reference: value, largest error over the cases, and time (s), cheapest first."""
-    groups: dict[tuple[str, str], dict[str, list[Row]]] = {}
+    groups: dict[tuple[str, str], dict[str, list[CsvRow]]] = {}
     for row in rows:
         knob = groups.setdefault((row["knob"], row.get("reference", "")), {})
         knob.setdefault(row["value"], []).append(row)
@@ -63,7 +63,7 @@ def curves(rows: list[Row]) -> dict[tuple[str, str], list[tuple[str, float, floa
     return knobs
 
 
-def recommended(stage: str, rows: list[Row]) -> list[tuple[str, ...]]:
+def recommended(stage: str, rows: list[CsvRow]) -> list[tuple[str, ...]]:
     """One line per knob that was tried at more than one value."""
     lines = []
     for (knob, reference), points in curves(rows).items():
@@ -77,7 +77,7 @@ def recommended(stage: str, rows: list[Row]) -> list[tuple[str, ...]]:
     return lines
 
 
-def _passed(row: Row) -> bool:
+def _passed(row: CsvRow) -> bool:
     return row.get("passed", "") in ("True", "1", "true")
 
 

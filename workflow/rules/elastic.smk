@@ -1,5 +1,6 @@
 ELASTIC = settings("elastic")
 GLASSES = [f"a{k:02d}" for k in range(1, ELASTIC["structures"] + 1)]
+WITH_LDA = GLASSES[: max(1, len(GLASSES) // 2)]
 CRYSTALS = {name: material_path(material) for material in MATERIALS.values() for name in material.crystals}
 MATERIAL = str(CONFIG / "materials" / f"{ELASTIC['material']}.yaml")
 COUNTER_BODY = str(CONFIG / "materials" / f"{ELASTIC['counter_body']}.yaml")
@@ -57,10 +58,7 @@ rule scan_glass:
     priority: 90
     params:
         dft=ELASTIC["dft"],
-        strains=ELASTIC["strains"],
-        functionals=lambda wildcards: (
-            ["GGA", "LDA"] if wildcards.amorphous in GLASSES[: ELASTIC["lda_structures"]] else ["GGA"]
-        ),
+        functionals=lambda wildcards: ["GGA", "LDA"] if wildcards.amorphous in WITH_LDA else ["GGA"],
         store=f"{RESULTS}/work/scf/{{amorphous}}",
     message:
         "relax amorphous cell {wildcards.amorphous} and scan its E(V)"
@@ -78,7 +76,6 @@ rule scan_crystal:
     priority: 80
     params:
         dft=ELASTIC["dft"],
-        strains=ELASTIC["strains"],
         store=f"{RESULTS}/work/scf/{{crystal}}",
     message:
         "E(V) of {wildcards.crystal}"

@@ -1,5 +1,4 @@
 from atomistic.hardness.runs import PROTOCOL
-from atomistic.hardness.studies import VARIATIONS, variations, varied
 from workflow.scene.hardness_files import check_bodies, hardness_files
 
 HARDNESS = settings("hardness")
@@ -10,7 +9,7 @@ try:
         CLOSING_S = check_bodies(SCENE.hardness, BODIES, MATERIALS)
 except InputError as error:
     refuse(f"{SCENE_GIVEN}: {error}")
-CLOSINGS, SMALLEST, BASE = BODIES.closings, BODIES.smallest, BODIES.base
+CLOSINGS, BASE = BODIES.closings, BODIES.base
 
 
 def of_run(pattern):
@@ -27,7 +26,6 @@ def of_base(run):
 
 wildcard_constraints:
     run="|".join(CLOSINGS),
-    variation="|".join(VARIATIONS),
     glass="\\d+",
     tiles="\\d+",
 
@@ -113,7 +111,6 @@ rule hardness:
         f"{RESULTS}/logs/hardness.log",
     params:
         potential=HARDNESS["potential"],
-        fit=HARDNESS["fit"],
         energy_scales=HARDNESS["energy_scales"],
     message:
         "find the hardness of each closing run and fit it"
@@ -124,22 +121,3 @@ rule hardness:
 if needed("hardness"):
     SHOWN += [*rules.hardness.output, *rules.hardness.input.curves, *rules.hardness.input.witnesses]
     KEPT += [*rules.hardness.input.summaries, *expand(rules.make_glass.output, glass=SCENE.hardness.seeds)]
-
-
-# The same run with one choice changed, for the study of accuracy
-
-
-use rule run_closing as vary_closing with:
-    output:
-        curve=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.csv",
-        witness=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.witness.csv",
-        summary=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.json",
-    log:
-        f"{RESULTS}/logs/vary_closing_{{variation}}_{{run}}.log",
-    params:
-        closing_run=lambda wildcards: CLOSINGS[wildcards.run].model_dump(mode="json"),
-        closing=lambda wildcards: varied(wildcards.variation, SCENE.hardness.closing)[0].model_dump(mode="json"),
-        protocol=lambda wildcards: varied(wildcards.variation, SCENE.hardness.closing)[1].model_dump(mode="json"),
-        work=f"{RESULTS}/work/vary_{{variation}}_{{run}}",
-    message:
-        "close asperity {wildcards.run} with {wildcards.variation}"

@@ -11,7 +11,6 @@ rule history:
     output:
         cycles=f"{RESULTS}/history/cycles.csv",
         dwell=f"{RESULTS}/history/dwell.csv",
-        curves=f"{RESULTS}/history/curves.h5",
     log:
         f"{RESULTS}/logs/history.log",
     resources:

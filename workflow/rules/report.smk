@@ -1,16 +1,12 @@
 from workflow.files.checksums import file_checksum
 
-if SCENE.report.studies:
-    SHOWN += [*ACCURACY, *STABILITY]
-
 
 def studies_at_hand():
     """Tables of studies already present, with their checksums.
 
     As parameters, not inputs: they are shown without being scheduled, and a new one renews the page.
     """
-    found = [] if SCENE.report.studies else [*ACCURACY, *STABILITY]
-    return {name: file_checksum(name) for name in found if Path(name).is_file()}
+    return {name: file_checksum(name) for name in (*ACCURACY, *STABILITY) if Path(name).is_file()}
 
 
 def page_parts():

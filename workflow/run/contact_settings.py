@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mesoscale.settings import ContactSettings
+from mesoscale.settings import ContactSettings, SceneContact
 from workflow.files.results import load_json
 from workflow.run.job import settings_from_job
 
@@ -17,9 +17,5 @@ def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:
     """
     path = snakemake.input.get("topography")
     described = load_json(path) if path else {}
-    surface, stated = described.get("surface", {}), given["surface"]
-    settings = settings_from_job(ContactSettings, given)
-    settings = settings.on_cell(described.get("cell_nm", settings.length_nm))
-    if not surface or any(stated[key] for key in ("spectrum", "heights")):
-        return settings
-    return ContactSettings(**{**dict(settings), "surface": {**stated, **surface}})
+    settings = ContactSettings(**dict(settings_from_job(SceneContact, given)), surface=described.get("surface", {}))
+    return settings.on_cell(described.get("cell_nm", settings.length_nm))

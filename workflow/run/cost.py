@@ -8,7 +8,7 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 from typing import Any
 
-from mesoscale.settings import ContactSettings
+from mesoscale.settings import SceneContact
 from workflow.scene import Scene
 
 TIMES = Path(".snakemake/asperity_seconds.json")
@@ -42,14 +42,13 @@ CYCLES = {  # contacts that a job closes and opens, to the largest force of the 
     "press_prior_pads": 250,
     "study": 500,
     "humidity": 1000,
-    "resistance": 100,
     "history": 100,
 }
 CYCLE_S = {"asperity": 0.06, "coupled": 2.5, "adhesive": 36.0}  # of a cycle on 1024² sites
 TRUST_S = 60.0  # jobs of so many typical seconds count as much as the tables
 
 
-def typical_cycle_s(contact: ContactSettings) -> float:
+def typical_cycle_s(contact: SceneContact) -> float:
     """Seconds of one closing and opening."""
     return CYCLE_S[contact.mechanics] * (contact.pixels / 1024) ** 3
 

@@ -4,12 +4,8 @@ Everything here is known before the first job. Imports the table of the inputs (
 """
 
 import math
-import warnings
 from collections.abc import Iterator, Mapping
 
-from asperity.guards.bundle import ROOT
-from atomistic.materials import load_material
-from atomistic.settings import DftSettings
 from mesoscale.contact.menisci import water_vapour_kPa
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import check_literature
@@ -17,10 +13,7 @@ from mesoscale.settings import DeviceSettings
 from mesoscale.settings.contact import AirSettings, advised_grid, base_modulus
 from mesoscale.settings.definitions import BY_NAME
 from workflow.scene.definition import Scene
-from workflow.scene.memory import contact_MB, history_MB, machine_MB, propagation_MB
-
-MATERIALS = ROOT / "config" / "materials"
-MOST_CYCLES = 1_000_000  # of a job of histories; one of a coupled contact takes a second
+from workflow.scene.memory import contact_MB, machine_MB
 
 
 def mistakes(scene: Scene, samples: Mapping[str, str]) -> list[str]:
@@ -99,7 +92,7 @@ def _stages(scene: Scene) -> Iterator[str]:
         yield line
     if device.area_um2 < side_um**2 and not scene.cell_follows_film:
         yield (
-            f"device: an electrode of {device.area_um2:g} um^2 (electrode_um2, or length_um times width_um) is smaller "
+            f"device: an electrode of {device.area_um2:g} um^2 (length_um times width_um) is smaller "
             f"than one cell of {side_um:g} um (contact.length_nm); take a larger electrode or a smaller cell"
         )
     if line := _no_switch(device):
@@ -111,8 +104,6 @@ def _stages(scene: Scene) -> Iterator[str]:
         scene.topography.scans or synthetic.small_scans or synthetic.large_scans
     ):
         yield "topography.scans: empty, and synthetic.small_scans and large_scans are 0: nothing to analyse; give scans"
-    if "elastic" in scene.stages():
-        yield from _unknown_bases(scene)
 
 
 def _too_few_points(scene: Scene) -> Iterator[str]:
@@ -130,7 +121,7 @@ def _no_such_air(scene: Scene) -> str:
     """One line on vapour of more pressure than the gas around the switch has; empty where it has less."""
     row, air, gas = scene.inputs.rows().get("humidity"), scene.contact.air or AirSettings(), scene.device.gas_kPa
     humidity = (row.reaches or 0.0) if row else air.humidity
-    if air.liquid != "water" or (vapour := humidity * water_vapour_kPa(air.temperature_C)) <= gas:
+    if air.surface_tension_mN_m is not None or (vapour := humidity * water_vapour_kPa(air.temperature_C)) <= gas:
         return ""
     return (
         f"device.gas_kPa = {gas:g}: air of {humidity:.0%} humidity has {vapour:.3g} kPa of vapour alone at "
@@ -153,46 +144,10 @@ def _no_switch(device: DeviceSettings) -> str:
         return str(error)
 
 
-def _unknown_bases(scene: Scene) -> Iterator[str]:
-    """A basis set that PySCF does not have for an element of the material; the default one is known."""
-    elastic, material = scene.elastic, MATERIALS / f"{scene.elastic.material}.yaml"
-    name = elastic.dft.basis
-    if name == DftSettings.model_fields["basis"].default or not material.is_file():
-        return
-    from pyscf.lib.exceptions import BasisNotFoundError  # takes two seconds
-    from pyscf.pbc.gto import basis
-
-    for element in load_material(material).formula:
-        try:
-            with warnings.catch_warnings(action="ignore"):
-                basis.load(name, element)
-        except BasisNotFoundError:
-            yield f"elastic.dft.basis = {name}: PySCF has no such basis set for {element}; give one of its GTH sets"
-            return
-
-
 def _machine(scene: Scene) -> Iterator[str]:
     pixels, needed, present = scene.contact.pixels, contact_MB(scene.contact), machine_MB()
     if needed > present:
         yield (
             f"contact.pixels = {pixels}: a contact needs {needed / 1000:.1f} GB of memory, this machine has "
             f"{present / 1000:.1f}; take fewer pixels"
-        )
-    runs = scene.uncertainty.direct_runs
-    if (needed := propagation_MB(scene.uncertainty)) > present:
-        yield (
-            f"uncertainty.direct_runs = {runs}: they need {needed / 1000:.1f} GB of memory, this machine has "
-            f"{present / 1000:.1f}; take fewer"
-        )
-    cycles = scene.history.cycles
-    if cycles and (needed := history_MB(scene.history, scene.contact)) > present:
-        yield (
-            f"history.cycles = {cycles}: with {scene.history.seeds} surfaces their tables need {needed / 1000:.0f} GB "
-            f"of memory, this machine has {present / 1000:.1f}; take fewer of both"
-        )
-    elif cycles * scene.history.seeds > MOST_CYCLES:
-        yield (
-            f"history.cycles = {cycles}: with {scene.history.seeds} surfaces this is one job of "
-            f"{cycles * scene.history.seeds:,} cycles, which starts again when it is interrupted; accepted are "
-            f"{MOST_CYCLES:,}: take fewer cycles or surfaces"
         )

@@ -6,28 +6,19 @@ from pydantic import Field, model_validator
 
 from atomistic.settings import ElasticSettings, HardnessSettings
 from mesoscale.settings import (
-    ContactSettings,
     DeviceSettings,
     FailureSettings,
     HistorySettings,
     InputsSettings,
     MeasurementsSettings,
     PadSettings,
-    ResistanceSettings,
+    SceneContact,
     Settings,
     TopographySettings,
     UncertaintySettings,
 )
 
 COMPUTED = ("hardness", "elastic", "topography")
-
-
-class ReportSettings(Settings):
-    """The page report.html (docs/report.md)."""
-
-    studies: bool = Field(
-        default=False, description="also run the accuracy and stability studies of all stages and show their tables"
-    )
 
 
 class Scene(Settings):
@@ -54,15 +45,13 @@ class Scene(Settings):
     hardness: HardnessSettings = HardnessSettings()
     elastic: ElasticSettings = ElasticSettings()
     topography: TopographySettings = TopographySettings()
-    contact: ContactSettings = ContactSettings()
+    contact: SceneContact = SceneContact()
     pad: PadSettings = PadSettings()
     uncertainty: UncertaintySettings = UncertaintySettings()
     device: DeviceSettings = DeviceSettings()
     failure: FailureSettings = FailureSettings()
-    resistance: ResistanceSettings = ResistanceSettings()
     history: HistorySettings = HistorySettings()
     measurements: MeasurementsSettings = MeasurementsSettings()
-    report: ReportSettings = ReportSettings()
 
     def stages(self) -> set[str]:
         """The stages among hardness, elastic and topography that this scene computes."""
@@ -106,22 +95,6 @@ class Scene(Settings):
                     f"{key} reaches {q1:g} 1/nm: beyond what contact.pixels = {self.contact.pixels} on "
                     f"{self.contact.length_nm:g} nm resolve, {resolved:.4g} 1/nm; raise contact.pixels or lower it"
                 )
-        return self
-
-    @model_validator(mode="after")
-    def _metals_conduct(self) -> "Scene":
-        if self.resistance.resistivities_nOhm_m is None:
-            return self
-        if self.device.dielectric_nm > 0:
-            raise ValueError(
-                f"device.dielectric_nm = {self.device.dielectric_nm:g} with resistance.resistivities_nOhm_m: no "
-                "current passes a dielectric; set one to 0, or the other to null"
-            )
-        if self.contact.mechanics != "coupled" or self.contact.bodies:
-            raise ValueError(
-                f"contact.mechanics = {self.contact.mechanics}{', contact.bodies' if self.contact.bodies else ''} with "
-                "resistance.resistivities_nOhm_m: stiffness gives the resistance of mechanics: coupled without bodies"
-            )
         return self
 
     @model_validator(mode="after")

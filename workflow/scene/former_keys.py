@@ -19,7 +19,7 @@ RENAMED = {
     "device.tilt_deviation_nm": "device.spread.tilt_nm",
 }
 REPLACED = {
-    "device.landed_fraction": "gap_um, bow_nm and tilt_nm say what is in contact",
+    "device.electrode_um2": "the area is length_um times width_um",
     **{
         f"inputs.{row}.{key}": f"now among `values`, as one of {FORMS}"
         for row in BY_NAME
@@ -29,26 +29,53 @@ REPLACED = {
     "hardness.area": "the potential's file says with what its area is calibrated",
     **{
         f"hardness.closing.{key}": "a rigid flat at constant speed presses every asperity"
-        for key in ("counterface", "control", "interface", "counter_material", "counter_potential", "dwell_ps")
+        for key in (
+            "depth_over_amplitude",
+            "counterface",
+            "control",
+            "interface",
+            "counter_material",
+            "counter_potential",
+            "dwell_ps",
+        )
     },
-    "hardness.fit.h_macro": "H_macro is that of fit.h_macro_GPa",
+    "hardness.fit": "H_macro is that of Table 1; H' follows from it",
     "hardness.plasticity": "`closing.stop: window` takes runs to their end",
     **dict.fromkeys(("elastic.ions", "elastic.relaxed_structures"), "ions are clamped in E(V)"),
-    **dict.fromkeys(("elastic.poisson", "elastic.tensor_structures"), "state the range as elastic.poisson_ratio"),
+    "elastic.poisson": "state the range as elastic.poisson_ratio",
+    **dict.fromkeys(
+        (
+            "elastic.strains",
+            "elastic.samples",
+            "elastic.dft.basis",
+            "elastic.lda_structures",
+            "elastic.glass.quench_rate_K_ps",
+        ),
+        "the stage has its own",
+    ),
     **{f"elastic.dft.{key}": "PySCF computes; state an e_star of another code" for key in ("engine", "parameters")},
     "elastic.relaxation": "max_steps is dft.relaxation_steps, basis and cut-off are those of dft",
     "contact.unloading_radius": "take mechanics: coupled where opening matters",
     "contact.merge": "take mechanics: coupled, whose repulsion does not fall where asperities merge",
-    **{f"contact.surface.{key}": "give `heights`" for key in ("moments", "skewness", "kurtosis")},
+    "contact.surface": "topography finds it; in Python ContactSettings(surface=…) takes it",
+    "topography.max_missing": "always 5 %",
+    "topography.synthetic.large_length_nm": "always 10 um",
+    "failure.confidence": "always 90 %",
+    "history.creep_time_s": "always 1 s",
     "topography.method": "maximum likelihood; figure 10 shows the paper's line fits, too",
     "coupling": "both mechanics were compared once (docs/contact.md)",
+    "resistance": "in Python it is a function (docs/resistance.md)",
+    "report": "the page shows the studies that ran: targets accuracy and stability",
+    "history.seeds": "always four surfaces",
+    "history.creep": "creep_exponent states the power law, else it is logarithmic; dwell_s: 0 has none",
     "adhesion": "device/pad_switch.json has the adhesion of the pad",
     "law": "d_c is where the first asperity touches, rho_a is the paper's 2 nm",
     **dict.fromkeys(("uncertainty.surrogate", "uncertainty.response"), "responses are regressions of direct runs"),
     "uncertainty.samples": "always 10,000",
     "uncertainty.model_form_pairs": "both mechanics were compared once (docs/contact.md)",
-    **{f"pad.{key}": "it follows from the switch" for key in ("max_pressure_MPa", "pilot_cells", "depths", "grid")},
+    **{f"pad.{key}": "it follows from the switch" for key in ("max_pressure_MPa", "pilot_cells", "depths")},
     "device.adhesion_scale": "it acted on the calibration alone; inputs.adhesion states the attraction",
+    **dict.fromkeys(("measurements.local_runs", "measurements.rounds"), "they follow from measurements.runs"),
     "pad.gap_cutoff_high_nm": "for another range of D0 than up to 0.3 nm give inputs.gap_cutoff",
 }
 FORMER_KEYS = {

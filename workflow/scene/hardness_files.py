@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from asperity.guards.errors import InputError
-from atomistic.hardness.runs import ClosingRun, planned_runs, smallest_run
+from atomistic.hardness.runs import ClosingRun, planned_runs
 from atomistic.materials import Material, oxide_glasses
 from atomistic.settings import HardnessSettings
 
@@ -17,14 +17,13 @@ class HardnessFiles:
     Attributes
     ----------
     material, base : of the asperity, and of the body below films; None: there is none.
-    closings : closing runs by name; `smallest` is the cheapest of them.
+    closings : closing runs by name.
     """
 
     potential: str
     material: str
     base: str | None
     closings: dict[str, ClosingRun]
-    smallest: ClosingRun
 
 
 def hardness_files(
@@ -58,7 +57,6 @@ def hardness_files(
         str(folder / f"{oxides[settings.material].name}.yaml"),
         None if settings.base is None else str(folder / f"{settings.base}.yaml"),
         {run.name: run for run in planned_runs(settings)},
-        smallest_run(settings),
     )
 
 

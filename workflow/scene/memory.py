@@ -2,8 +2,8 @@
 
 import psutil
 
-from mesoscale.settings import ContactSettings, HistorySettings, UncertaintySettings
-from mesoscale.settings.history import DWELL_STEPS
+from mesoscale.settings import HistorySettings, SceneContact, UncertaintySettings
+from mesoscale.settings.history import DWELL_STEPS, SURFACES
 from mesoscale.settings.uncertainty import RESAMPLES
 
 PROCESS_MB = 600.0  # a job is two processes with their packages
@@ -13,15 +13,15 @@ RESAMPLED_MB = 32e-6  # a direct run in each resampling; measured with 10,000 ru
 ROW_MB = 1.4e-3  # a row of a history's table, as it is made and written
 
 
-def contact_MB(contact: ContactSettings, surfaces: int = 1) -> int:
+def contact_MB(contact: SceneContact, surfaces: int = 1) -> int:
     """Memory of a process that closes and opens so many contacts side by side, in MB."""
     return round(PROCESS_MB + surfaces * SITE_MB[contact.mechanics] * contact.pixels**2)
 
 
-def history_MB(history: HistorySettings, contact: ContactSettings) -> int:
+def history_MB(history: HistorySettings, contact: SceneContact) -> int:
     """Memory of the process that closes and opens again and again, in MB."""
     held = DWELL_STEPS + 1 if history.dwell_s > 0 else 0
-    return round(contact_MB(contact) + ROW_MB * history.seeds * history.cycles * (3 + held))  # a cycle's row is long
+    return round(contact_MB(contact) + ROW_MB * SURFACES * history.cycles * (3 + held))  # a cycle's row is long
 
 
 def propagation_MB(uncertainty: UncertaintySettings) -> int:

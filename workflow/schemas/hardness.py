@@ -51,7 +51,7 @@ TABLES = (
         ),
     ),
     Table(
-        ("hardness/witness/*.csv", "accuracy/hardness/*/*.witness.csv"),
+        ("hardness/witness/*.csv",),
         "One relaxed snapshot of a closing run.",
         (
             _STEP,
@@ -65,7 +65,7 @@ TABLES = (
         ),
     ),
     Table(
-        ("hardness/closing/*.csv", "accuracy/hardness/*/*.csv"),
+        ("hardness/closing/*.csv",),
         "One average of a closing run.",
         (
             _STEP,

@@ -2,7 +2,7 @@
 
 from mesoscale.settings.device import SPREAD, unit_of
 from workflow.schemas.inputs_and_law import BRANCH, INPUT_VALUES
-from workflow.schemas.table import Table, boolean, integer, number, text
+from workflow.schemas.table import Table, boolean, number, text
 
 TABLES = (
     Table(
@@ -39,7 +39,7 @@ TABLES = (
             number("attraction", "1", "factor on the attraction"),
             number("failing", "1", "probability of a failure by the response"),
             number("failing_q95", "1", "share that fails of one batch, at most, with 95 % confidence"),
-            number("failing_sure", "1", "the same at failure.confidence"),
+            number("failing_sure", "1", "the same with 90 % confidence"),
         ),
     ),
     Table(
@@ -70,19 +70,6 @@ TABLES = (
             number("stuck_low", "1", "lower end of its 95 % interval", empty=True),
             number("stuck_high", "1", "upper end", empty=True),
             number("points", "1", "points nearest to this humidity", empty=True),
-        ),
-    ),
-    Table(
-        ("device/resistance.csv",),
-        "One surface of an ohmic contact under one force.",
-        (
-            integer("run", "number of the draw of the inputs"),
-            integer("seed", "seed of the surface"),
-            text("way", "closing, opening from the largest force, or closing again"),
-            number("force_nN", "nN", "repulsive force on the cell"),
-            number("stiffness_N_per_m", "N/m", "further force per further approach of the mean planes, elastic"),
-            number("contact_area_nm2", "nm^2", "area of contact"),
-            number("resistance_Ohm", "Ohm", "of constriction and film"),
         ),
     ),
     Table(

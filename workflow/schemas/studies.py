@@ -1,8 +1,6 @@
-"""Tables that all stages share: accuracy, stability, and the draws behind the contact model's stability."""
+"""Tables that all stages share: accuracy and stability."""
 
-from workflow.schemas.table import Table, boolean, integer, number, text
-
-_HARDNESS = "; hardness alone"
+from workflow.schemas.table import Table, boolean, number, text
 
 TABLES = (
     Table(
@@ -19,15 +17,10 @@ TABLES = (
             number("wall_s", "s", "run time", empty=True),
             number("cpu_s", "s", "processor time", empty=True),
             number("peak_rss_MB", "MB", "largest memory so far", empty=True),
-            number("hardness_GPa", "GPa", "plateau stress" + _HARDNESS, empty=True, optional=True),
-            number("hardness_lo", "GPa", "lower end of its 68 % interval" + _HARDNESS, empty=True, optional=True),
-            number("hardness_hi", "GPa", "upper end of its 68 % interval" + _HARDNESS, empty=True, optional=True),
-            text("status", "yield, no_yield, or rejected: why" + _HARDNESS, empty=True, optional=True),
-            integer("atom_steps", "atoms times MD steps" + _HARDNESS, empty=True, optional=True),
         ),
     ),
     Table(
-        ("stability/*.csv",),
+        ("stability/contact.csv",),
         "One hard case.",
         (
             text("stage", "stage of the study"),

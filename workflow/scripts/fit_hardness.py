@@ -13,9 +13,8 @@ from atomistic.hardness.size_effect import fit_size_effect
 from atomistic.hardness.top_attraction import gap_cutoff
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
-from atomistic.settings import FitSettings
 from workflow.files.results import load_csv, load_json, load_numbers, write_csv, write_json
-from workflow.run.job import job, settings_from_job
+from workflow.run.job import job
 
 with job(snakemake) as run:
     given, params = snakemake.input, snakemake.params
@@ -32,8 +31,7 @@ with job(snakemake) as run:
         area_error = max(area_error, load_material(given.base_material).part("film_base").area_error)
         fit = fit_films(points, curves, glasses, area_error, measured)
     else:
-        settings = settings_from_job(FitSettings, params.fit)
-        fit = fit_size_effect(points, glasses, settings, params.energy_scales, area_error, indentation_GPa=measured)
+        fit = fit_size_effect(points, glasses, params.energy_scales, area_error, indentation_GPa=measured)
     used = {p["run"]: int(p["seed"]) for p in points if p["status"] == "yield" and not p["film_nm"]}
     if cutoff := gap_cutoff({name: witnesses[name] for name in used}, used):
         fit["tops"] = cutoff.pop("runs")

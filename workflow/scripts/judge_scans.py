@@ -10,10 +10,11 @@ from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.scan_checks.judged import judge
 from mesoscale.scan_checks.surface import has_square_pixels
-from mesoscale.settings import ContactSettings, TopographySettings
+from mesoscale.settings import TopographySettings
 from mesoscale.topography.measurements.loading import load_measurements
 from mesoscale.topography.records import copies, in_order, trusted_record
 from workflow.files.results import load_csv, load_h5, load_json, write_csv
+from workflow.run.contact_settings import contact_settings
 from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
@@ -31,7 +32,7 @@ with job(snakemake) as run:
         scans += [item.data for item in measured if has_square_pixels(item.data) and item.data.name not in alike]
     name = load_json(snakemake.input.parameters)["description"]["name"]
     values = medians(load_csv(snakemake.input.inputs))
-    inputs, contact = contact_of(values, settings_from_job(ContactSettings, snakemake.params.contact))
+    inputs, contact = contact_of(values, contact_settings(snakemake.params.contact, snakemake))
     rows = []
     for row in judge(scans, spectra, name, inputs, settings, contact):
         rows.append(row)

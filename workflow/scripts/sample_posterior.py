@@ -28,7 +28,7 @@ with job(snakemake) as run:
     if pads := snakemake.input.get("pads"):
         voltages = fit_voltages(load_model(pads, points_of_job(snakemake)[0]), prior)
     model = Model(prior, cycles_of_rows(rows, prior.names), voltages, contact.max_force_nN)
-    result = calibrate(tables, model, contact, settings, run.progress)
+    result = calibrate(tables, model, contact, run.progress)
     write_csv(snakemake.output.predictive, predictive_rows(result))
     write_csv(snakemake.output.summary, summary_rows(result))
     write_csv(snakemake.output.samples, sample_rows(result))

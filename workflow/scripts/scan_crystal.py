@@ -12,9 +12,9 @@ from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     dft = settings_from_job(DftSettings, snakemake.params.dft)
-    strains, name = snakemake.params.strains, snakemake.wildcards.crystal
+    name = snakemake.wildcards.crystal
     store = ScfStore(Path(snakemake.params.store))
     atoms = crystal(load_material(snakemake.input.material), name)
-    scans = [scan_rows(name, atoms, xc, dft, strains, store, progress=run.progress) for xc in ("GGA", "LDA")]
+    scans = [scan_rows(name, atoms, xc, dft, store, progress=run.progress) for xc in ("GGA", "LDA")]
     write_csv(snakemake.output.points, [row for scan in scans for row in scan])
     store.remove()

@@ -31,7 +31,7 @@ with job(snakemake) as run:
     )
     start, rejected = getattr(relaxed.calculator, "history", [])[-1:], "; ".join(relaxed.reasons)
     scans = [
-        scan_rows(name, relaxed.atoms, xc, dft, snakemake.params.strains, store, start, rejected, run.progress)
+        scan_rows(name, relaxed.atoms, xc, dft, store, start, rejected, run.progress)
         for xc in snakemake.params.functionals
     ]
     write_text(snakemake.output.structure, structure_text(relaxed.atoms))

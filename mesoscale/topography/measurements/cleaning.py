@@ -16,6 +16,8 @@ FORM_TAKEN = "subtracted a quadratic fit, the form"
 LINES_CUT = "cut off the end of an aborted scan"
 MARKED = "a mask marks"
 """How other steps begin of which the user should hear."""
+MAX_MISSING = 0.05
+"""Largest share of missing pixels that is filled from their neighbours."""
 
 
 @dataclass(frozen=True)
@@ -88,17 +90,17 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
 
     Raises
     ------
-    InputError : more pixels are missing than `settings.max_missing` allows, or the heights are cut off.
+    InputError : more pixels are missing than `MAX_MISSING`, or the heights are cut off.
     """
     scan = measured_part(scan)
     heights = np.array(scan.heights_nm, dtype=float)
     steps = list(scan.steps)
     missing = ~np.isfinite(heights)
     share = float(missing.mean())
-    if share > settings.max_missing:
+    if share > MAX_MISSING:
         raise InputError(
-            f"{scan.name}: {share:.1%} of the pixels are missing; accepted are {settings.max_missing:.1%} "
-            "(topography.max_missing); crop the scan or measure again"
+            f"{scan.name}: {share:.1%} of the pixels are missing; accepted are {MAX_MISSING:.0%}; "
+            "crop the scan or measure again"
         )
     if share > 0:
         heights[missing] = np.nan

@@ -14,10 +14,10 @@ from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, closing_seconds
 from atomistic.hardness.glass import glass_properties, make_glass, write_forcefield
 from atomistic.hardness.pressing import plan_closing
 from atomistic.hardness.runs import PROTOCOL, planned_runs
-from atomistic.hardness.studies import free_motion
-from atomistic.lammps import Workspace, load_data, load_dump, run_lammps, write_data
+from atomistic.lammps import LammpsFolder, load_data, load_dump, run_lammps, write_data
 from atomistic.potentials import contact_energy_and_force, load_potential
 from atomistic.settings import GlassSettings, HardnessSettings
+from evidence.hardness.motion import free_motion
 
 FORCES = str(Path(__file__).with_name("forces.in"))
 POTENTIALS = Path(__file__).parents[3] / "config" / "potentials"
@@ -28,6 +28,7 @@ GLASS = GlassSettings(atoms=120, melt_ps=0.5, quench_rate_K_ps=2000, rest_ps=0.3
 QUICK = PROTOCOL.model_copy(
     update={
         "base_over_contact": 0.0,
+        "depth_over_amplitude": 1.7,
         "frozen_nm": 0.3,
         "thermostat_nm": 0.3,
         "timestep_fs": 2.0,
@@ -40,7 +41,6 @@ def settings(**closing):
     quick = {
         "base_nm": 1,
         "speed_m_s": 400,  # violent: with the time step of slower closings an atom can be driven through the thin base
-        "depth_over_amplitude": 1.7,
         "anneal_ps": 0.1,
     }
     return HardnessSettings.model_validate(
@@ -88,7 +88,7 @@ def test_two_processes_move_the_same_atoms(potential, glass, tmp_path):
     """`mpirun -np 2`: sums in another order, else the same motion; progress is that of the thermo lines alone."""
     ends, steps = [], []
     for processes in (1, 2):
-        workspace = Workspace(tmp_path / str(processes), {}, "nve.in")
+        workspace = LammpsFolder(tmp_path / str(processes), {}, "nve.in")
         write_forcefield(workspace, potential, glass.elements, 1.0)
         write_data(workspace / "start.data", glass, {"Si": 28.085, "O": 15.999})
         variables = {"data": "start.data", "pairs": "pairs", "timestep": 0.001, "steps": 20, "every": 10}
@@ -99,7 +99,7 @@ def test_two_processes_move_the_same_atoms(potential, glass, tmp_path):
 
 
 def test_the_machine_says_what_starts_several_processes(potential, glass, tmp_path, monkeypatch):
-    workspace = Workspace(tmp_path / "work", {}, "nve.in")
+    workspace = LammpsFolder(tmp_path / "work", {}, "nve.in")
     witness = tmp_path / "arguments"
     launcher = tmp_path / "launcher"
     launcher.write_text(f'#!/bin/sh\necho "$@" > {witness}\n')
@@ -141,7 +141,7 @@ def test_the_damped_coulomb_sum_is_that_of_long_range_to_a_tenth_of_a_bond(name,
     charges = [own.species[ion].charge_e for ion in atoms.elements]
     forces = []
     for method in ("none", "pppm"):
-        workspace = Workspace(tmp_path / method, {}, FORCES)
+        workspace = LammpsFolder(tmp_path / method, {}, FORCES)
         write_forcefield(workspace, own, atoms.elements, 1.0)
         if method == "pppm":
             bare = {name: ion.model_copy(update={"charge_e": 0.0}) for name, ion in own.species.items()}

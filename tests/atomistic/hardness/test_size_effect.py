@@ -8,11 +8,8 @@ from atomistic.hardness.size_effect import (
     literature_samples,
     relative_hardness,
     rms_slope,
-    same_shape_exponents,
-    scatter_of_h_prime,
     steepness,
 )
-from atomistic.settings import FitSettings
 
 GLASS = [{"gate": {"passed": True, "reasons": []}}]
 BOTH = (1.0, 0.5)  # energy scales
@@ -30,8 +27,6 @@ def point(hardness, length, scale=1.0, asperity="a", status="yield", spread=0.05
         "contact_length_nm": str(length),
         "wavelength_nm": "6",
         "amplitude_nm": "0.6",
-        "same_shape_GPa": str(hardness),
-        "same_shape_length_nm": str(1.1 * length),
         "atom_steps": "1e6",
         "lammps_cpu_s": "0.98",
     }
@@ -47,18 +42,9 @@ def series(h_macro, h_prime, lengths=(2, 4, 8, 16), scales=(1.0, 0.5)):
 
 def test_a_hardness_below_h_macro_is_not_identifiable_and_says_so():
     points = [point(1.0 * scale, 3 + k, scale, asperity=f"a{k}") for scale in (1.0, 0.5) for k in range(4)]
-    result = fit_size_effect(points, GLASS, FitSettings(), BOTH, 0.05)
+    result = fit_size_effect(points, GLASS, BOTH, 0.05)
     assert not result["gate"]["passed"]
     assert "not identifiable" in result["gate"]["reasons"][-1]
-
-
-def test_scatter_that_more_runs_average_is_that_of_seeds_and_of_runs():
-    """H' is hardness times 2 at 4 nm; sizes and energies that differ are no scatter."""
-    macro = (1.9999, 2.0001)
-    sizes = [point(10, 4, asperity="a", spread=0.0), point(20, 9, 0.5, asperity="b", spread=0.0)]
-    assert scatter_of_h_prime(sizes, macro) == pytest.approx(0, abs=1e-3)
-    assert scatter_of_h_prime([point(10, 4, spread=0.5)] * 3, macro) == pytest.approx(0.5 * 2)
-    assert scatter_of_h_prime([point(9, 4, spread=0.0), point(11, 4, spread=0.0)], macro) == pytest.approx(2)
 
 
 def test_literature_h_macro_gives_the_hand_calculation():
@@ -90,47 +76,19 @@ def test_energies_bound_the_measured_hardness_at_the_slope_of_the_tip():
 
 def test_gate_counts_defended_points_and_names_the_reason():
     refused = [point(0, 0, status="no_yield", asperity=f"n{k}") for k in range(8)]
-    result = fit_size_effect(series(2, 8)[:3] + refused, GLASS, FitSettings(), BOTH, 0.05)
+    result = fit_size_effect(series(2, 8)[:3] + refused, GLASS, BOTH, 0.05)
     assert not result["gate"]["passed"]
     assert "3 of 11 runs" in result["gate"]["reasons"][0]
     assert any("energy scale 0.5" in reason for reason in result["gate"]["reasons"])
     assert len(result["points_rejected"]) == 8
-    nothing = fit_size_effect(refused, GLASS, FitSettings(), BOTH, 0.05)
+    nothing = fit_size_effect(refused, GLASS, BOTH, 0.05)
     assert nothing["inputs"] == {}
     assert not nothing["gate"]["passed"]
 
 
 def test_a_failed_glass_fails_the_gate():
     bad = [{"gate": {"passed": False, "reasons": ["SiO2 glass: density 3 outside"]}}]
-    assert not fit_size_effect(series(2, 8), bad, FitSettings(), BOTH, 0.05)["gate"]["passed"]
-
-
-def test_the_exponent_at_one_shape_counts_all_runs_and_needs_one_shape():
-    lengths = (2.0, 2.1, 4.0, 4.2, 8.0, 8.2)
-    points = [
-        point(20 * length**-0.4, length, asperity=f"a{length:.0f}", status="rejected: stress still rises")
-        for length in lengths
-    ]
-    few = [point(5, length, scale=0.5, asperity=f"a{length}") for length in (2, 4, 8)]
-    found = same_shape_exponents(points + few)
-    assert list(found) == ["scale_1"]
-    assert found["scale_1"]["mean"] == pytest.approx(0.4)
-    assert found["scale_1"]["runs"] == 6
-    assert found["scale_1"]["length_max_nm"] == pytest.approx(1.1 * 8.2)
-    assert same_shape_exponents([*points, {**points[0], "amplitude_nm": "0.9"}]) == {}  # steeper
-
-
-def test_the_interval_of_the_exponent_at_one_shape_holds_the_truth():
-    """Runs that scatter by 8 % about L^0.1: the 68 % interval holds n = -0.1 in about 68 % of such series."""
-    rng, lengths = np.random.default_rng(4), (2.4, 2.4, 2.4, 3.6, 3.6, 3.6, 4.7, 4.7, 4.7)
-    held = 0
-    for _ in range(300):
-        points = [
-            point(9 * length**0.1 * np.exp(0.08 * rng.normal()), length, asperity=f"a{length}") for length in lengths
-        ]
-        found = same_shape_exponents(points)["scale_1"]
-        held += found["low"] < -0.1 < found["high"]
-    assert held / 300 == pytest.approx(0.68, abs=0.08)
+    assert not fit_size_effect(series(2, 8), bad, BOTH, 0.05)["gate"]["passed"]
 
 
 def test_the_slope_of_an_asperity_is_that_of_its_surface():
@@ -150,12 +108,12 @@ def test_hardness_at_a_slope_is_straight_between_the_runs_and_unknown_beyond():
 def test_factors_are_those_beside_the_runs_own_slope():
     as_steep = {**point(10, 3), "amplitude_nm": "1.2"}  # 0.889
     assert steepness([as_steep])["factor"] == pytest.approx([0.55 / 1.31, 1 / 1.31, 1.0], rel=1e-3)
-    inputs = fit_size_effect(series(2, 8), GLASS, FitSettings(), BOTH, 0.05)["inputs"]
+    inputs = fit_size_effect(series(2, 8), GLASS, BOTH, 0.05)["inputs"]
     assert inputs["h_film"]["steepness"]["factor"] == pytest.approx([0.55, 1.0, 1.31], rel=2e-3)
     assert inputs["h_prime"]["steepness"]["factor"][0] < 0.55  # H_macro stays
 
 
 def test_asperities_of_slopes_that_were_never_pressed_are_refused():
-    result = fit_size_effect([{**row, "amplitude_nm": "1.4"} for row in series(2, 8)], GLASS, FitSettings(), BOTH, 0.05)
+    result = fit_size_effect([{**row, "amplitude_nm": "1.4"} for row in series(2, 8)], GLASS, BOTH, 0.05)
     assert result["inputs"] == {}
     assert result["gate"]["reasons"] == ["asperities flatter or steeper than RMS slopes of 0.22 to 0.89"]

@@ -9,7 +9,7 @@ from annotated_types import Ge, Le
 from mesoscale.contact import ContactInputs, run_cycle
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings
-from mesoscale.settings.surface import CounterfaceSettings, SpectrumSettings
+from mesoscale.settings.surface import SpectrumSettings
 
 INPUTS = ContactInputs(hamaker=0.2, e_star=91.0, h_macro=1.95, h_prime=8.4, q0=0.025, hurst=0.75, rms=4.4)
 
@@ -23,9 +23,6 @@ def ends(model, name):
 def corners():
     for name in ("max_force_nN", "gap_cutoff_nm", "q1_per_nm", "retardation_nm"):
         yield from ({name: value} for value in ends(ContactSettings, name))
-    names = ("q0", "hurst", "rms_nm")
-    for values in np.array(np.meshgrid(*(ends(CounterfaceSettings, name) for name in names))).reshape(3, -1).T.tolist():
-        yield {"surface": {"counterface": dict(zip(names, values, strict=True))}}
     for q0 in ends(SpectrumSettings, "q0"):
         for hurst in ends(SpectrumSettings, "hurst"):
             yield {"surface": {"spectrum": {"q": [0.02, 0.1], "psd": [1e-30, 1e12], "q0": q0, "hurst": hurst}}}

@@ -64,7 +64,7 @@ AIRS = {
     "films": HALF.model_copy(update={"film_nm": 0.4}),
     "angles": HALF.model_copy(update={"contact_angles_deg": (60.0, 20.0)}),
     "one wall repels": HALF.model_copy(update={"contact_angles_deg": (30.0, 110.0), "humidity": 0.9}),
-    "ethanol": AirSettings(humidity=0.7, liquid="ethanol", surface_tension_mN_m=22.0, molar_volume_cm3=58.4),
+    "ethanol": AirSettings(humidity=0.7, surface_tension_mN_m=22.0, molar_volume_cm3=58.4),
 }
 
 
@@ -308,7 +308,6 @@ EXTREMES = {
     "hot gas": {"temperature_C": 400.0},
     "hot metal": {
         "temperature_C": 400.0,
-        "liquid": "mercury",
         "surface_tension_mN_m": 400.0,
         "molar_volume_cm3": 15.0,
         "contact_angles_deg": (140.0, 20.0),
@@ -316,8 +315,8 @@ EXTREMES = {
     "cold": {"temperature_C": -90.0},
     "no dispersion in the liquid": {"hamaker_share": 0.0},
     "all dispersion in the liquid": {"hamaker_share": 1.0},
-    "weak liquid": {"liquid": "weak", "surface_tension_mN_m": 0.001, "molar_volume_cm3": 1e5},
-    "strong liquid": {"liquid": "strong", "surface_tension_mN_m": 1e5, "molar_volume_cm3": 0.1},
+    "weak liquid": {"surface_tension_mN_m": 0.001, "molar_volume_cm3": 1e5},
+    "strong liquid": {"surface_tension_mN_m": 1e5, "molar_volume_cm3": 0.1},
     "volume": {"opening": "volume"},
     "volume, flooded": {"opening": "volume", "humidity": 0.999},
     "volume, nearly dry": {"opening": "volume", "humidity": 1e-6},
@@ -379,7 +378,7 @@ def test_humidity_is_an_uncertain_input():
         ({"humidity": 1.0}, "air.humidity = 1.0: Input should be less than 1"),
         ({"humidity": -0.1}, "air.humidity = -0.1: Input should be greater than or equal to 0"),
         ({"contact_angles_deg": (0.0, 181.0)}, "181 is no contact angle; accepted are 0 to 180 degrees"),
-        ({"liquid": "ethanol"}, "liquid = ethanol: only water is known; give its surface_tension_mN_m"),
+        ({"surface_tension_mN_m": 22.0}, "surface_tension_mN_m and molar_volume_cm3 go together"),
     ],
 )
 def test_air_that_does_not_exist_is_refused_in_one_line(air, said):

@@ -69,18 +69,6 @@ def test_a_table_integrates_to_the_rms_it_is_scaled_to():
     np.testing.assert_allclose(table.psd(q), rough.psd(q), rtol=1e-3)  # 400 points: the knee is cut a little
 
 
-def test_two_rough_surfaces_have_the_sum_of_their_spectra():
-    other = {"q0": 0.3, "hurst": 0.5, "rms_nm": 3.0}
-    both = random_surface(INPUTS, settings(counterface=other), 5)
-    assert np.sqrt(np.mean(both**2)) == pytest.approx(5.0, rel=1e-12)  # 4 and 3 nm
-    q, psd = bands(both)
-    own = RoughSpectrum.from_rms(4.0, 0.05, 3.5, np.pi * PIXELS / LENGTH)
-    second = RoughSpectrum.from_rms(3.0, 0.3, 3.0, np.pi * PIXELS / LENGTH)
-    expected = own.psd(q) + second.psd(q)
-    assert np.log(psd / expected) == pytest.approx(0, abs=0.3)  # some 50 waves in the longest band
-    assert second.psd(q)[-1] > own.psd(q)[-1]  # where the second is the rougher, it decides
-
-
 def test_tall_peaks_touch_first():
     """Positive skewness is tall peaks: the flat meets them farther away."""
     few = [settings(heights=common_heights([side * np.exp(side * 0.3 * Z)])) for side in (1, -1)]

@@ -33,7 +33,7 @@ def test_devices_at_the_ends_of_their_ranges_give_an_answer_or_none():
 
 
 @pytest.mark.parametrize(
-    "mistake", [{"length_um": 1e-9}, {"spring_N_per_m": 1e-300}, {"electrode_um2": 1e-300}, {"thickness_um": 1e-9}]
+    "mistake", [{"length_um": 1e-9}, {"spring_N_per_m": 1e-300}, {"width_um": 1e-300}, {"thickness_um": 1e-9}]
 )
 def test_a_device_smaller_than_atoms_is_refused(mistake):
     (key,) = mistake

@@ -14,7 +14,7 @@ from mesoscale.device.points import (
     solve_points,
     surfaces_of,
 )
-from mesoscale.failure.rate import Population
+from mesoscale.failure.population import Population
 from mesoscale.inputs.table import input_table
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
 from mesoscale.settings.contact import AirSettings

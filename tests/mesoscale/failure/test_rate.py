@@ -11,9 +11,8 @@ from evidence.pad.rare_failures import KnownPad, known_pad, population
 from mesoscale.device.beam_switch import closed_beam, solve_beam
 from mesoscale.device.plate import plate_from_settings, solve_on_pad
 from mesoscale.errors import InputError
+from mesoscale.failure.population import FAILURE, Attracted
 from mesoscale.failure.rate import (
-    FAILURE,
-    Attracted,
     corrected,
     furthest_allowed,
     just_allowed,
@@ -109,7 +108,7 @@ def test_the_probability_is_that_of_brute_force():
     assert 1e-7 < one_in_a_million.probability < 1e-4
     assert one_in_a_million.variation < 0.3
     # less attraction bears smoother films
-    smoother, least = (least_rms_nm(response, times, plates.hold_V, 0.01, 0.9) for times in (1.18, 1.42))
+    smoother, least = (least_rms_nm(response, times, plates.hold_V, 0.01) for times in (1.18, 1.42))
     assert smoother is not None
     assert least is not None
     assert smoother <= least

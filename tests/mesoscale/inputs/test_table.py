@@ -17,7 +17,7 @@ from mesoscale.inputs.table import (
     input_table,
     to_rows,
 )
-from mesoscale.settings import ContactSettings, Correlation, InputRow, InputsSettings, PadSettings
+from mesoscale.settings import ContactSettings, InputRow, InputsSettings, PadSettings
 from mesoscale.settings.definitions import BY_NAME
 from tests.mesoscale import paper
 
@@ -217,7 +217,7 @@ def test_mistakes_in_a_row(row, message):
 
 def test_mistakes_across_rows():
     with pytest.raises(InputError, match="unknown input hardness"):
-        InputsSettings(correlations=(Correlation(first="rms", second="hardness", rank=0.3),))
+        InputsSettings(correlations={"rms": {"hardness": 0.3}})
     with pytest.raises(InputError, match="q0: origin elastic"):
         InputsSettings(q0=InputRow(origin="elastic"))
 

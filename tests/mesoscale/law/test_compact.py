@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from evidence.contact.accuracy import separation_at_share
 from mesoscale.errors import InputError
 from mesoscale.law.compact import Law, force, pressure
-from mesoscale.law.fit import contact_separation, fit_branch, row_of, separation_at_share
+from mesoscale.law.fit import contact_separation, fit_branch, row_of
 
 AREA = 1e6
 TRUE = Law(d_c_nm=32.0, C_a_GPa_nm=15e-5, C_r_GPa=6e-4, rho_r_nm=3.3, hamaker=0.215)

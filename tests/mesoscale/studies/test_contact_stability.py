@@ -9,7 +9,8 @@ from evidence.contact.draws import MIDDLE, RANGES, draw_inputs
 from mesoscale.contact import run_cycle
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
-from mesoscale.studies.contact_stability import Case, extreme_cases, judge, stability_checks, violations
+from mesoscale.studies import contact_stability
+from mesoscale.studies.contact_stability import Case, extreme_cases, judge, stability_rows, violations
 from mesoscale.topography.synthesis import synthesize
 from tests.mesoscale import paper
 
@@ -77,12 +78,18 @@ def test_a_scene_is_tried_at_its_own_inputs_and_settings():
     assert judge(cases["stiffest"], settings)[0] == []
 
 
-def test_a_check_says_what_broke(monkeypatch):
-    monkeypatch.setattr("mesoscale.studies.contact_stability.violations", lambda *_: ["volume changed"])
-    (*_, check) = stability_checks(MIDDLE, SETTINGS["asperity"])[0]
-    passed, detail = check()
-    assert not passed
-    assert "cycle 1: volume changed" in detail
+def test_a_case_says_what_broke_and_one_that_raises_has_failed(monkeypatch):
+    def judged(case, _):
+        if case.name == "hard":
+            raise RuntimeError("lost\nits way")
+        return ["cycle 1: volume changed"] if case.name == "flat" else [], "no loss"
+
+    told = []
+    monkeypatch.setattr(contact_stability, "judge", judged)
+    rows = stability_rows(MIDDLE, SETTINGS["asperity"], lambda *given: told.append(given))
+    details = {row["case"]: row["detail"] for row in rows if not row["passed"]}
+    assert details == {"flat": "cycle 1: volume changed; no loss", "hard": "RuntimeError; lost its way"}
+    assert told[-1][0] == 1.0
 
 
 def test_draws_are_from_table_1():

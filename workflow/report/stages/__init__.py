@@ -16,7 +16,6 @@ from workflow.report.stages import (
     humidity,
     inputs,
     pad,
-    resistance,
     sensitivity,
     topography,
     uncertainty,
@@ -24,7 +23,7 @@ from workflow.report.stages import (
 
 PARTS = (
     ("budget", "What it costs in volts", (budget,)),
-    ("switch", "The switch", (device, pad, humidity, circuit, failure, resistance, history)),
+    ("switch", "The switch", (device, pad, humidity, circuit, failure, history)),
     ("contact", "The contact", (contact, uncertainty, sensitivity)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

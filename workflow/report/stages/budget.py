@@ -8,7 +8,7 @@ import numpy as np
 from mesoscale.device.numerics import SWITCH
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import DeviceSettings
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.numbers import column, number, show
 from workflow.report.page import Block, stage, table
 from workflow.report.verdict import NAMES, in_words
@@ -51,14 +51,14 @@ def describe(results: Results) -> Iterator[Block]:
     yield table("Sources", rows, {"effect": _effect, "source": "source"})
 
 
-def _rows(results: Results) -> list[Row]:
+def _rows(results: Results) -> list[CsvRow]:
     """The budget, with what the targets `humidity` and `accuracy` computed where they ran."""
     computed = {"humid air": _by_humidity(results), "finite elements and grid": _by_accuracy(results)}
     rows = [{**row, **computed.get(row["effect"], {})} for row in results.csv("device/budget.csv")]
     return sorted(rows, key=lambda row: -np.nan_to_num(number(row["volts"]), nan=-1.0))
 
 
-def _by_humidity(results: Results) -> Row:
+def _by_humidity(results: Results) -> CsvRow:
     """From the least to the largest release of the humidities that were computed."""
     rows = results.csv("device/humidity.csv") if results.has("device/humidity.csv") else []
     if len(solved := [row for row in rows if row["release_V"]]) < 2:
@@ -68,7 +68,7 @@ def _by_humidity(results: Results) -> Row:
     return {"volts": str(np.ptp(release)), "about": about, "how": "computed", "source": "device/humidity.csv"}
 
 
-def _by_accuracy(results: Results) -> Row:
+def _by_accuracy(results: Results) -> CsvRow:
     """Errors of the values in use, in quadrature."""
     rows = results.csv("accuracy/pad.csv") if results.has("accuracy/pad.csv") else []
     errors = []
@@ -82,7 +82,7 @@ def _by_accuracy(results: Results) -> Row:
     return {"volts": volts, "about": about, "how": "computed", "source": "accuracy/pad.csv"}
 
 
-def _is_release(row: Row, knob: str) -> bool:
+def _is_release(row: CsvRow, knob: str) -> bool:
     return row["knob"] == knob and row["case"] == "release"
 
 
@@ -92,7 +92,7 @@ def _effect(row: dict[str, Any]) -> str:
     return NAMES[name][1].removeprefix("the ") if name in DeviceSettings.model_fields else in_words(name)
 
 
-def _volts(row: Row) -> str:
+def _volts(row: CsvRow) -> str:
     """Volts, with the remark that ends what they stand for."""
     remark = row["about"].partition("; ")[2]
     return show(row["volts"], 2) + f"; {remark}" * bool(remark)
@@ -107,7 +107,7 @@ LEFT_OUT = {
 }
 
 
-def _caption(results: Results, rows: list[Row]) -> str:
+def _caption(results: Results, rows: list[CsvRow]) -> str:
     """What the interval holds, in quadrature, beside its width."""
     held = [number(row["volts"]) for row in rows if row["held"] == "True"]
     said = (

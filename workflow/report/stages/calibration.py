@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.numbers import SYMBOLS, cell, show, spread
 from workflow.report.page import Block, stage, table
 
@@ -55,10 +55,10 @@ def describe(results: Results) -> Iterator[Block]:
         yield f"{left_out} points of curves lie outside the forces of the responses and are left out."
 
 
-def _quantity(row: Row) -> str:
+def _quantity(row: CsvRow) -> str:
     force = f" at {show(row['force_nN'])} nN" if row["force_nN"] else ""
     return f"{row['quantity'].replace('_', ' ')}{force} ({row['unit']})"
 
 
-def _state(name: str) -> Callable[[Row], str]:
+def _state(name: str) -> Callable[[CsvRow], str]:
     return lambda row: spread(row, f"{name}_q50", f"{name}_q05", f"{name}_q95")

@@ -8,7 +8,7 @@ import numpy as np
 
 from mesoscale.law.compact import Law, pressure
 from mesoscale.law.parameters import PARAMETERS
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import number, show
 from workflow.report.page import Block, Figure, PageTable, stage
@@ -176,14 +176,14 @@ def _load(name: str) -> float:
     return float(name.removeprefix("load_"))
 
 
-def _pressure(h: np.ndarray, row: Row, hamaker: float, rho_a: float, shield: float) -> np.ndarray:
+def _pressure(h: np.ndarray, row: CsvRow, hamaker: float, rho_a: float, shield: float) -> np.ndarray:
     """Total pressure of a fitted row (GPa), eqs 10 to 13."""
     parameters = {name: number(row[name]) for name in PARAMETERS}
     attractive, repulsive = pressure(h, Law(**parameters, hamaker=hamaker, rho_a_nm=rho_a, shield_nm=shield))
     return attractive + repulsive
 
 
-def _fit_of(rows: list[Row], curve: str, branch: str) -> Row | None:
+def _fit_of(rows: list[CsvRow], curve: str, branch: str) -> CsvRow | None:
     """The fit of a curve; None where it gave no law."""
     return next((row for row in rows if row["curve"] == curve and row["branch"] == branch and row["C_r_GPa"]), None)
 

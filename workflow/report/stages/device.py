@@ -14,7 +14,7 @@ OTHERS = {
     "length_um": "length",
     "hold_voltage_V": "hold voltage",
     "spring_N_per_m": "spring",
-    "electrode_um2": "electrode area",
+    "width_um": "width of the plate",
 }
 
 

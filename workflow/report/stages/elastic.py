@@ -1,23 +1,13 @@
 """Effective elastic modulus: figure 5."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
 from workflow.report.available import Results
-from workflow.report.drawing import BLUE, ORANGE, SERIES, draw
+from workflow.report.drawing import BLUE, SERIES, draw
 from workflow.report.numbers import cell, column, number, show
-from workflow.report.page import Block, Figure, PageTable, stage, table
-
-SHARES = {
-    "structure": "structure of the glass",
-    "fit": "misfit of E(V)",
-    "functional": "functional (GGA or LDA)",
-    "ions": "ions that follow the strain",
-    "poisson_ratio": "Poisson's ratio",
-    "counter_body": "counter body",
-}
+from workflow.report.page import Block, Figure, stage, table
 
 
 @stage("Effective elastic modulus", *("elastic/bulk_moduli.csv", "elastic/e_star.json"), also=("elastic/points.csv",))
@@ -26,8 +16,7 @@ def describe(results: Results) -> Iterator[Block]:
     summary = results.json("elastic/e_star.json")
     yield (
         "Density functional theory on an ensemble of Si₃N₄ structures: E* = "
-        f"{show(summary.get('mean_GPa'))} ± {show(summary.get('std_GPa'))} GPa"
-        + (" (the paper: 91 ± 3.8 GPa)." if results.beside_paper else ".")
+        f"{show(summary.get('mean_GPa'))} ± {show(summary.get('std_GPa'))} GPa."
     )
     yield Figure(
         elastic_distribution(results),
@@ -48,16 +37,7 @@ def describe(results: Results) -> Iterator[Block]:
             "flags": "flags",
         },
     )
-    if summary.get("shares"):
-        yield shares_table(summary)
     yield from summary.get("notes", [])
-
-
-def shares_table(summary: Mapping[str, Any]) -> PageTable:
-    """What the variance of E* comes from."""
-    shares = summary["shares"]
-    lines = [(words, f"{shares[key]['total']:.0%}") for key, words in SHARES.items() if shares.get(key)]
-    return PageTable("What the variance of E* comes from", ("source", "share of the variance"), lines)
 
 
 def elastic_distribution(results: Results) -> str | None:
@@ -84,14 +64,8 @@ def elastic_distribution(results: Results) -> str | None:
         axis.set_ylim(0, 1.7 * axis.get_ylim()[1])  # room for the legend
         axis.yaxis.get_major_locator().set_params(integer=True)
         axis.legend()
-        mean, std = number(summary.get("mean_GPa")), number(summary.get("std_GPa"))
         if "e_star_GPa" in samples:
-            other.hist(samples["e_star_GPa"], bins=50, density=True, color=BLUE, alpha=0.5, label="here", linewidth=0)
-        if results.beside_paper:
-            grid = np.linspace(min(75, mean - 4 * std), max(107, mean + 4 * std), 300)
-            normal = np.exp(-(((grid - 91.0) / 3.8) ** 2) / 2) / (3.8 * np.sqrt(2 * np.pi))
-            other.plot(grid, normal, "--", color=ORANGE, label="paper, 91 ± 3.8 GPa")
+            other.hist(samples["e_star_GPa"], bins=50, density=True, color=BLUE, alpha=0.5, linewidth=0)
         other.set(xlabel="E* (GPa)", ylabel="density (1/GPa)", ylim=(0, None))
-        other.legend()
 
     return draw("fig5", "Bulk moduli of the structures and the effective modulus", plot, (9.4, 3.7), columns=2)

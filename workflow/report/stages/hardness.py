@@ -5,13 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SOFT, draw
 from workflow.report.numbers import cell, column, number, show, spread
 from workflow.report.page import Block, CellText, Figure, stage, table
 
 SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
-PAPER_HARDNESS = ((3.0, 10.0), (15.0, 2.0))  # nm, GPa: "~10 GPa at 3 nm, ~2 GPa at 15 nm" in the paper's text
 
 
 @stage("Hardness of single asperities", "hardness/points.csv", also=("hardness/fit.json",))
@@ -32,25 +31,9 @@ def describe(results: Results) -> Iterator[Block]:
     yield Figure(
         hardness_size(results),
         "Hardness against contact length."
-        + (
-            f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval; dark green: the part of it that is scatter "
-            "between runs."
-            if fit.get("curve")
-            else ""
-        )
-        + (
-            " Grey: the range that the paper's Table 1 spans; crosses: the two values its text gives."
-            if results.beside_paper
-            else ""
-        ),
+        + (f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval." if fit.get("curve") else ""),
         "Figure 8",
     )
-    if film := fit.get("film"):
-        yield Figure(
-            film_share(film),
-            "What a film keeps of the difference between its own hardness and that of the body below, against contact "
-            "length over thickness: the law in use, with its 68 % interval. Grey: where the runs lie.",
-        )
     columns: dict[str, CellText] = {
         "run": "run",
         "energy scale": cell("energy_scale"),
@@ -144,45 +127,17 @@ def hardness_size(results: Results) -> str | None:
             )
             axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L (eq. 4)")
             axis.fill_between(length, low, high, color=GREEN, alpha=0.18, linewidth=0, label="its 68 % interval")
-            inner = (column(fit["curve"], f"statistical_{end}_GPa") for end in ("low", "high"))
-            axis.fill_between(length, *inner, color=GREEN, alpha=0.35, linewidth=0, label="scatter between runs alone")
-        if results.beside_paper:
-            _draw_paper(axis)
         axis.set(xlabel="contact length √A (nm)", ylabel="hardness (GPa)", ylim=(0, None), xlim=(1, 1.1 * longest))
         axis.legend()
 
     return draw("fig8", "Hardness of single asperities against contact length", plot)
 
 
-def film_share(film: dict[str, Any]) -> str | None:
-    """The law of films against contact length over thickness."""
-
-    def plot(axis):
-        at, low, middle, high = (
-            column(film["share"], key) for key in ("length_over_thickness", "low", "median", "high")
-        )
-        axis.fill_between(at, low, high, color=GREEN, alpha=0.18, linewidth=0, label="68 % interval")
-        axis.plot(at, middle, color=GREEN, label="1 / (1 + k (L/t)^m)")
-        axis.axvspan(*film["length_over_thickness"], color=SOFT, alpha=0.13, linewidth=0, label="runs")
-        axis.set(xlabel="contact length over thickness L/t", ylabel="share of the film", ylim=(0, 1.05), xscale="log")
-        axis.legend()
-
-    return draw("film_share", "Share of the film in the hardness, against contact length over thickness", plot)
-
-
-def _draw_paper(axis) -> None:
-    length = np.linspace(1.5, 20, 200)
-    low, high = 0.7 + 1.95 / np.sqrt(length), 3.2 + 14.8 / np.sqrt(length)
-    axis.fill_between(length, low, high, color=SOFT, alpha=0.13, linewidth=0)
-    axis.plot(*zip(*PAPER_HARDNESS, strict=True), "x", color=INK, markersize=8, label="paper, values in its text")
-    axis.fill_between([], [], [], color=SOFT, alpha=0.3, label="paper, range of its Table 1")
-
-
-def _scale(point: Row) -> tuple[str, str, str]:
+def _scale(point: CsvRow) -> tuple[str, str, str]:
     return SCALES.get(_key(point), ("other energies", PURPLE, "^"))
 
 
-def _key(point: Row) -> str:
+def _key(point: CsvRow) -> str:
     value = number(point.get("energy_scale", "1"))
     return f"{value:.1f}" if np.isfinite(value) else "1.0"
 
@@ -213,11 +168,5 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
             f"The tops of {len(fit['tops'])} runs attract a smooth body with the work of a flat of cut-off D₀, "
             f"{show(cutoff['a'])} nm (atoms follow) to {show(cutoff['b'])} nm (rigid). Their largest force is that of "
             f"{show(float(np.mean(column(fit['tops'], 'by_force_nm'))))} nm, which no contact of several tops feels."
-        )
-    for scale, change in fit.get("size_effect_at_one_shape", {}).items():
-        words, _, _ = _scale({"energy_scale": scale.removeprefix("scale_")})
-        notes.append(
-            f"At one shape of contact, runs with {words} have hardness as length to the power {show(-change['mean'])} "
-            f"[{show(-change['high'])}, {show(-change['low'])}] ({change['runs']} runs)."
         )
     return notes

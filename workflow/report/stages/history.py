@@ -4,13 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import SERIES, draw
-from workflow.report.numbers import cell, column, number, show
-from workflow.report.page import Block, Figure, stage, table
+from workflow.report.numbers import column, number, show
+from workflow.report.page import Block, Figure, stage
 
 
-@stage("Closed again and again", *(f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")))
+@stage("Closed again and again", "history/cycles.csv", "history/dwell.csv")
 def describe(results: Results) -> Iterator[Block]:
     """Shakedown and creep."""
     rows = results.csv("history/cycles.csv")
@@ -29,20 +29,6 @@ def describe(results: Results) -> Iterator[Block]:
         history_drift(results),
         "Left: energy lost by each cycle, one line per surface. Right: how far the closed contact sinks.",
         wide=True,
-    )
-    yield table(
-        "Cycles",
-        [row for row in rows if int(row["cycle"]) in (1, 2, 10, 100, last)],
-        {
-            "surface": "seed",
-            "cycle": "cycle",
-            **({"time under load (s)": cell("held_s")} if held else {}),
-            "closed (nm)": cell("closed_nm", 4),
-            "area (nm²)": cell("contact_area_nm2"),
-            "energy lost (nN nm)": cell("dissipated_nN_nm"),
-            "pull-off (nN)": cell("pull_off_nN"),
-        },
-        heads=2,
     )
     if not all(row["converged"] == "True" for row in rows):
         yield "Some cycles did not converge or missed their force: see column converged."
@@ -74,7 +60,7 @@ def history_drift(results: Results) -> str:
     return draw("drift", "Energy lost by each cycle and sinking of the closed contact", plot, (9.4, 3.6), columns=2)
 
 
-def _shakedown(rows: list[Row]) -> str:
+def _shakedown(rows: list[CsvRow]) -> str:
     """How much less energy the last cycle loses than the first."""
     numbers = [int(row["cycle"]) for row in rows]
     by_cycle = {

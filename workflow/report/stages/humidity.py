@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import BLUE, ORANGE, draw
 from workflow.report.numbers import cell, column, show
 from workflow.report.page import Block, Figure, stage, table
@@ -44,7 +44,7 @@ def describe(results: Results) -> Iterator[Block]:
     )
 
 
-def begins_to_stick(rows: list[Row]) -> str:
+def begins_to_stick(rows: list[CsvRow]) -> str:
     """From which humidity on the switch sticks, for each limit of opening."""
     parts = []
     for opening, (_, label) in OPENINGS.items():
@@ -58,13 +58,13 @@ def begins_to_stick(rows: list[Row]) -> str:
     return f"At central inputs the switch sticks {'; '.join(parts)}." if parts else ""
 
 
-def _release(row: Row) -> str:
+def _release(row: CsvRow) -> str:
     if not row["release_V"]:
         return "no answer"
     return "sticks" if float(row["release_V"]) == 0.0 else show(float(row["release_V"]))
 
 
-def against_humidity(rows: list[Row]) -> str:
+def against_humidity(rows: list[CsvRow]) -> str:
     """Release at central inputs, and the share that sticks."""
     top = max((float(row["release_V"]) for row in rows if row["release_V"]), default=0.0) or 1.0
 

@@ -9,7 +9,7 @@ import numpy as np
 from mesoscale.inputs.distributions import Distribution
 from mesoscale.inputs.table import distribution_of, from_rows
 from mesoscale.settings.definitions import BY_NAME
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.numbers import number, show, shown_unit
 from workflow.report.page import Block, PageTable, stage, table
 from workflow.report.verdict import in_words
@@ -73,7 +73,7 @@ def _effect_V(results: Results, name: str, stated: Distribution, computed: Distr
     return f"by about {show(shift * share**0.5 * answer['release_V']['std'])} V"
 
 
-def _distribution(row: Row) -> str:
+def _distribution(row: CsvRow) -> str:
     kind, _, values = row["distribution"].partition(" ")
     if kind == "samples":
         low, median, high = np.quantile(json.loads(values), [0.05, 0.5, 0.95])

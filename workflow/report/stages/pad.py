@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import cell, column, show, spread
 from workflow.report.page import Block, DoubtNote, Figure, PageTable, stage, table
@@ -117,12 +117,12 @@ def pad_curves(results: Results) -> str:
     return draw("pad-curves", "Mean pressure of a pad against separation", plot, (9.4, 3.4), columns=2)
 
 
-def _line(axis, rows: list[Row], scale: float, color: str, label: str | None, style: str = "-") -> None:
+def _line(axis, rows: list[CsvRow], scale: float, color: str, label: str | None, style: str = "-") -> None:
     net = column(rows, "net_kPa") * scale
     axis.plot(column(rows, "separation_nm"), np.where(net > 0, net, np.nan), style, color=color, label=label)
 
 
-def _last_contact(rows: list[Row]) -> float:
+def _last_contact(rows: list[CsvRow]) -> float:
     """Largest separation at which any cell pushes (nm)."""
     touching = column(rows, "repulsive_MPa") > 0
     return float(column(rows, "separation_nm")[touching].max())

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
 from workflow.report.gates import faint_outputs
 from workflow.report.numbers import OUTPUTS, column, number, show
@@ -90,7 +90,7 @@ def _table2(results: Results) -> PageTable:
     for name, (symbol, unit, factor) in OUTPUTS.items():
         if name not in rows:
             continue
-        row: Row = rows[name]
+        row: CsvRow = rows[name]
         shown = {key: show(number(value) * factor) for key, value in row.items() if key not in ("output", "unit")}
         cells = [f"{symbol} ({unit})", f"{shown['response_mean']} ± {shown['response_dev']}"]
         if paper:

@@ -1,0 +1,232 @@
+"""Switches of all that a scene leaves uncertain, each on its pad: does it fail, and how much attraction does it bear?
+
+The reserve of a switch is the logarithm of the factor on its attraction with which it just fails.
+"""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+from zlib import crc32
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from mesoscale.device.beam_switch import closed_beam
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.plate import plate_from_settings, solve_on_pad
+from mesoscale.device.points import Point, kinds, point_of, values_at
+from mesoscale.device.pressing import held_V
+from mesoscale.errors import InputError, NotComputed
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.memory import PadLaw, attracting, deepened
+from mesoscale.settings import DeviceSettings
+
+Array = NDArray[np.float64]
+FAR = 8.0
+"""Deviations beyond which a probability is 1 in double precision, so that a number would be endless."""
+
+
+class Pressed(Protocol):
+    """A pad that was pressed: its mean curves, and those of two halves of its cells."""
+
+    @property
+    def law(self) -> PadLaw: ...
+    @property
+    def halves(self) -> tuple[PadLaw, PadLaw]: ...
+
+
+Press = Callable[[Point, int, int], Pressed]
+"""Presses the pad of a point: with so many times the cells of the scene, and surfaces by a number."""
+
+
+@dataclass(frozen=True)
+class FailureNumerics:
+    """How rare failures are looked for; no scene sets these choices.
+
+    Attributes
+    ----------
+    first, fewest : switches of the first response beside those of the answer, and the fewest that may be solved.
+    rounds, batch : switches are added so often, so many at once, where a failure is likely.
+    runs : switches that correct a probability.
+    wide : half of the first switches have this many times the deviations of the inputs: rare events are far out.
+    surer_cells : times as many cells has a pad whose halves disagree on whether the switch fails.
+    surfaces : numbers of surfaces.
+    least_times, most_times, step : factors on the attraction that are tried, and the difference of their logarithms to
+        which the reserve is known.
+    span, voltages : largest hold voltage of the curve, over that of the scene, and the number of voltages.
+    rough : probabilities of the RMS heights among which the least is sought, from the roughest.
+    springs : springs among which the least is sought, over that of the scene.
+    spring_runs : switches that are solved with each spring. They know a probability to some 25 %, and a spring to 1 or
+        2 %.
+    confidence : that no more fail than allowed, by what is common to all devices and not known.
+    near : difference of logarithms to which attractions and springs are sought.
+    """
+
+    first: int = 48
+    fewest: int = 32
+    rounds: int = 5
+    batch: int = 16
+    runs: int = 64
+    wide: float = 2.0
+    surer_cells: int = 4
+    surfaces: int = 4000
+    least_times: float = 0.1
+    most_times: float = 30.0
+    step: float = 0.1
+    span: float = 1.5
+    voltages: int = 5
+    rough: tuple[float, ...] = (0.98, 0.84, 0.5, 0.16, 0.02)
+    springs: tuple[float, float] = (0.5, 2.0)
+    spring_runs: int = 32
+    confidence: float = 0.9
+    near: float = 0.02
+
+
+FAILURE = FailureNumerics()
+"""What every scene uses."""
+
+
+class Attracted:
+    """A switch whose attraction can be changed.
+
+    Parameters
+    ----------
+    release_V : a switch that is still closed at this voltage has failed.
+    elements : of its beam.
+    """
+
+    def __init__(self, settings: DeviceSettings, law: PadLaw, release_V: float, elements: int):
+        self.settings, self.release_V, self.elements = settings, release_V, elements
+        self.laws = [law]
+        self.closed: Callable[[float, float], bool] | None = None
+
+    def fails(self, times: float) -> bool:
+        """Whether the switch fails with `times` its attraction.
+
+        Raises
+        ------
+        InputError : the pad is pressed beyond what is known of it, or the electrode cannot be solved.
+        """
+        while True:
+            try:
+                if not self.settings.bends:
+                    law = attracting(self.laws[-1], times)
+                    plate = solve_on_pad(plate_from_settings(self.settings), law, self.settings.hold_voltage_V)
+                    return plate.stuck or plate.release_V < self.release_V
+                self.closed = self.closed or closed_beam(self.settings, self.laws[-1], self.elements)
+                return self.closed(self.release_V, times)
+            except NotComputed:
+                if len(self.laws) > SWITCH.deepened_by:
+                    raise
+                self.laws.append(deepened(self.laws[-1]))
+                self.closed = None
+
+    def reserve(self, step: float = FAILURE.step) -> float:
+        """Logarithm of the factor on the attraction with which the switch just fails, known to half a step."""
+        low, high = np.log(FAILURE.least_times), np.log(FAILURE.most_times)
+        while high - low > step:
+            middle = 0.5 * (low + high)
+            try:
+                failed = self.fails(float(np.exp(middle)))
+            except InputError:
+                failed = True
+            low, high = (low, middle) if failed else (middle, high)
+        return float(0.5 * (low + high))
+
+
+@dataclass(frozen=True)
+class Population:
+    """All switches that the scene allows, as standard normal numbers z: inputs, D0 and properties of the device.
+
+    Attributes
+    ----------
+    table, settings, cutoffs_nm : as `mesoscale.device.points` takes them.
+    release_V : a switch that is still closed at this voltage has failed.
+    press : of the pads.
+    solved : probabilities (m, dimension) of switches whose pads were pressed at the hold voltage, and these pads.
+    """
+
+    table: InputTable
+    settings: DeviceSettings
+    cutoffs_nm: tuple[float, float]
+    release_V: float
+    press: Press
+    solved: tuple[Array, Sequence[Pressed]]
+
+    @property
+    def dimension(self) -> int:
+        """Number of standard normal numbers."""
+        return len(self.names)
+
+    @property
+    def names(self) -> list[str]:
+        """What the numbers stand for."""
+        return [*self.table.names, "gap_cutoff_nm", *self.settings.varied]
+
+    @property
+    def common(self) -> NDArray[np.bool_]:
+        """Which of the numbers are one unknown value for all devices."""
+        return np.array([kind == "common" for kind in kinds(self.table, self.settings)], bool)
+
+    @property
+    def spring(self) -> str:
+        """The setting of the device that is its spring."""
+        return "thickness_um" if self.settings.bends else "spring_N_per_m"
+
+    @property
+    def hold_V(self) -> float:
+        """Hold voltage of the scene; where it has none, that of the pull-in without contact."""
+        return held_V(self.settings)
+
+    @cached_property
+    def positive(self) -> NDArray[np.bool_]:
+        """Which of the numbers stand for what is above zero."""
+        ends = np.outer([-FAR, FAR], np.ones(self.dimension))
+        return values_at(ndtr(ends), self.table, self.settings, self.cutoffs_nm).min(axis=0) > 0.0
+
+    def columns(self, z: Array, hold_V: Array) -> Array:
+        """What the response depends on: logarithms of what is positive, as the reserve is a logarithm."""
+        values = values_at(ndtr(np.clip(z, -FAR, FAR)), self.table, self.settings, self.cutoffs_nm)
+        logs = np.log(np.maximum(values, np.finfo(float).tiny))
+        return np.column_stack([np.where(self.positive, logs, values), hold_V])
+
+    def points(self, z: Array, hold_V: float) -> list[Point]:
+        """The switches of numbers (m, dimension)."""
+        held = self.settings.model_copy(update={"hold_voltage_V": hold_V})
+        rows = values_at(ndtr(z), self.table, self.settings, self.cutoffs_nm)
+        return [point_of(row, self.table.names, held) for row in rows]
+
+    def reserves(self, z: Array, hold_V: float, pads: Sequence[Pressed] | None = None) -> Array:
+        """Reserves of switches, shape (m,), on pads that are pressed where none are given; NaN where one cannot be."""
+        reserves = np.full(len(z), np.nan)
+        for k, point in enumerate(self.points(z, hold_V)):
+            with suppress(InputError):
+                pad = self.press(point, 1, _surface(z[k])) if pads is None else pads[k]
+                reserves[k] = Attracted(point.device, pad.law, self.release_V, SWITCH.coarse_elements).reserve()
+        return reserves
+
+    def failed(self, z: Array, hold_V: float, times: float) -> NDArray[np.bool_]:
+        """Which switches fail, shape (m,); one that cannot be solved has failed."""
+        points = self.points(z, hold_V)
+        return np.array([self._fails(point, _surface(row), times) for row, point in zip(z, points, strict=True)])
+
+    def _fails(self, point: Point, surface: int, times: float) -> bool:
+        def fails(law: PadLaw, elements: int) -> bool:
+            return Attracted(point.device, law, self.release_V, elements).fails(times)
+
+        try:
+            pad = self.press(point, 1, surface)
+            failed = fails(pad.law, SWITCH.elements)
+            if any(fails(half, SWITCH.coarse_elements) != failed for half in pad.halves):
+                failed = fails(self.press(point, FAILURE.surer_cells, surface).law, SWITCH.elements)
+        except InputError:
+            return True
+        return failed
+
+
+def _surface(z: Array) -> int:
+    """Number of the surfaces of a switch."""
+    return crc32(z.tobytes()) % FAILURE.surfaces
