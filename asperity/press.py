@@ -21,6 +21,8 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 PressureOfGaps = Callable[[np.ndarray], Any]
+BY_LOAD = ("loads_nN", "nN", SMALLEST_FORCE_NN, LARGEST_FORCE_NN)
+BY_APPROACH = ("approach_nm", "nm", 1e-9, 1e9)
 
 
 @dataclass(frozen=True, repr=False)
@@ -84,9 +86,10 @@ class PressedMap(Shown):
 def press(
     heights: Any,
     side_nm: float | tuple[float, float],
-    loads_nN: float | Sequence[float],
+    loads_nN: float | Sequence[float] | None,
     e_star: float,
     *,
+    approach_nm: float | Sequence[float] | None = None,
     h_macro: float | None = None,
     h_prime: float = 0.0,
     counterface: Any = None,
@@ -94,7 +97,7 @@ def press(
     contact_at: ContactAt = "highest",
     attraction: PressureOfGaps | None = None,
 ) -> PressedMap:
-    """Press a map onto a flat, or onto a second map, and return pressure and gap at each load.
+    """Press a map onto a flat, or onto a second map, and return pressure and gap at each load or approach.
 
     All sites share one elastic half-space (`mechanics: coupled`, docs/contact.md).
 
@@ -102,8 +105,9 @@ def press(
     ----------
     heights : (nx, ny) in nm, levelled, without missing values; for instance `Film(file).maps[0].heights_nm`.
     side_nm : length of the map, or its lengths along x and y.
-    loads_nN : repulsive forces on the whole map (nN), rising.
+    loads_nN : repulsive forces on the whole map (nN), rising; None: `approach_nm` is given.
     e_star : effective modulus of both bodies, GPa.
+    approach_nm : how far the flat comes down after it first touches (nm), rising, in place of loads.
     h_macro : hardness (GPa), at which the surface yields; None: elastic.
     h_prime : its size effect, GPa nm^0.5.
     counterface : (nx, ny) heights of the second surface as an instrument sees it. It is turned over about the y axis:
@@ -118,11 +122,15 @@ def press(
     InputError : no such map, side, load or material; a load beyond full contact.
     """
     surface, spacing = _surface(heights, counterface, side_nm, periodic, contact_at)
-    loads = checked_array("loads_nN", np.atleast_1d(np.asarray(loads_nN)), "nN")
-    for load in loads:
-        check_number("loads_nN", float(load), SMALLEST_FORCE_NN, LARGEST_FORCE_NN, "nN")
-    if loads.ndim != 1 or loads.size == 0 or (np.diff(loads) <= 0.0).any():
-        raise InputError("loads_nN: accepted are rising loads in nN")
+    if (loads_nN is None) == (approach_nm is None):
+        raise InputError("press: give either loads_nN or approach_nm, and None for the other")
+    by_load = loads_nN is not None
+    name, unit, least, most = BY_LOAD if by_load else BY_APPROACH
+    steps = checked_array(name, np.atleast_1d(np.asarray(loads_nN if by_load else approach_nm)), unit)
+    for step in steps:
+        check_number(name, float(step), least, most, unit)
+    if steps.ndim != 1 or steps.size == 0 or (np.diff(steps) <= 0.0).any():
+        raise InputError(f"{name}: accepted are rising numbers in {unit}")
     hardness = {"h_macro": 0.0 if h_macro is None else h_macro, "h_prime": h_prime}
     inputs = ContactInputs(hamaker=0.0, e_star=e_star, **hardness, q0=1.0, hurst=0.5, rms=0.0)
     settings = ContactSettings(model="elastic" if h_macro is None else "plastic").model_copy(
@@ -130,14 +138,18 @@ def press(
     )
     offset, lowest = float(surface.mean()), float(surface.min())
     contact = CoupledContact(surface, inputs, settings) if periodic else FreeContact(surface, inputs, settings)
-    if loads[-1] > contact.capacity:
-        what = "full contact" if h_macro is None else "the hardness"
-        raise InputError(f"loads_nN: {loads[-1]:.4g} nN; {what} ends contacts of this map at {contact.capacity:.4g} nN")
+    if by_load:
+        _refuse_beyond(contact, steps[-1])
     row, converged, at_loads = None, True, []
-    for load in loads:
-        path = trace(contact, NUMERICS.force_steps if h_macro else 1, h_macro is not None, load, start=row)
+    for step in steps:
+        ends = {"stop_force": step} if by_load else {"stop_separation": -lowest - step}
+        path = trace(contact, NUMERICS.force_steps if h_macro else 1, h_macro is not None, **ends, start=row)
         row = path.rows[-1]
-        converged &= path.reached and path.unconverged == 0 and abs(row.force / load - 1.0) <= MAX_FORCE_MISS
+        if by_load:
+            converged &= abs(row.force / step - 1.0) <= MAX_FORCE_MISS
+        else:
+            _refuse_beyond(contact, row.force)
+        converged &= path.reached and path.unconverged == 0
         pressure, gap = contact.fields()
         pull = 0.0 if attraction is None else _pull(attraction, gap, contact)
         at_loads.append((row.force, row.separation + offset, -lowest - row.separation, pull, pressure, gap))
@@ -165,6 +177,13 @@ def _surface(
         raise InputError(f"contact_at = {contact_at}: accepted are highest (measured maps) and lowest")
     together = maps[0] + maps[1][::-1] if counterface is not None else maps[0]
     return (-together if contact_at == "highest" else together.copy()), spacing
+
+
+def _refuse_beyond(contact: CoupledContact, force: float) -> None:
+    """Refuse what the map does not carry."""
+    if force > contact.capacity:
+        what = "the hardness" if contact.flows else "full contact"
+        raise InputError(f"press: too far, {what} ends contacts of this map at {contact.capacity:.4g} nN")
 
 
 def _pull(attraction: PressureOfGaps, gap: np.ndarray, contact: CoupledContact) -> float:

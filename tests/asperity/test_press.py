@@ -32,6 +32,16 @@ def test_a_sphere_alone_is_hertzs():
     np.testing.assert_allclose(pressed.gap_nm[1][beside], wanted, atol=0.002 * wanted.max())
 
 
+@pytest.mark.parametrize("yields", [{}, {"h_macro": 20.0}])
+def test_an_approach_gives_the_load_that_gives_it(yields):
+    """To the width of steps where it yields, which come by another way."""
+    by_load = asp.press(SPHERE, SIDE, [1000.0, 5000.0], E_STAR, periodic=False, **yields)
+    pressed = asp.press(SPHERE, SIDE, None, E_STAR, periodic=False, approach_nm=by_load.approach_nm, **yields)
+    np.testing.assert_allclose(pressed.approach_nm, by_load.approach_nm, rtol=1e-9)
+    np.testing.assert_allclose(pressed.loads_nN, by_load.loads_nN, rtol=2e-3 if yields else 1e-6)
+    assert pressed.converged
+
+
 def test_a_flat_punch_alone_is_boussinesqs():
     """Stiffness 2 E* a, pressure F / (2 pi a^2) in the middle; its radius has 32 sites."""
     radius, load = 50.0, 1e4
@@ -95,8 +105,12 @@ def test_a_pressed_map_is_drawn_and_says_what_it_is():
         ({"heights": np.where(R < 5, np.nan, SPHERE)}, "not finite"),
         ({"heights": 1e-9 * SPHERE}, "give both in nm"),
         ({"side_nm": (200.0, 100.0)}, "must be squares"),
-        ({"loads_nN": [10.0, 5.0]}, "rising loads"),
-        ({"loads_nN": []}, "rising loads"),
+        ({"loads_nN": [10.0, 5.0]}, "loads_nN: accepted are rising"),
+        ({"loads_nN": []}, "loads_nN: accepted are rising"),
+        ({"loads_nN": None}, "either loads_nN or approach_nm"),
+        ({"approach_nm": 1.0}, "either loads_nN or approach_nm"),
+        ({"loads_nN": None, "approach_nm": -1.0}, "approach_nm"),
+        ({"loads_nN": None, "approach_nm": 50.0}, "full contact"),
         ({"loads_nN": 1e9}, "full contact"),
         ({"loads_nN": 1e9, "h_macro": 2.0}, "hardness"),
         ({"e_star": -1.0}, "e_star"),

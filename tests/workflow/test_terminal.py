@@ -3,6 +3,8 @@
 import logging
 from types import SimpleNamespace
 
+import h5py
+import numpy as np
 import pytest
 
 from workflow.run.cost import Costs, refusal, wall_seconds
@@ -91,6 +93,26 @@ def test_a_run_that_is_too_long_is_refused_unless_a_cluster_takes_it(local, hour
     send(terminal, "run_info")
     assert terminal.refusal.startswith(begin)
     assert bool(terminal.refusal) == bool(begin)
+
+
+def test_the_release_is_told_as_switches_are_solved(capsys, tmp_path):
+    """By the quantiles of the answer, over the points that are there: those of an earlier run, too."""
+    jobs = []
+    for number, release_V in enumerate(([9.0], [0.0, 4.0, np.nan], [5.0, 6.0, 7.0])):
+        jobs.append(job("press_pads", number))
+        jobs[-1].output = [str(tmp_path / f"{number}.h5")]
+        with h5py.File(jobs[-1].output[0], "w") as file:
+            for point, value in enumerate(release_V, number):  # the first is the central one
+                file.create_group(f"point_{point:04d}").attrs["release_V"] = value
+    dag = SimpleNamespace(jobs=jobs, needrun_jobs=lambda: jobs[1:], job_dependencies=lambda job: [])
+    terminal = Terminal(SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag), OneSecondEach(), "", 12)
+    send(terminal, "run_info")
+    for number in (1, 2):
+        send(terminal, "job_info", jobid=number, rule_name="press_pads", rule_msg="press")
+        send(terminal, "job_finished", job_id=number)
+    first, second = (line for line in capsys.readouterr().err.splitlines() if "so far" in line)
+    assert first == "  release of 2 switches so far: 2 V (5 to 95 %: 0.2 V to 3.8 V); 50% stick"
+    assert second == "  release of 5 switches so far: 5 V (5 to 95 %: 0.8 V to 6.8 V); 20% stick"
 
 
 def test_nothing_to_do_names_the_report(capsys):

@@ -7,7 +7,7 @@ import sys
 import textwrap
 import time
 from collections import Counter, defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from shutil import disk_usage
 from typing import Any
@@ -130,6 +130,26 @@ class Terminal(logging.Handler):
         start = f"{time.strftime('%H:%M')}  {self._done:>{len(str(self._jobs))}} of {self._jobs}  "
         end = f" ({duration(took)}){rest}"
         _say(start + textwrap.shorten(message, COLUMNS - len(start) - len(end), placeholder=" …") + end)
+        if job.rule.name == "press_pads":
+            pressed = [other for other in self._workflow.dag.jobs if other.rule.name == "press_pads"]
+            _say(release_so_far([file for other in pressed if other.jobid not in self._left for file in other.output]))
+
+
+def release_so_far(files: Iterable[str]) -> str:
+    """What the switches of these files of pad/points/ say together, by the quantiles of the answer."""
+    import h5py  # not while a run is planned
+    import numpy as np
+
+    release_V = []
+    for path in files:
+        with h5py.File(path) as file:  # of the central point the job says more
+            release_V += [file[name].attrs.get("release_V", np.nan) for name in file if name != "point_0000"]
+    solved = [value for value in release_V if np.isfinite(value)]
+    if not solved:
+        return "  no switch solved so far, but the central one"
+    low, middle, high = (f"{value:.3g} V" if value else "sticks" for value in np.quantile(solved, (0.05, 0.5, 0.95)))
+    stuck = np.mean(np.equal(solved, 0.0))
+    return f"  release of {len(solved)} switches so far: {middle} (5 to 95 %: {low} to {high}); {stuck:.0%} stick"
 
 
 def _say_if_silent(about: Mapping[str, Any]) -> None:
