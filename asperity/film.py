@@ -132,8 +132,8 @@ class Film(Shown):
         used, doubts = self.description["description"], self.description["doubts"]
         several = any(doubt["code"] == "several_surfaces" for doubt in doubts)
         yield (
-            f"Film: {len(self.measurements)} measurements, as far as can be told of "
-            f"{'SEVERAL SURFACES' if several else 'one surface'}; {len(doubts)} doubts; described by {used['meaning']}"
+            f"Film (measurements: {len(self.measurements)}, doubts: {len(doubts)}): as far as can be told of "
+            f"{'SEVERAL SURFACES' if several else 'one surface'}; described by {used['meaning']}"
         )
         yield from measurement_lines(self.description)
         yield from self.doubts

@@ -24,8 +24,7 @@ pressed.plot().savefig("own_map.png", dpi=120)
 # %% [markdown]
 # `pressed.pressure_GPa` and `pressed.gap_nm` have one map a load. With `periodic=False` the map stands alone on the
 # half-space and may be a rectangle. `periodic=True`, the default, repeats it; a map whose edges differ then has steps
-# there. Without `h_macro=` nothing yields. `counterface=` takes the map of the other surface, `attraction=` a law of
-# your own. The map is pressed with the noise of its instrument, and without the roughness that the tip misses.
+# there. Without `h_macro=` nothing yields. The map is pressed with the noise of its instrument, and without the roughness that the tip misses.
 #
 # A sphere and a flat punch are maps, too. Hertz's contact radius, approach and largest pressure:
 
@@ -40,3 +39,19 @@ print(f"approach: {sphere.approach_nm[0]:.4f} nm, Hertz {a**2 / radius:.4f} nm")
 print(f"pressure: {sphere.pressure_GPa.max():.3f} GPa, Hertz {3 * load / (2 * np.pi * a**2):.3f} GPa")
 punch = asp.press(np.where(r < 50, 0, -500), side, load, e_star, periodic=False)
 print(f"punch: approach {punch.approach_nm[0]:.4f} nm, exact {load / (2 * e_star * 50):.4f} nm")
+
+# %% [markdown]
+# Two maps on each other, with an attraction of your own, brought together by given distances:
+
+# %%
+waves = np.broadcast_to(0.1 * np.cos(2 * np.pi * x / 10), r.shape)
+
+
+def attraction(gap_nm):
+    return 0.2 / (6 * np.pi * (gap_nm + 0.3) ** 3)  # GPa
+
+
+ball = -(r**2) / (2 * radius)
+both = asp.press(ball, side, None, e_star, approach_nm=[0.2, 0.4], counterface=waves, attraction=attraction)
+print("\n".join(both.lines()))
+print("attraction:", ", ".join(f"{force:.0f} nN" for force in both.attraction_nN))

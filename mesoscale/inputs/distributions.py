@@ -95,6 +95,10 @@ class InputTable:
     rows: tuple[UncertainInput, ...]
     correlation: Array
 
+    def __repr__(self) -> str:
+        medians = self.medians()
+        return f"InputTable, medians: {', '.join(f'{row.name} {medians[row.name]:.4g} {row.unit}' for row in self.rows)}"
+
     @property
     def names(self) -> list[str]:
         """Names of the inputs in order."""

@@ -80,6 +80,9 @@ class MonteCarlo:
     opening: Law
     failed: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        return f"MonteCarlo: laws of {len(self.closing.d_c_nm)} samples, {len(self.failed)} left out"
+
 
 def monte_carlo(
     table: InputTable,

@@ -39,6 +39,7 @@ def test_a_film_of_known_roughness_is_measured_and_pressed(film):
     assert "h_prime" not in measured.inputs(hard).names
     contact = measured.press({"e_star": 75.0}, load_nN=3000.0, pixels=128)
     assert contact.cycle.converged
+    assert len(asp.monte_carlo(table, contact.on_grid, samples=2).failed) < 2  # as docs/examples/uncertainty.py says
     # pressures carry the load, and walls that are pressed have no gap
     assert contact.pressure_GPa.mean() * contact.cycle.cell_area_nm2 == pytest.approx(3000.0, rel=1e-5)
     assert not contact.gap_nm[contact.pressure_GPa > 0].any()
@@ -153,11 +154,16 @@ def test_dir_shows_the_public_names_alone():
     assert dir(asp) == asp.__all__
 
 
-def test_a_cycle_is_printed_in_a_line():
-    cycle = asp.run_cycle(INPUTS, SMALL, 1)
-    assert "\n" not in f"{cycle}{cycle.closing}"
+def test_what_a_call_returns_is_printed_in_a_line():
+    cycle, table = asp.run_cycle(INPUTS, SMALL, 1), asp.input_table()
     assert str(cycle).startswith("Cycle up to 500 nN: first touches at ")
     assert str(cycle.closing).startswith("Branch of ")
+    assert "rms 8.5 nm" in str(table)
+    samples = asp.MonteCarlo({}, *[asp.Law(*np.ones((4, 3)), hamaker=np.ones(3))] * 2, failed=("why",))
+    assert str(samples) == "MonteCarlo: laws of 3 samples, 1 left out"
+    scan = asp.Scan(np.zeros((4, 5)), (4.0, 5.0), "own")
+    assert str(scan) == "Scan own: 4 x 5 points on 4 x 5 nm"
+    assert "\n" not in f"{cycle}{cycle.closing}{table}"
 
 
 def test_nothing_stated_is_one_elastic_half_space():
