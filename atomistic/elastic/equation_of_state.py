@@ -22,7 +22,9 @@ from atomistic.constants import EV_PER_A3_IN_GPA
 MIN_POINTS = 5
 B_PRIME_RANGE = (2.0, 7.0)  # outside it, a solid this side of melting is unlikely and the fit suspect
 FORMS_AGREE = 0.02  # Birch–Murnaghan and Vinet must give the same B within this
-MOST_ERROR = 0.1  # of B by the misfit: beyond, it says less than the difference of the functionals, 8 % in silicon nitride
+MOST_ERROR = (
+    0.1  # of B by the misfit: beyond, it says less than the difference of the functionals, 8 % in silicon nitride
+)
 
 
 @dataclass(frozen=True)

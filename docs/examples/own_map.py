@@ -24,7 +24,8 @@ pressed.plot().savefig("own_map.png", dpi=120)
 # %% [markdown]
 # `pressed.pressure_GPa` and `pressed.gap_nm` have one map a load. With `periodic=False` the map stands alone on the
 # half-space and may be a rectangle. `periodic=True`, the default, repeats it; a map whose edges differ then has steps
-# there. Without `h_macro=` nothing yields. The map is pressed with the noise of its instrument, and without the roughness that the tip misses.
+# there. Without `h_macro=` nothing yields. The map is pressed with the noise of its instrument, and without the
+# roughness that the tip misses.
 #
 # A sphere and a flat punch are maps, too. Hertz's contact radius, approach and largest pressure:
 

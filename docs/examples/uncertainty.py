@@ -2,7 +2,7 @@
 # # How uncertain is the law?
 #
 # Give each input a distribution, draw inputs and surfaces at random, and see the band of the law. For a film of your
-# [own scans](own_scan.py), put `film.inputs(material)` in place of `table`, and `contact.on_grid` in place of `settings`.
+# [own scans](own_scan.py), take `film.inputs(material)` for `table` and `contact.on_grid` for `settings`.
 
 # %%
 import matplotlib.pyplot as plt

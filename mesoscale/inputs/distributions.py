@@ -97,7 +97,9 @@ class InputTable:
 
     def __repr__(self) -> str:
         medians = self.medians()
-        return f"InputTable, medians: {', '.join(f'{row.name} {medians[row.name]:.4g} {row.unit}' for row in self.rows)}"
+        return (
+            f"InputTable, medians: {', '.join(f'{row.name} {medians[row.name]:.4g} {row.unit}' for row in self.rows)}"
+        )
 
     @property
     def names(self) -> list[str]:

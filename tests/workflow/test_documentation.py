@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 
 import asperity as asp
 from asperity.__main__ import COMMANDS as DOORS
@@ -26,6 +27,7 @@ from workflow.scene import load_scene
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "uncertainty.md"
+INPUTS = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.025, hurst=0.7, rms=5.0)
 SCENES = [
     pytest.param(block, id=f"{page.stem}-{number}")
     for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
@@ -85,8 +87,7 @@ def test_extras_are_named_one_way():
 
 def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):
     (tmp_path / "scans").mkdir()
-    inputs = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.025, hurst=0.7, rms=5.0)
-    heights = asp.random_surface(inputs, asp.ContactSettings(pixels=128, length_nm=2000.0), 1)
+    heights = asp.random_surface(INPUTS, asp.ContactSettings(pixels=128, length_nm=2000.0), 1)
     write_gwy(tmp_path / "scans" / "place.gwy", asp.Scan(heights, (2000.0, 2000.0), "place"))
     monkeypatch.chdir(tmp_path)
     (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
@@ -132,3 +133,27 @@ def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):
     # four standard errors of the covariance of 4000 draws
     error = 4 * np.sqrt((expected**2 + np.outer(deviation, deviation) ** 2) / 4000)
     np.testing.assert_array_less(np.abs(np.cov(drawn) - expected), error)
+
+
+def test_the_steps_of_the_tutorial_can_be_planned(make_workflow, tmp_path):
+    """One scene, changed from step to step as the page says."""
+    text = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
+    own, scans, switch, hardness = map(
+        yaml.safe_load, re.findall(r"^```yaml\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+    )
+    (tmp_path / "scans").mkdir()
+    heights = asp.random_surface(INPUTS, asp.ContactSettings(pixels=128, length_nm=2000.0), 1)
+    write_gwy(tmp_path / "scans/place.gwy", asp.Scan(heights, (2000.0, 2000.0), "place"))
+    workflow = make_workflow(tmp_path)
+
+    def planned(scene, *targets):
+        (tmp_path / "my_switch.yaml").write_text(yaml.safe_dump(scene), encoding="utf-8")
+        return set(workflow.planned("my_switch.yaml", *targets))
+
+    assert planned(own) >= {"inputs", "press_pads", "device", "compute_direct_runs", "report"}
+    measured = (
+        own | scans | switch | {"inputs": {name: own["inputs"][name] for name in ("e_star", "h_macro", "h_prime")}}
+    )
+    assert planned(measured) >= {"analyse_scans", "press_pads", "device"}
+    computed = own | hardness | {"inputs": {name: row for name, row in own["inputs"].items() if name != "h_prime"}}
+    assert planned(computed, "hardness") >= {"make_glass", "run_closing", "hardness"}

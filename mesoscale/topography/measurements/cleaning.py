@@ -39,7 +39,9 @@ class Scan:
     steps: tuple[str, ...] = field(default=())
 
     def __repr__(self) -> str:
-        return "Scan {}: {} x {} points on {:.4g} x {:.4g} nm".format(self.name, *self.heights_nm.shape, *self.lengths_nm)
+        return "Scan {}: {} x {} points on {:.4g} x {:.4g} nm".format(
+            self.name, *self.heights_nm.shape, *self.lengths_nm
+        )
 
     def __post_init__(self):
         heights = checked_array(f"{self.name}: heights_nm", self.heights_nm, "nm", missing=True)
