@@ -54,7 +54,7 @@ def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry):
     send(terminal, "job_info", jobid=7, rule_name="fit_law", rule_msg="fit the law")
     send(terminal, "job_finished", job_id=7)
     said = capsys.readouterr().err
-    assert "3 jobs, about 2 s on 2 cores, by typical times where none is known" in said
+    assert "3 jobs, about 2 s on 2 cores, a guess until jobs of this scene have run here" in said
     assert ("fit_law         2        2 s" in said) == dry
     assert ("1 of 3  fit the law (1 s), 1 s left" in said) == (not dry)
     assert costs.learned == ([] if dry else ["fit_law"])

@@ -30,7 +30,7 @@ rule press_pads:
         pad=settings("pad"),
         bounds=lambda wildcards: POINT_CHUNKS[wildcards.chunk],
     message:
-        f"press pads and solve the switch on them, chunk {{wildcards.chunk}} of {len(POINT_CHUNKS) - 1} and central"
+        f"press pads, chunk {{wildcards.chunk}} of {len(POINT_CHUNKS) - 1} and central"
     script:
         "../scripts/press_pads.py"
 

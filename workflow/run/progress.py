@@ -7,7 +7,7 @@ import sys
 import textwrap
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from shutil import disk_usage
 from typing import Any
@@ -93,7 +93,7 @@ class Terminal(logging.Handler):
         if self._workflow.dryrun and self.refusal:
             _say(wrapped(f"a run is refused: {self.refusal}"))
         wall = f"about {duration(wall_s)}" if self._left else "no time"
-        guessed = "" if self._costs.known(seconds) else ", by typical times where none is known of this scene"
+        guessed = "" if self._costs.known(seconds) else ", a guess until jobs of this scene have run here"
         _say(wrapped(f"{self._jobs} jobs, {wall} on {self._cores} cores{guessed}"))
 
     @property
@@ -131,12 +131,13 @@ class Terminal(logging.Handler):
         end = f" ({duration(took)}){rest}"
         _say(start + textwrap.shorten(message, COLUMNS - len(start) - len(end), placeholder=" …") + end)
         if job.rule.name == "press_pads":
-            pressed = [other for other in self._workflow.dag.jobs if other.rule.name == "press_pads"]
-            _say(release_so_far([file for other in pressed if other.jobid not in self._left for file in other.output]))
+            pressed = [of for of in self._workflow.dag.jobs if of.rule.name == "press_pads"]
+            for line in release_so_far([file for of in pressed if of.jobid not in self._left for file in of.output]):
+                _say(line)
 
 
-def release_so_far(files: Iterable[str]) -> str:
-    """What the switches of these files of pad/points/ say together, by the quantiles of the answer."""
+def release_so_far(files: Iterable[str]) -> Iterator[str]:
+    """A line on the switches of these files of pad/points/ together, by the quantiles of the answer."""
     import h5py  # not while a run is planned
     import numpy as np
 
@@ -145,11 +146,10 @@ def release_so_far(files: Iterable[str]) -> str:
         with h5py.File(path) as file:  # of the central point the job says more
             release_V += [file[name].attrs.get("release_V", np.nan) for name in file if name != "point_0000"]
     solved = [value for value in release_V if np.isfinite(value)]
-    if not solved:
-        return "  no switch solved so far, but the central one"
-    low, middle, high = (f"{value:.3g} V" if value else "sticks" for value in np.quantile(solved, (0.05, 0.5, 0.95)))
-    stuck = np.mean(np.equal(solved, 0.0))
-    return f"  release of {len(solved)} switches so far: {middle} (5 to 95 %: {low} to {high}); {stuck:.0%} stick"
+    if solved:
+        low, middle, high = (f"{of:.3g} V" if of else "sticks" for of in np.quantile(solved, (0.05, 0.5, 0.95)))
+        stuck = np.mean(np.equal(solved, 0.0))
+        yield f"  release of {len(solved)} switches so far: {middle} (5 to 95 %: {low} to {high}); {stuck:.0%} stick"
 
 
 def _say_if_silent(about: Mapping[str, Any]) -> None:
