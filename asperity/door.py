@@ -23,8 +23,10 @@ SHOWN_OF_DEVICE = (
     "thickness_um",
     "gap_um",
     "youngs_modulus_GPa",
+    "residual_stress_MPa",
     "dielectric_nm",
     "permittivity",
+    "hold_voltage_V",
 )
 NUMBERS_OF_DEVICE = [
     name for name, field in DeviceSettings.model_fields.items() if field.annotation in (float, float | None)
@@ -158,4 +160,5 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
     yield "device:  # a published beam, where you gave nothing else"
     defaults = {key: getattr(DeviceSettings(), key) for key in SHOWN_OF_DEVICE}
     for name, value in (defaults | dict(device)).items():
-        yield f"  {name}: {value:g}"
+        about = DeviceSettings.model_fields[name].description
+        yield f"  {name}: {'null' if value is None else f'{value:g}'}  # {about}"

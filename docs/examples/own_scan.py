@@ -14,9 +14,11 @@ instruments = (side_view, stylus)  # what is in them and has another tip than th
 container = ROOT / "config/measurements/uncd_diamond.zip"
 film = asp.Film(container, tip_nm=21.5, instruments=instruments, line_alignment="none")
 print("\n".join(film.lines()))
+film.plot()
 
 # %% [markdown]
-# The first lines say what each measurement shows. Read the doubts before you go on: each has its remedy.
+# The first lines say what each measurement shows. Tip, noise and pixels end what it sees; what lies beyond is not used.
+# Read the doubts before you go on: each has its remedy.
 #
 # Now close a cell of the film on ruby. It is 4 µm wide, since shorter ones lack the film's long waves. The paper's
 # material stands in for what you do not give.

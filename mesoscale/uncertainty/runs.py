@@ -81,7 +81,7 @@ class MonteCarlo:
     failed: tuple[str, ...]
 
     def __repr__(self) -> str:
-        return f"MonteCarlo: laws of {len(self.closing.d_c_nm)} samples, {len(self.failed)} left out"
+        return f"MonteCarlo: laws of {np.size(self.closing.d_c_nm)} samples, {len(self.failed)} left out"
 
 
 def monte_carlo(
