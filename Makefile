@@ -10,6 +10,9 @@ UV := $(or $(shell command -v uv 2>/dev/null),.uv/bin/uv)
 RUN := $(UV) run --locked --no-sync
 # trust the system's certificates, so that set-up works behind a TLS-inspecting proxy
 export UV_SYSTEM_CERTS := 1
+ifneq ($(shell test -w "$$HOME" && echo yes),yes)  # no place for the cache
+export UV_CACHE_DIR := $(CURDIR)/.uv/cache
+endif
 
 .PHONY: run plan test bench lint docs floors setup docs-setup
 run: setup
