@@ -10,7 +10,12 @@ UV := $(or $(shell command -v uv 2>/dev/null),.uv/bin/uv)
 RUN := $(UV) run --locked --no-sync
 # trust the system's certificates, so that set-up works behind a TLS-inspecting proxy
 export UV_SYSTEM_CERTS := 1
-ifneq ($(shell test -w "$$HOME" && echo yes),yes)  # no place for the cache
+# as where LC_ALL is not installed; Python would not start in a folder with letters beyond ASCII
+ifeq ($(shell locale charmap 2>/dev/null),ANSI_X3.4-1968)
+export LC_ALL := C.UTF-8
+endif
+# no place for the cache of packages
+ifneq ($(shell test -w "$$HOME" && echo yes),yes)
 export UV_CACHE_DIR := $(CURDIR)/.uv/cache
 endif
 
