@@ -106,6 +106,16 @@ def test_a_home_that_is_read_only_costs_nothing(tmp_path, monkeypatch):
     assert os.environ["MPLCONFIGDIR"] == os.environ["NUMBA_CACHE_DIR"] == str(folder)
 
 
+def test_set_up_needs_no_installed_locale_and_no_home(tmp_path):
+    """Python does not start in a folder with letters beyond ASCII else, and uv has no place for its cache."""
+    given = {**os.environ, "LC_ALL": "xx_XX.UTF-8", "HOME": str(tmp_path / "nowhere")}
+    given.pop("UV_CACHE_DIR", None)
+    command = ["make", "--dry-run", "--print-data-base", "setup"]
+    done = subprocess.run(command, cwd=Path(__file__).parents[2], env=given, capture_output=True, text=True, check=True)
+    assert "\nLC_ALL := C.UTF-8\n" in done.stdout
+    assert "\nUV_CACHE_DIR := " in done.stdout
+
+
 def test_a_cache_that_somebody_else_made_is_not_used(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", "/proc/nowhere")
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
