@@ -80,9 +80,10 @@ class Cycle:
     heights: np.ndarray | None = None
 
     def __repr__(self) -> str:
+        why = ": full contact" if self.flags.get("full_contact") else ""
         return (
             f"Cycle up to {self.closing.repulsive_nN[-1]:.4g} nN: first touches at {self.first_contact_nm:.4g} nm, "
-            f"last at {self.last_contact_nm:.4g} nm{'' if self.converged else '; NOT CONVERGED'}"
+            f"last at {self.last_contact_nm:.4g} nm{'' if self.converged else f'; NOT CONVERGED{why}'}"
         )
 
     @property

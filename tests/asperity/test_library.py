@@ -158,6 +158,8 @@ def test_what_a_call_returns_is_printed_in_a_line():
     cycle, table = asp.run_cycle(INPUTS, SMALL, 1), asp.input_table()
     assert str(cycle).startswith("Cycle up to 500 nN: first touches at ")
     assert str(cycle.closing).startswith("Branch of ")
+    soft = asp.run_cycle(replace(INPUTS, e_star=0.05), SMALL.model_copy(update={"max_force_nN": 1e6}), 1)
+    assert str(soft).endswith("NOT CONVERGED: full contact")
     assert "rms 8.5 nm" in str(table)
     samples = asp.MonteCarlo({}, *[asp.Law(*np.ones((4, 3)), hamaker=np.ones(3))] * 2, failed=("why",))
     assert str(samples) == "MonteCarlo: laws of 3 samples, 1 left out"
