@@ -17,17 +17,6 @@ from mesoscale.settings.topography import LengthUnit
 from mesoscale.topography.measurements import files_in
 from mesoscale.topography.measurements.loading import load_measurements
 
-SHOWN_OF_DEVICE = (
-    "length_um",
-    "width_um",
-    "thickness_um",
-    "gap_um",
-    "youngs_modulus_GPa",
-    "residual_stress_MPa",
-    "dielectric_nm",
-    "permittivity",
-    "hold_voltage_V",
-)
 NUMBERS_OF_DEVICE = [
     name for name, field in DeviceSettings.model_fields.items() if field.annotation in (float, float | None)
 ]
@@ -158,7 +147,7 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
         grid = f"pixels: {pixels_for(film.description['inputs'].get('q1'), film.description['cell_nm'])}"
     yield f"contact: {{mechanics: coupled, attraction: offset, {grid}}}  # asperities share one elastic half-space"
     yield "device:  # a published beam, where you gave nothing else"
-    defaults = {key: getattr(DeviceSettings(), key) for key in SHOWN_OF_DEVICE}
+    defaults = {key: getattr(DeviceSettings(), key) for key in NUMBERS_OF_DEVICE}
     for name, value in (defaults | dict(device)).items():
         about = DeviceSettings.model_fields[name].description
         yield f"  {name}: {'null' if value is None else f'{value:g}'}  # {about}"
