@@ -165,7 +165,7 @@ def _film(given: argparse.Namespace) -> int:
     if not (os.path.isfile(scene) and scene.read_text(encoding="utf-8") == text) and (status := _write(scene, text)):
         return status
     defaults = [f"--{name}" for name in ("tip-nm", "material", "device") if not getattr(given, name.replace("-", "_"))]
-    assumed = f"; not given, so that it states the defaults: {', '.join(defaults)}" if defaults else ""
+    assumed = f"; put your own in place of its defaults: {', '.join(defaults)}" if defaults else ""
     print(wrapped(f"{scene} is the scene of this film{assumed}"))
     if not film.description["gate"]["passed"]:
         return _refuse(f"{scene}: not run because of the doubts above; mend it, then: asperity run {scene}")
