@@ -20,7 +20,6 @@ import numpy as np
 from numba import njit
 
 from mesoscale.contact.attraction import inverse_cube
-from mesoscale.contact.coupled import grid
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.pressed import Row, State
@@ -71,7 +70,6 @@ class AdhesiveContact(CoupledContact):
     def __init__(
         self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
     ):
-        self.space = grid.Grid(surface.shape[0], settings.length_nm, float(inputs.e_star), settings.bodies)
         super().__init__(surface, inputs, settings, numerics)
         self._check_range()
         self.unknown_work = numerics.unknown_work
@@ -249,10 +247,10 @@ class AdhesiveContact(CoupledContact):
         steps: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=self.MIXED)
         lowest, settled, change = math.inf, False, math.inf
         for _ in range(self.STEPS):
-            self.now = self.now._replace(pull=wanted, shift=self.space.displacement(-wanted))
+            self.now = self.now._replace(pull=wanted, shift=self.whole.displacement(-wanted))
             settled = super()._solve()
             pressure = self._spread()
-            moved = self.now.shift + (self.space.displacement(pressure) if self.grid is None else self.grid.field)
+            moved = self.now.shift + (self.whole.displacement(pressure) if self.grid is None else self.grid.field)
             reached = np.zeros_like(moved)
             energy = change = 0.0
             if law is not None:

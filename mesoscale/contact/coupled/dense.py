@@ -116,41 +116,69 @@ def bind(pressure, limit, state, change, n):
 
 
 @njit(cache=True)
-def close_gaps(block, gap, goal, share):
-    """Pressures that close the gaps of some sites, by conjugate gradients.
+def stiffen(sites, place, pixels, stencil, places, number, gap):
+    """Pressures from the gaps of some sites and their neighbours, shape that of `gap`.
+
+    Parameters
+    ----------
+    sites, place : the known sites, and the position of each site of the cell in them, or -1
+    stencil : `half_space.stiffness_between_neighbours`
+    places : of these sites among the known ones
+    number : of each known site in `gap`, or -1
+    """
+    pressure = np.zeros_like(gap)
+    for k in places:
+        row, col = sites[k] // pixels, sites[k] % pixels
+        total = 0.0
+        for i in range(3):
+            start = (row + i - 1) % pixels * pixels
+            for j in range(3):
+                other = place[start + (col + j - 1) % pixels]
+                if other >= 0 and number[other] >= 0:
+                    total += stencil[i, j] * gap[number[other]]
+        pressure[number[k]] = total
+    return pressure
+
+
+@njit(cache=True)
+def close_gaps(block, sites, place, pixels, stencil, free, gap, goal, share):
+    """Pressures that close the gaps of the free sites, by conjugate gradients; see `stiffen`.
 
     Ends where the largest gap is below `goal`, or below a share of the first one: the next step goes on from
     there, and the block need not be exact.
     """
-    size = gap.size
-    x = np.zeros(size)
+    number = np.full(sites.size, -1)
+    number[free] = np.arange(free.size)
+    x = np.zeros(gap.size)
     r = -gap
     goal = max(goal, share * np.abs(gap).max())
-    d = r.copy()
-    q = np.empty(size)
-    rr = r @ r
+    d = np.zeros(gap.size)
+    q = np.empty(gap.size)
+    last = 1.0
     for _ in range(FACE_STEPS):
         if np.abs(r).max() <= goal:
             break
+        z = stiffen(sites, place, pixels, stencil, free, number, r)
+        rz = r @ z
+        d = z + (rz / last) * d
+        last = rz
         _multiply_block(block, d.astype(np.float32), q)
         dq = d @ q
         if not dq > 0.0:
             break
-        x += (rr / dq) * d
-        r -= (rr / dq) * q
-        new = r @ r
-        d = r + (new / rr) * d
-        rr = new
+        x += (rz / dq) * d
+        r -= (rz / dq) * q
     return x
 
 
 @njit(cache=True)
-def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
+def solve(matrix, sites, place, pixels, stencil, gap, limit, stiffness, tolerance, pressure, displacement):
     """Find the pressures of n sites; `pressure` holds a first guess.
 
     Parameters
     ----------
     matrix : (>= n, >= n), displacement of one site from the pressure on another, nm/GPa
+    sites, place, pixels, stencil : see `stiffen`
     gap : (n,), gap of the undeformed surface, nm
     limit : (n,), largest pressures, GPa, may be infinite
     stiffness : 1 / matrix[0, 0], what makes a pressure of a gap in the residual
@@ -161,6 +189,7 @@ def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
     -------
     Newton steps, and whether they settled.
     """
+    n = sites.size
     multiply(matrix, n, pressure, displacement)
     state = np.full(n, 1, np.int8)
     change = np.zeros(n)
@@ -184,7 +213,9 @@ def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
                 for j in range(count):
                     block[k, j] = matrix[free[k], free[j]]
         open_gap = gap[free] + displacement[free]
-        closed_gaps = close_gaps(block, open_gap, 0.1 * tolerance * largest / stiffness, FACE_SHARE)
+        closed_gaps = close_gaps(
+            block, sites, place, pixels, stencil, free, open_gap, 0.1 * tolerance * largest / stiffness, FACE_SHARE
+        )
         change[:] = 0.0
         change[free] = closed_gaps
         pressure[free] += closed_gaps

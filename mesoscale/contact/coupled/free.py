@@ -7,6 +7,7 @@ The displacement vanishes far away: the separation is that of the flat from the 
 """
 
 import math
+from functools import cached_property
 
 import numpy as np
 from scipy import fft
@@ -44,8 +45,10 @@ class FreeContact(CoupledContact):
         pressure, gap = (field[:rows, :columns] for field in super().fields())
         return pressure, gap
 
-    def _whole(self) -> grid.Grid:
-        whole = super()._whole()  # its stiffness of periodic cells still preconditions
+    @cached_property
+    def whole(self) -> grid.Grid:
+        """The half-space of all sites."""
+        whole = super().whole  # its stiffness of periodic cells still preconditions
         whole.compliance = self.scale * np.real(np.asarray(fft.rfft2(_everywhere(self.table, self.n))))
         whole.single_compliance = whole.compliance.astype(np.float32)
         return whole
