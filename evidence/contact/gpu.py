@@ -6,17 +6,14 @@ pressure (Polonsky and Keer, doi:10.1016/S0043-1648(99)00113-1), preconditioned 
 The engine's own solve is not these lines. Its loops are compiled, and they skip sites that cannot touch.
 """
 
+import importlib
+import importlib.util
 import os
 import time
+from functools import partial
 
 import numpy as np
 from scipy import fft
-
-try:
-    import cupy  # pyright: ignore[reportMissingImports]  (where a GPU is at hand)
-    from cupyx.scipy import fft as cupy_fft  # pyright: ignore[reportMissingImports]
-except ImportError:
-    cupy = cupy_fft = None
 
 PIXELS, LARGEST_CPU = (1024, 2048, 4096, 8192), 4096
 RMS_NM, Q0, DEPTH = 5.0, 0.025, 1.3  # sites of 1 nm; below the mean plane, in RMS heights, is the flat
@@ -31,12 +28,19 @@ def surface(pixels):
     return heights * (RMS_NM / heights.std()), np.where(q > 0, q, q[0, 1]) / 2
 
 
+def pair(transforms, options, values, factor):
+    """Values filtered wave by wave: a transform there and back."""
+    spectrum = transforms.rfft2(values, **options) * factor
+    return transforms.irfft2(spectrum, s=values.shape, **options)
+
+
 def press(xp, pair, gap, stiffness):
     """Pressures (E* = 1) that close a gap where they press, and the steps taken."""
     compliance = 1 / stiffness
     compliance[0, 0] = 0
-    pressure, direction, last = xp.maximum(-gap, 0) * Q0 / 2, xp.zeros_like(gap), 1.0
-    for step in range(STEPS):
+    pressure, direction, last, step = xp.maximum(-gap, 0) * Q0 / 2, xp.zeros_like(gap), 1.0, 0
+    while step < STEPS:
+        step += 1
         open_gap = gap + pair(pressure, compliance)
         wanted = xp.maximum(pressure - open_gap, 0)
         if float(xp.max(xp.abs(pressure - wanted))) <= TOLERANCE * float(xp.max(pressure)):
@@ -46,21 +50,20 @@ def press(xp, pair, gap, stiffness):
         z = xp.where(touching, pair(residual, stiffness), 0)
         rz = float(xp.sum(residual * z))
         direction = z + (rz / last) * xp.where(touching, direction, 0)
-        moved = pair(direction, compliance)
-        length = float(xp.sum(residual * direction)) / float(xp.sum(direction * moved))
+        length = float(xp.sum(residual * direction)) / float(xp.sum(direction * pair(direction, compliance)))
         pressure = xp.maximum(pressure + length * direction, 0)
         new = (pressure == 0) & (open_gap < 0)
         pressure = xp.where(new, -Q0 / 2 * open_gap, pressure)
-        last = rz if not bool(xp.any(new)) else np.inf  # new sites: the next direction is a fresh one
+        last = np.inf if bool(xp.any(new)) else rz  # new sites: the next direction is a fresh one
     return pressure, step
 
 
-def timed(work, wait, repeats):
+def timed(wait, repeats, work, *of):
     """What some work gives, and its least seconds."""
-    seconds = []
+    found, seconds = None, []
     for _ in range(repeats):
         start = time.perf_counter()
-        found = work()
+        found = work(*of)
         wait()
         seconds.append(time.perf_counter() - start)
     return found, min(seconds)
@@ -69,30 +72,24 @@ def timed(work, wait, repeats):
 def main():
     """Print a row for each grid and device."""
     print("pixels device pair_ms single_pair_ms load_s steps contact difference")
-    devices = [("cpu", np, fft, {"workers": os.cpu_count()}, lambda: None)]
-    if cupy:
-        devices.append(("gpu", cupy, cupy_fft, {}, lambda: cupy.cuda.Device().synchronize()))
+    devices = [("cpu", np, partial(pair, fft, {"workers": os.cpu_count()}), lambda: None, np.asarray)]
+    if importlib.util.find_spec("cupy"):
+        cupy, transforms = importlib.import_module("cupy"), importlib.import_module("cupyx.scipy.fft")
+        wait = cupy.cuda.Device().synchronize
+        devices.append(("gpu", cupy, partial(pair, transforms, {}), wait, cupy.asnumpy))
     for pixels in PIXELS:
         heights, waves = surface(pixels)
         known = None
-        for name, xp, transforms, options, wait in devices:
-
-            def pair(values, factor, transforms=transforms, options=options):
-                spectrum = transforms.rfft2(values, **options) * factor
-                return transforms.irfft2(spectrum, s=values.shape, **options)
-
+        for name, xp, filtered, wait, back in devices:
             gap, stiffness = xp.asarray(heights) + DEPTH * RMS_NM, xp.asarray(waves)
-            _, double_s = timed(lambda: pair(gap, stiffness), wait, 3)
-            low, factor = gap.astype(xp.float32), stiffness.astype(xp.float32)
-            _, single_s = timed(lambda: pair(low, factor), wait, 3)
+            _, double_s = timed(wait, 3, filtered, gap, stiffness)
+            _, single_s = timed(wait, 3, filtered, gap.astype(xp.float32), stiffness.astype(xp.float32))
             row = [pixels, name, f"{1e3 * double_s:.3g}", f"{1e3 * single_s:.3g}"]
             if name == "gpu" or pixels <= LARGEST_CPU:
-                (pressure, steps), load_s = timed(
-                    lambda: press(xp, pair, gap, stiffness), wait, 2 if name == "gpu" else 1
-                )
-                found = cupy.asnumpy(pressure) if name == "gpu" else pressure
-                apart = np.abs(found - known).max() / known.max() if known is not None else np.nan
-                known = found if known is None else known
+                (pressure, steps), load_s = timed(wait, 1 + (name == "gpu"), press, xp, filtered, gap, stiffness)
+                found = back(pressure)
+                apart = np.nan if known is None else np.abs(found - known).max() / known.max()
+                known = found
                 row += [f"{load_s:.3g}", steps, f"{(found > 0).mean():.3f}", f"{apart:.1e}"]
             print(*row, flush=True)
 

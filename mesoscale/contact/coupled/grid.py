@@ -131,8 +131,9 @@ def solve(
             if moved or block is None:
                 block = dense.block(table, grid.scale, sites[places], grid.shape[0])
             change[:] = 0.0
+            open_gap = gap[places] + displacement[places]
             change[places] = dense.close_gaps(
-                block, sites, place, grid.shape[0], stencil, places, gap[places] + displacement[places], 0.0, SINGLE_SHARE
+                block, sites, place, grid.shape[0], stencil, places, open_gap, 0.0, SINGLE_SHARE
             )
             pressure += change
             _follow(grid, table, sites, change, displacement)
@@ -148,7 +149,7 @@ def solve(
 
 
 def _preconditioner(grid: Grid, stencil: np.ndarray, sites: np.ndarray, place: np.ndarray, free: np.ndarray) -> Apply:
-    """What makes pressures (GPa) of the gaps of the free sites, (n,) in single precision, roughly those that close them.
+    """What makes pressures (GPa) of the gaps of the free sites, roughly those that close them; (n,), single precision.
 
     Where few sites are free, by the stiffness between neighbours: it takes a tenth more steps, and no transform.
     """
