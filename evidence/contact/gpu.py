@@ -11,6 +11,7 @@ import importlib.util
 import os
 import time
 from functools import partial
+from typing import Any
 
 import numpy as np
 from scipy import fft
@@ -24,7 +25,7 @@ def surface(pixels):
     """Heights (nm) and stiffness of the waves, pi abs(q) L / L, in E* = 1, shape (pixels, pixels // 2 + 1)."""
     q = 2 * np.pi * np.hypot(np.fft.fftfreq(pixels)[:, None], np.fft.rfftfreq(pixels)[None])
     noise = fft.rfft2(np.random.default_rng(1).standard_normal((pixels, pixels)), workers=-1)
-    heights = fft.irfft2(noise * np.where(q < 0.3, (q**2 + Q0**2) ** -0.9, 0.0), workers=-1)
+    heights = np.asarray(fft.irfft2(noise * np.where(q < 0.3, (q**2 + Q0**2) ** -0.9, 0.0), workers=-1))
     return heights * (RMS_NM / heights.std()), np.where(q > 0, q, q[0, 1]) / 2
 
 
@@ -60,7 +61,8 @@ def press(xp, pair, gap, stiffness):
 
 def timed(wait, repeats, work, *of):
     """What some work gives, and its least seconds."""
-    found, seconds = None, []
+    found: Any = None
+    seconds = []
     for _ in range(repeats):
         start = time.perf_counter()
         found = work(*of)
