@@ -124,9 +124,7 @@ def _timed(case: Case) -> dict[str, Any]:
     with every[0], every[1], every[2]:
         start = time.process_time()
         force = _force_nN(case)
-        cycle = run_cycle(
-            case.inputs, case.settings, SEED, force, heights, contact_at="lowest", numerics=case.numerics
-        )
+        cycle = run_cycle(case.inputs, case.settings, SEED, force, heights, contact_at="lowest", numerics=case.numerics)
         seconds = time.process_time() - start - sum(pairs)
     return {
         "share": cycle.closing.contact_area_nm2.max() / cycle.cell_area_nm2,

@@ -112,7 +112,7 @@ def solve(
     Newton steps, and whether they settled. `grid.field` has the displacements of all sites.
     """
     state = np.full(gap.size, 1, np.int8)
-    change, block, exact = np.zeros(gap.size), None, False
+    change, block, around, exact = np.zeros(gap.size), None, np.empty((0, 9), np.int32), False
     for step in range(NEWTON_STEPS):
         moved = dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0 or step == 0
         settled = dense.residual(gap, pressure, displacement, limit, stiffness, gap.size) <= tolerance
@@ -130,11 +130,12 @@ def solve(
             places = np.flatnonzero(free)
             if moved or block is None:
                 block = dense.block(table, grid.scale, sites[places], grid.shape[0])
+                number = np.full(gap.size, -1, np.int32)
+                number[places] = np.arange(count)
+                around = dense.neighbours(sites, place, grid.shape[0], places, number)
             change[:] = 0.0
             open_gap = gap[places] + displacement[places]
-            change[places] = dense.close_gaps(
-                block, sites, place, grid.shape[0], stencil, places, open_gap, 0.0, SINGLE_SHARE
-            )
+            change[places] = dense.close_gaps(block, around, stencil, open_gap, 0.0, SINGLE_SHARE)
             pressure += change
             _follow(grid, table, sites, change, displacement)
         elif count:
@@ -155,10 +156,13 @@ def _preconditioner(grid: Grid, stencil: np.ndarray, sites: np.ndarray, place: n
     """
     if np.count_nonzero(free) > WHOLE_SHARE * grid.field.size:
         return lambda gap: grid.gather(sites, grid.pressure(grid.spread(sites, gap)))
-    places, number = np.flatnonzero(free), np.arange(sites.size)
+    numbers = np.arange(sites.size, dtype=np.int32)
+    around = dense.neighbours(sites, place, grid.shape[0], numbers[free], numbers)
+    stencil, pressure = (stencil / grid.scale).astype(np.float32), np.zeros(sites.size, np.float32)
 
     def near(gap: np.ndarray) -> np.ndarray:
-        return dense.stiffen(sites, place, grid.shape[0], stencil / grid.scale, places, number, gap)
+        dense.stiffen(around, stencil, gap, pressure)
+        return pressure
 
     return near
 
