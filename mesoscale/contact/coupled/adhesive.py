@@ -120,7 +120,7 @@ class AdhesiveContact(CoupledContact):
         """Undo the last move, its flow and its stresses."""
         super().back()
         self.now, self.last = self.saved
-        self.displacement = self.now.moved[self.sites]
+        self.displacement = self.now.moved[self.sites].astype(float)
 
     def move_to(self, separation: float, with_flow: bool) -> State:
         """Bring the flat to a separation; it may be undone by `back` until the next move."""
@@ -229,9 +229,7 @@ class AdhesiveContact(CoupledContact):
 
     def _bent(self, stress: np.ndarray) -> np.ndarray:
         """Displacement (nm) by stresses (GPa), (N^2,); none costs no transform, and single precision is enough."""
-        if not stress.any():
-            return np.zeros(stress.size)
-        return self.whole.displacement(stress.astype(np.float32)).astype(float)
+        return self.whole.displacement(stress.astype(np.float32)) if stress.any() else np.zeros(stress.size, np.float32)
 
     def _traction(self) -> np.ndarray:
         return self.pressure - self.now.pull[self.sites]
@@ -253,11 +251,11 @@ class AdhesiveContact(CoupledContact):
         steps: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=self.MIXED)
         lowest, settled, change = math.inf, False, math.inf
         for _ in range(self.STEPS):
-            self.now = self.now._replace(pull=wanted, shift=self._bent(-wanted))
+            self.now = self.now._replace(pull=wanted, shift=-self._bent(wanted))
             settled = super()._solve()
             pressure = self._spread()
             moved = self.now.shift + (self._bent(pressure) if self.grid is None else self.grid.field)
-            reached = np.zeros_like(moved)
+            reached = np.zeros(moved.size)
             energy = change = 0.0
             if law is not None:
                 energy, change = attract(
@@ -298,7 +296,7 @@ class AdhesiveContact(CoupledContact):
             if len(steps) > 1:
                 wanted = reached.copy()
                 wanted[mixed] = np.clip(mix(steps), 0.0, strongest)
-        self.displacement = self.now.moved[self.sites]
+        self.displacement = self.now.moved[self.sites].astype(float)
         return settled and change <= self.CHANGE * strongest
 
 

@@ -48,7 +48,7 @@ class FreeContact(CoupledContact):
     @cached_property
     def whole(self) -> grid.Grid:
         """The half-space of all sites."""
-        whole = super().whole  # its stiffness of periodic cells still preconditions
+        whole = super().whole
         whole.compliance = self.scale * np.real(np.asarray(fft.rfft2(_everywhere(self.table, self.n))))
         whole.single_compliance = whole.compliance.astype(np.float32)
         return whole

@@ -1,9 +1,9 @@
 """Pressures between bounds where many sites can touch: active sets, with the half-space applied by FFT.
 
 The problem is that of `dense`. Here the linear system of each step is solved by conjugate gradients that are
-preconditioned with the stiffness of the free half-space, without layers E* abs(q) / 2 (Vollebregt,
-doi:10.1007/s10957-013-0433-z), or with their matrix where few sites are free. Steps are in single precision, which adds
-to the displacements; double precision has the last word.
+preconditioned with the stiffness of the half-space (Vollebregt, doi:10.1007/s10957-013-0433-z) between neighbours, or
+with their matrix where few sites are free. Steps are in single precision, which adds to the displacements; double
+precision has the last word.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,6 @@ FACE_STEPS = 500
 GRADIENT_STEPS = 500
 SINGLE_SHARE = 1e-6  # single precision gets a linear system at least this far
 FACE_SHARE = 0.3  # each linear system is solved to this share of its first gap: the sets change before more pays
-WHOLE_SHARE = 0.25  # of the grid's sites: where more are free, the whole half-space preconditions
 DIRECT = 256  # free sites up to which a linear system has a matrix
 TABLE_SHARE = 0.5  # of the grid's sites: so many pairs of sites cost less by the table than a transform
 
@@ -38,8 +37,6 @@ class Grid:
     def __init__(self, pixels: int, length: float, e_star: float, bodies: tuple[Body, ...] = ()):
         self.shape, self.scale = (pixels, pixels), length / e_star
         number = half_space.wave_numbers(pixels) / half_space.softness(pixels, length, bodies)
-        number[0, 0] = 1.0  # a preconditioner must not swallow the mean
-        self.stiffness = (number * (np.pi * e_star / length)).astype(np.float32)
         number[0, 0] = np.inf
         self.compliance = (length / (np.pi * e_star)) / number
         self.single_compliance = self.compliance.astype(np.float32)
@@ -47,16 +44,8 @@ class Grid:
 
     def displacement(self, pressure: np.ndarray) -> np.ndarray:
         """Displacement (nm) by a pressure (GPa), mean zero, in the precision of the pressure."""
-        single = pressure.dtype == np.float32
-        return self._filtered(pressure, self.single_compliance if single else self.compliance)
-
-    def pressure(self, displacement: np.ndarray) -> np.ndarray:
-        """Pressure (GPa) that makes a displacement (nm), but for its mean, which none makes; single precision."""
-        return self._filtered(displacement, self.stiffness)
-
-    def _filtered(self, values: np.ndarray, factor: np.ndarray) -> np.ndarray:
-        spectrum = np.asarray(fft.rfft2(values.reshape(self.shape)))
-        spectrum *= factor
+        spectrum = np.asarray(fft.rfft2(pressure.reshape(self.shape)))
+        spectrum *= self.single_compliance if pressure.dtype == np.float32 else self.compliance
         return np.asarray(fft.irfft2(spectrum, s=self.shape, overwrite_x=True)).reshape(-1)
 
     def spread(self, sites: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -111,7 +100,7 @@ def solve(
     -------
     Newton steps, and whether they settled. `grid.field` has the displacements of all sites.
     """
-    state = np.full(gap.size, 1, np.int8)
+    state, numbers = np.full(gap.size, 1, np.int8), np.arange(gap.size)
     change, block, around, exact = np.zeros(gap.size), None, np.empty((0, 9), np.int32), False
     for step in range(NEWTON_STEPS):
         moved = dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0 or step == 0
@@ -130,8 +119,7 @@ def solve(
             places = np.flatnonzero(free)
             if moved or block is None:
                 block = dense.block(table, grid.scale, sites[places], grid.shape[0])
-                number = np.full(gap.size, -1, np.int32)
-                number[places] = np.arange(count)
+                number = np.where(free, np.cumsum(free) - 1, -1)
                 around = dense.neighbours(sites, place, grid.shape[0], places, number)
             change[:] = 0.0
             open_gap = gap[places] + displacement[places]
@@ -140,31 +128,13 @@ def solve(
             _follow(grid, table, sites, change, displacement)
         elif count:
             goal = 0.1 * tolerance * float(pressure.max()) / stiffness
-            precondition = _preconditioner(grid, stencil, sites, place, free)
+            around = dense.neighbours(sites, place, grid.shape[0], numbers[free], numbers)
             share = FACE_SHARE if moved else 0.0
-            _close_gaps(grid, sites, free, precondition, gap, pressure, displacement, goal, share)
+            _close_gaps(grid, sites, free, around, stencil, gap, pressure, displacement, goal, share)
             if count == grid.field.size:  # a uniform pressure moves nothing: take the least, so that the sets change
                 pressure -= pressure.min()
     displacement[:] = grid.displace(sites, pressure)
     return NEWTON_STEPS, False
-
-
-def _preconditioner(grid: Grid, stencil: np.ndarray, sites: np.ndarray, place: np.ndarray, free: np.ndarray) -> Apply:
-    """What makes pressures (GPa) of the gaps of the free sites, roughly those that close them; (n,), single precision.
-
-    Where few sites are free, by the stiffness between neighbours: it takes a tenth more steps, and no transform.
-    """
-    if np.count_nonzero(free) > WHOLE_SHARE * grid.field.size:
-        return lambda gap: grid.gather(sites, grid.pressure(grid.spread(sites, gap)))
-    numbers = np.arange(sites.size, dtype=np.int32)
-    around = dense.neighbours(sites, place, grid.shape[0], numbers[free], numbers)
-    stencil, pressure = (stencil / grid.scale).astype(np.float32), np.zeros(sites.size, np.float32)
-
-    def near(gap: np.ndarray) -> np.ndarray:
-        dense.stiffen(around, stencil, gap, pressure)
-        return pressure
-
-    return near
 
 
 def _follow(grid: Grid, table: np.ndarray, sites: np.ndarray, change: np.ndarray, displacement: np.ndarray) -> None:
@@ -180,7 +150,8 @@ def _close_gaps(
     grid: Grid,
     sites: np.ndarray,
     free: np.ndarray,
-    precondition: Apply,
+    around: np.ndarray,
+    stencil: np.ndarray,
     gap: np.ndarray,
     pressure: np.ndarray,
     displacement: np.ndarray,
@@ -195,10 +166,11 @@ def _close_gaps(
     largest = float(np.abs(first).max())
     goal = max(goal / largest, share, SINGLE_SHARE)
     r = (first / largest).astype(np.float32)
-    x, u, d = np.zeros_like(r), np.zeros_like(r), np.zeros_like(r)
-    last = 1.0
+    x, u, d, z = (np.zeros_like(r) for _ in range(4))
+    stencil, last = (stencil / grid.scale).astype(np.float32), 1.0
     for _ in range(FACE_STEPS):
-        rz = _turn(precondition(r), r, free, last, d)
+        dense.stiffen(around, stencil, r, z)
+        rz = _turn(z, r, free, last, d)
         last = rz
         q = grid.displacement_at(sites, d)
         dq = float(d @ q)
