@@ -258,19 +258,9 @@ class AdhesiveContact(CoupledContact):
             reached = np.zeros(moved.size)
             energy = change = 0.0
             if law is not None:
+                stresses, walls = (pressure, wanted), (law.least, law.offset, law.rate, law.reach_nm)
                 energy, change = attract(
-                    self.heights,
-                    self.separation,
-                    moved,
-                    pressure,
-                    wanted,
-                    self.hamaker,
-                    law.least,
-                    law.offset,
-                    law.rate,
-                    law.reach_nm,
-                    self.liquid_law,
-                    reached,
+                    self.heights + self.separation, moved, *stresses, self.hamaker, walls, self.liquid_law, reached
                 )
             yielding = self.pressure >= self._bounds()
             overlap = -(self.heights + self.separation + moved)[self.sites[yielding]]
@@ -309,7 +299,7 @@ def mix(steps: deque[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
 
 
 @njit(cache=True)
-def attract(heights, separation, moved, pressure, pull, hamaker, least, offset, rate, reach, liquid, reached):
+def attract(undeformed, moved, pressure, pull, hamaker, walls, liquid, reached):
     """Attraction (GPa) of the sites of a deformed surface, into `reached`.
 
     The energy of flats s apart is -A_H / (12 pi s^2 (1 + c s)); within the least distance the attraction is constant.
@@ -319,17 +309,17 @@ def attract(heights, separation, moved, pressure, pull, hamaker, least, offset, 
     -------
     Elastic and adhesive energy, nN/nm, and the largest change of the attraction from `pull`, GPa.
     """
-    strength = hamaker / (6.0 * np.pi)
+    strength, (least, offset, rate, reach) = hamaker / (6.0 * np.pi), walls
     (share, laplace), outer = liquid, max(reach, least) + offset
     edge = 0.5 * strength / (outer * outer * (1.0 + rate * outer))
     edge += strength * inverse_cube(outer, rate) * max(least - reach, 0.0)
     energy = change = 0.0
     for k in range(moved.size):
-        gap = heights[k] + separation + moved[k]
-        walls = max(gap, least) + offset
-        reached[k] = strength * inverse_cube(walls, rate)
+        gap = undeformed[k] + moved[k]
+        apart = max(gap, least) + offset
+        reached[k] = strength * inverse_cube(apart, rate)
         energy += 0.5 * (pressure[k] - pull[k]) * moved[k]
-        parting = 0.5 * strength / (walls * walls * (1.0 + rate * walls)) + reached[k] * max(least - gap, 0.0)
+        parting = 0.5 * strength / (apart * apart * (1.0 + rate * apart)) + reached[k] * max(least - gap, 0.0)
         if gap < reach:
             reached[k] = share * reached[k] + laplace
             parting = share * parting + (1.0 - share) * edge + laplace * (reach - gap)

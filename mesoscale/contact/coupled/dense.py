@@ -179,17 +179,16 @@ def close_gaps(block, around, stencil, gap, goal, share):
 
 
 @njit(cache=True)
-def solve(matrix, sites, place, pixels, stencil, gap, limit, stiffness, tolerance, pressure, displacement):
+def solve(matrix, cell, gap, limit, tolerance, pressure, displacement):
     """Find the pressures of n sites; `pressure` holds a first guess.
 
     Parameters
     ----------
     matrix : (>= n, >= n), displacement of one site from the pressure on another, nm/GPa
-    sites, place, pixels : see `neighbours`
-    stencil : see `stiffen`
+    cell : numbers of the n sites, position of each site of the cell among them or -1 (N^2,), sites a side (N), and
+        `half_space.stiffness_between_neighbours`
     gap : (n,), gap of the undeformed surface, nm
     limit : (n,), largest pressures, GPa, may be infinite
-    stiffness : 1 / matrix[0, 0], what makes a pressure of a gap in the residual
     tolerance : of the residual over the largest pressure
     pressure, displacement : (>= n,), GPa and nm; the answer
 
@@ -197,7 +196,9 @@ def solve(matrix, sites, place, pixels, stencil, gap, limit, stiffness, toleranc
     -------
     Newton steps, and whether they settled.
     """
+    sites, place, pixels, stencil = cell
     n = sites.size
+    stiffness = 1.0 / matrix[0, 0] if n > 0 else 0.0
     multiply(matrix, n, pressure, displacement)
     state = np.full(n, 1, np.int8)
     change = np.zeros(n)

@@ -257,33 +257,12 @@ class CoupledContact(Contact):
             self._know(self._pressed)
             gap, limit = self._open_gap(), self._bounds()
             if self.grid is None:
-                _, settled = dense.solve(
-                    self.matrix,
-                    self.sites,
-                    self.place,
-                    self.n,
-                    self.stencil,
-                    gap,
-                    limit,
-                    self.stiffness,
-                    self.TOLERANCE,
-                    self.pressure,
-                    self.displacement,
-                )
+                cell = (self.sites, self.place, self.n, self.stencil)
+                solution = (self.TOLERANCE, self.pressure, self.displacement)
+                _, settled = dense.solve(self.matrix, cell, gap, limit, *solution)
             else:
-                _, settled = grid.solve(
-                    self.grid,
-                    self.table,
-                    self.stencil,
-                    self.sites,
-                    self.place,
-                    gap,
-                    limit,
-                    self.stiffness,
-                    self.GRID_TOLERANCE,
-                    self.pressure,
-                    self.displacement,
-                )
+                solution = (self.GRID_TOLERANCE, self.pressure, self.displacement)
+                _, settled = grid.solve(self.grid, self.sites, self.place, gap, limit, *solution)
             if not settled:
                 settled = self._project(gap, limit)
             if self._knows_enough(self._pressed):

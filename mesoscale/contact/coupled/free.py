@@ -49,6 +49,7 @@ class FreeContact(CoupledContact):
     def whole(self) -> grid.Grid:
         """The half-space of all sites."""
         whole = super().whole
+        whole.table = self.table
         whole.compliance = self.scale * np.real(np.asarray(fft.rfft2(_everywhere(self.table, self.n))))
         whole.single_compliance = whole.compliance.astype(np.float32)
         return whole

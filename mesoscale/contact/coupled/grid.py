@@ -32,6 +32,7 @@ class Grid:
     Attributes
     ----------
     field : displacement (nm) of all sites by the pressures that `displace` had last.
+    table : influence of one site on another (`half_space.influence`).
     """
 
     def __init__(self, pixels: int, length: float, e_star: float, bodies: tuple[Body, ...] = ()):
@@ -41,6 +42,7 @@ class Grid:
         self.compliance = (length / (np.pi * e_star)) / number
         self.single_compliance = self.compliance.astype(np.float32)
         self.field = np.zeros(pixels**2)
+        self.table = half_space.influence(pixels, length, bodies)
 
     def displacement(self, pressure: np.ndarray) -> np.ndarray:
         """Displacement (nm) by a pressure (GPa), mean zero, in the precision of the pressure."""
@@ -72,34 +74,21 @@ class Grid:
 
 def solve(
     grid: Grid,
-    table: np.ndarray,
-    stencil: np.ndarray,
     sites: np.ndarray,
     place: np.ndarray,
     gap: np.ndarray,
     limit: np.ndarray,
-    stiffness: float,
     tolerance: float,
     pressure: np.ndarray,
     displacement: np.ndarray,
 ) -> tuple[int, bool]:
-    """Find the pressures of n sites of a grid.
-
-    Parameters
-    ----------
-    table : influence of one site on another (`half_space.influence`)
-    stencil : `half_space.stiffness_between_neighbours`
-    sites : (n,), numbers of the sites that can touch, rising
-    place : (N^2,), position of each site of the grid in `sites`, or -1
-    gap, limit : (n,), gap of the undeformed surface (nm), largest pressures (GPa)
-    stiffness : what makes a pressure of a gap in the residual, GPa/nm
-    tolerance : of the residual over the largest pressure
-    pressure, displacement : (n,), GPa and nm; a first guess, and the answer
+    """Find the pressures of n sites of a grid; the arguments are those of `dense.solve`, sites in rising order.
 
     Returns
     -------
     Newton steps, and whether they settled. `grid.field` has the displacements of all sites.
     """
+    stiffness, stencil = 1.0 / (grid.scale * grid.table[0, 0]), half_space.stiffness_between_neighbours(grid.table)
     state, numbers = np.full(gap.size, 1, np.int8), np.arange(gap.size)
     change, block, around, exact = np.zeros(gap.size), None, np.empty((0, 9), np.int32), False
     for step in range(NEWTON_STEPS):
@@ -114,18 +103,18 @@ def solve(
         free, exact = state == 1, False
         count = int(np.count_nonzero(free))
         if bound:
-            _follow(grid, table, sites, change, displacement)
+            _follow(grid, sites, change, displacement)
         if 0 < count <= min(DIRECT, gap.size - 1):
             places = np.flatnonzero(free)
             if moved or block is None:
-                block = dense.block(table, grid.scale, sites[places], grid.shape[0])
+                block = dense.block(grid.table, grid.scale, sites[places], grid.shape[0])
                 number = np.where(free, np.cumsum(free) - 1, -1)
                 around = dense.neighbours(sites, place, grid.shape[0], places, number)
             change[:] = 0.0
             open_gap = gap[places] + displacement[places]
             change[places] = dense.close_gaps(block, around, stencil, open_gap, 0.0, SINGLE_SHARE)
             pressure += change
-            _follow(grid, table, sites, change, displacement)
+            _follow(grid, sites, change, displacement)
         elif count:
             goal = 0.1 * tolerance * float(pressure.max()) / stiffness
             around = dense.neighbours(sites, place, grid.shape[0], numbers[free], numbers)
@@ -137,10 +126,10 @@ def solve(
     return NEWTON_STEPS, False
 
 
-def _follow(grid: Grid, table: np.ndarray, sites: np.ndarray, change: np.ndarray, displacement: np.ndarray) -> None:
+def _follow(grid: Grid, sites: np.ndarray, change: np.ndarray, displacement: np.ndarray) -> None:
     """Add what a change of the pressures (GPa) displaces: of few sites by the table, of many in single precision."""
     if np.count_nonzero(change) * sites.size <= TABLE_SHARE * grid.field.size:
-        clusters.displace(table, grid.scale, grid.shape[0], sites, change, sites, displacement)
+        clusters.displace(grid.table, grid.scale, grid.shape[0], sites, change, sites, displacement)
         return
     largest = float(np.abs(change).max())
     displacement += largest * grid.displacement_at(sites, (change / largest).astype(np.float32))
