@@ -23,7 +23,8 @@ FACE_SHARE = 0.3  # each linear system is solved to this share of its first gap:
 DIRECT = 256  # free sites up to which a linear system has a matrix
 TABLE_SHARE = 0.5  # of the grid's sites: so many pairs of sites cost less by the table than a transform
 
-Apply = Callable[[np.ndarray], np.ndarray]
+Array = np.ndarray
+Apply = Callable[[Array], Array]
 
 
 class Grid:
@@ -44,13 +45,13 @@ class Grid:
         self.field = np.zeros(pixels**2)
         self.table = half_space.influence(pixels, length, bodies)
 
-    def displacement(self, pressure: np.ndarray) -> np.ndarray:
+    def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) by a pressure (GPa), mean zero, in the precision of the pressure."""
         spectrum = np.asarray(fft.rfft2(pressure.reshape(self.shape)))
         spectrum *= self.single_compliance if pressure.dtype == np.float32 else self.compliance
         return np.asarray(fft.irfft2(spectrum, s=self.shape, overwrite_x=True)).reshape(-1)
 
-    def spread(self, sites: np.ndarray, values: np.ndarray) -> np.ndarray:
+    def spread(self, sites: Array, values: Array) -> Array:
         """Values of some sites, in the order of the cell, on all; 0 on the others."""
         if sites.size == self.field.size:
             return values
@@ -58,15 +59,15 @@ class Grid:
         everywhere[sites] = values
         return everywhere
 
-    def gather(self, sites: np.ndarray, everywhere: np.ndarray) -> np.ndarray:
+    def gather(self, sites: Array, everywhere: Array) -> Array:
         """Values on all sites at some of them."""
         return everywhere if sites.size == self.field.size else everywhere[sites]
 
-    def displacement_at(self, sites: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    def displacement_at(self, sites: Array, pressure: Array) -> Array:
         """Displacement (nm) of some sites by their pressures (GPa), in the precision of the pressures."""
         return self.gather(sites, self.displacement(self.spread(sites, pressure)))
 
-    def displace(self, sites: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    def displace(self, sites: Array, pressure: Array) -> Array:
         """The same; that of all sites is kept in `field`, which nothing changes in place."""
         self.field = self.displacement(self.spread(sites, pressure))
         return self.field[sites]
@@ -74,13 +75,13 @@ class Grid:
 
 def solve(
     grid: Grid,
-    sites: np.ndarray,
-    place: np.ndarray,
-    gap: np.ndarray,
-    limit: np.ndarray,
+    sites: Array,
+    place: Array,
+    gap: Array,
+    limit: Array,
     tolerance: float,
-    pressure: np.ndarray,
-    displacement: np.ndarray,
+    pressure: Array,
+    displacement: Array,
 ) -> tuple[int, bool]:
     """Find the pressures of n sites of a grid; the arguments are those of `dense.solve`, sites in rising order.
 
@@ -119,14 +120,14 @@ def solve(
             goal = 0.1 * tolerance * float(pressure.max()) / stiffness
             around = dense.neighbours(sites, place, grid.shape[0], numbers[free], numbers)
             share = FACE_SHARE if moved else 0.0
-            _close_gaps(grid, sites, free, around, stencil, gap, pressure, displacement, goal, share)
+            _close_gaps(grid, sites, free, (around, stencil), gap, (pressure, displacement), goal, share)
             if count == grid.field.size:  # a uniform pressure moves nothing: take the least, so that the sets change
                 pressure -= pressure.min()
     displacement[:] = grid.displace(sites, pressure)
     return NEWTON_STEPS, False
 
 
-def _follow(grid: Grid, sites: np.ndarray, change: np.ndarray, displacement: np.ndarray) -> None:
+def _follow(grid: Grid, sites: Array, change: Array, displacement: Array) -> None:
     """Add what a change of the pressures (GPa) displaces: of few sites by the table, of many in single precision."""
     if np.count_nonzero(change) * sites.size <= TABLE_SHARE * grid.field.size:
         clusters.displace(grid.table, grid.scale, grid.shape[0], sites, change, sites, displacement)
@@ -137,13 +138,11 @@ def _follow(grid: Grid, sites: np.ndarray, change: np.ndarray, displacement: np.
 
 def _close_gaps(
     grid: Grid,
-    sites: np.ndarray,
-    free: np.ndarray,
-    around: np.ndarray,
-    stencil: np.ndarray,
-    gap: np.ndarray,
-    pressure: np.ndarray,
-    displacement: np.ndarray,
+    sites: Array,
+    free: Array,
+    near: tuple[Array, Array],
+    gap: Array,
+    solution: tuple[Array, Array],
     goal: float,
     share: float,
 ) -> None:
@@ -151,6 +150,7 @@ def _close_gaps(
 
     Both change in place. Single precision is three times as fast.
     """
+    (around, stencil), (pressure, displacement) = near, solution
     first = np.where(free, -(gap + displacement), 0.0)
     largest = float(np.abs(first).max())
     goal = max(goal / largest, share, SINGLE_SHARE)
@@ -198,8 +198,8 @@ def _advance(step, d, q, free, x, u, r):
 
 
 def project(
-    apply: Apply, norm: float, gap: np.ndarray, limit: np.ndarray, stiffness: float, tolerance: float, guess: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, int, bool]:
+    apply: Apply, norm: float, gap: Array, limit: Array, stiffness: float, tolerance: float, guess: Array
+) -> tuple[Array, Array, int, bool]:
     """The same by modified proportioning with reduced gradient projections, which converges from any guess.
 
     Dostal and Schoeberl, doi:10.1007/s10589-005-5395-6. `apply` makes displacements of pressures, `norm` bounds its
