@@ -161,21 +161,10 @@ class Attraction:
         changed: np.ndarray,
     ) -> float:
         """Force (nN, negative) on a surface that nothing deforms; see `inverse_cubes` for the order of its sites."""
+        walls, bins = (self.least, self.offset, self.touching), (self.lowest, self.bin_width, self.moments)
+        flowed = (changed, changes.sites, changes.used[0])
         return -self.strength * inverse_cubes(
-            heights,
-            separation,
-            self.least,
-            self.offset,
-            self.touching,
-            order,
-            order_heights,
-            changed,
-            changes.sites,
-            changes.used[0],
-            self.lowest,
-            self.bin_width,
-            self.moments,
-            self.rate,
+            heights, separation, *walls, order, order_heights, *flowed, *bins, self.rate
         )
 
 

@@ -20,7 +20,6 @@ import numpy as np
 from numba import njit
 
 from mesoscale.contact.attraction import inverse_cube
-from mesoscale.contact.coupled import grid
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.pressed import Row, State
@@ -71,7 +70,6 @@ class AdhesiveContact(CoupledContact):
     def __init__(
         self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
     ):
-        self.space = grid.Grid(surface.shape[0], settings.length_nm, float(inputs.e_star), settings.bodies)
         super().__init__(surface, inputs, settings, numerics)
         self._check_range()
         self.unknown_work = numerics.unknown_work
@@ -122,7 +120,7 @@ class AdhesiveContact(CoupledContact):
         """Undo the last move, its flow and its stresses."""
         super().back()
         self.now, self.last = self.saved
-        self.displacement = self.now.moved[self.sites]
+        self.displacement = self.now.moved[self.sites].astype(float)
 
     def move_to(self, separation: float, with_flow: bool) -> State:
         """Bring the flat to a separation; it may be undone by `back` until the next move."""
@@ -229,6 +227,10 @@ class AdhesiveContact(CoupledContact):
         pressure[self.sites] = self.pressure
         return pressure
 
+    def _bent(self, stress: np.ndarray) -> np.ndarray:
+        """Displacement (nm) by stresses (GPa), (N^2,); none costs no transform, and single precision is enough."""
+        return self.whole.displacement(stress.astype(np.float32)) if stress.any() else np.zeros(stress.size, np.float32)
+
     def _traction(self) -> np.ndarray:
         return self.pressure - self.now.pull[self.sites]
 
@@ -249,26 +251,16 @@ class AdhesiveContact(CoupledContact):
         steps: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=self.MIXED)
         lowest, settled, change = math.inf, False, math.inf
         for _ in range(self.STEPS):
-            self.now = self.now._replace(pull=wanted, shift=self.space.displacement(-wanted))
+            self.now = self.now._replace(pull=wanted, shift=-self._bent(wanted))
             settled = super()._solve()
             pressure = self._spread()
-            moved = self.now.shift + (self.space.displacement(pressure) if self.grid is None else self.grid.field)
-            reached = np.zeros_like(moved)
+            moved = self.now.shift + (self._bent(pressure) if self.grid is None else self.grid.field)
+            reached = np.zeros(moved.size)
             energy = change = 0.0
             if law is not None:
+                stresses, walls = (pressure, wanted), (law.least, law.offset, law.rate, law.reach_nm)
                 energy, change = attract(
-                    self.heights,
-                    self.separation,
-                    moved,
-                    pressure,
-                    wanted,
-                    self.hamaker,
-                    law.least,
-                    law.offset,
-                    law.rate,
-                    law.reach_nm,
-                    self.liquid_law,
-                    reached,
+                    self.heights + self.separation, moved, *stresses, self.hamaker, walls, self.liquid_law, reached
                 )
             yielding = self.pressure >= self._bounds()
             overlap = -(self.heights + self.separation + moved)[self.sites[yielding]]
@@ -294,7 +286,7 @@ class AdhesiveContact(CoupledContact):
             if len(steps) > 1:
                 wanted = reached.copy()
                 wanted[mixed] = np.clip(mix(steps), 0.0, strongest)
-        self.displacement = self.now.moved[self.sites]
+        self.displacement = self.now.moved[self.sites].astype(float)
         return settled and change <= self.CHANGE * strongest
 
 
@@ -307,7 +299,7 @@ def mix(steps: deque[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
 
 
 @njit(cache=True)
-def attract(heights, separation, moved, pressure, pull, hamaker, least, offset, rate, reach, liquid, reached):
+def attract(undeformed, moved, pressure, pull, hamaker, walls, liquid, reached):
     """Attraction (GPa) of the sites of a deformed surface, into `reached`.
 
     The energy of flats s apart is -A_H / (12 pi s^2 (1 + c s)); within the least distance the attraction is constant.
@@ -317,17 +309,17 @@ def attract(heights, separation, moved, pressure, pull, hamaker, least, offset, 
     -------
     Elastic and adhesive energy, nN/nm, and the largest change of the attraction from `pull`, GPa.
     """
-    strength = hamaker / (6.0 * np.pi)
+    strength, (least, offset, rate, reach) = hamaker / (6.0 * np.pi), walls
     (share, laplace), outer = liquid, max(reach, least) + offset
     edge = 0.5 * strength / (outer * outer * (1.0 + rate * outer))
     edge += strength * inverse_cube(outer, rate) * max(least - reach, 0.0)
     energy = change = 0.0
     for k in range(moved.size):
-        gap = heights[k] + separation + moved[k]
-        walls = max(gap, least) + offset
-        reached[k] = strength * inverse_cube(walls, rate)
+        gap = undeformed[k] + moved[k]
+        apart = max(gap, least) + offset
+        reached[k] = strength * inverse_cube(apart, rate)
         energy += 0.5 * (pressure[k] - pull[k]) * moved[k]
-        parting = 0.5 * strength / (walls * walls * (1.0 + rate * walls)) + reached[k] * max(least - gap, 0.0)
+        parting = 0.5 * strength / (apart * apart * (1.0 + rate * apart)) + reached[k] * max(least - gap, 0.0)
         if gap < reach:
             reached[k] = share * reached[k] + laplace
             parting = share * parting + (1.0 - share) * edge + laplace * (reach - gap)

@@ -116,44 +116,79 @@ def bind(pressure, limit, state, change, n):
 
 
 @njit(cache=True)
-def close_gaps(block, gap, goal, share):
-    """Pressures that close the gaps of some sites, by conjugate gradients.
+def neighbours(sites, place, pixels, places, number):
+    """Numbers of some sites and their neighbours, row by row of each three by three; -1 where one has none.
+
+    Parameters
+    ----------
+    sites, place : the known sites, and the position of each site of the cell in them, or -1
+    places : of some of them, shape (n,)
+    number : of each known site, or -1
+    """
+    around = np.full((places.size, 9), -1, np.int32)
+    for m in range(places.size):
+        row, col = sites[places[m]] // pixels, sites[places[m]] % pixels
+        for i in range(3):
+            start = (row + i - 1) % pixels * pixels
+            for j in range(3):
+                other = place[start + (col + j - 1) % pixels]
+                if other >= 0:
+                    around[m, 3 * i + j] = number[other]
+    return around
+
+
+@njit(cache=True, fastmath=FAST)
+def stiffen(around, stencil, gap, pressure):
+    """Pressures from the gaps of some sites (`neighbours`) by `half_space.stiffness_between_neighbours`, flat."""
+    for m in range(around.shape[0]):
+        total = gap[around[m, 4]] * stencil[4]
+        for j in range(9):
+            if j != 4 and around[m, j] >= 0:
+                total += gap[around[m, j]] * stencil[j]
+        pressure[around[m, 4]] = total
+
+
+@njit(cache=True)
+def close_gaps(block, around, stencil, gap, goal, share):
+    """Pressures that close the gaps of some sites, by conjugate gradients that `stiffen` preconditions.
 
     Ends where the largest gap is below `goal`, or below a share of the first one: the next step goes on from
     there, and the block need not be exact.
     """
-    size = gap.size
-    x = np.zeros(size)
+    x = np.zeros(gap.size)
+    z = np.empty(gap.size)
     r = -gap
     goal = max(goal, share * np.abs(gap).max())
-    d = r.copy()
-    q = np.empty(size)
-    rr = r @ r
+    d = np.zeros(gap.size)
+    q = np.empty(gap.size)
+    last = 1.0
     for _ in range(FACE_STEPS):
         if np.abs(r).max() <= goal:
             break
+        stiffen(around, stencil, r, z)
+        rz = r @ z
+        d = z + (rz / last) * d
+        last = rz
         _multiply_block(block, d.astype(np.float32), q)
         dq = d @ q
         if not dq > 0.0:
             break
-        x += (rr / dq) * d
-        r -= (rr / dq) * q
-        new = r @ r
-        d = r + (new / rr) * d
-        rr = new
+        x += (rz / dq) * d
+        r -= (rz / dq) * q
     return x
 
 
 @njit(cache=True)
-def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
+def solve(matrix, cell, gap, limit, tolerance, pressure, displacement):
     """Find the pressures of n sites; `pressure` holds a first guess.
 
     Parameters
     ----------
     matrix : (>= n, >= n), displacement of one site from the pressure on another, nm/GPa
+    cell : numbers of the n sites, position of each site of the cell among them or -1 (N^2,), sites a side (N), and
+        `half_space.stiffness_between_neighbours`
     gap : (n,), gap of the undeformed surface, nm
     limit : (n,), largest pressures, GPa, may be infinite
-    stiffness : 1 / matrix[0, 0], what makes a pressure of a gap in the residual
     tolerance : of the residual over the largest pressure
     pressure, displacement : (>= n,), GPa and nm; the answer
 
@@ -161,11 +196,15 @@ def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
     -------
     Newton steps, and whether they settled.
     """
+    sites, place, pixels, stencil = cell
+    n = sites.size
+    stiffness = 1.0 / matrix[0, 0] if n > 0 else 0.0
     multiply(matrix, n, pressure, displacement)
     state = np.full(n, 1, np.int8)
     change = np.zeros(n)
     moves = np.empty(n)
-    block = np.empty((0, 0), np.float32)
+    block, around = np.empty((0, 0), np.float32), np.empty((0, 9), np.int32)
+    number = np.empty(n, np.int32)
     for step in range(NEWTON_STEPS):
         moved = classify(gap, pressure, displacement, limit, stiffness, n, state) > 0 or step == 0
         bind(pressure, limit, state, change, n)
@@ -179,12 +218,15 @@ def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
         if count == 0:
             continue
         if moved:
+            number[:] = -1
+            number[free] = np.arange(count)
+            around = neighbours(sites, place, pixels, free, number)
             block = np.empty((count, count), np.float32)
             for k in range(count):
                 for j in range(count):
                     block[k, j] = matrix[free[k], free[j]]
         open_gap = gap[free] + displacement[free]
-        closed_gaps = close_gaps(block, open_gap, 0.1 * tolerance * largest / stiffness, FACE_SHARE)
+        closed_gaps = close_gaps(block, around, stencil, open_gap, 0.1 * tolerance * largest / stiffness, FACE_SHARE)
         change[:] = 0.0
         change[free] = closed_gaps
         pressure[free] += closed_gaps

@@ -39,9 +39,9 @@ class CoupledContact(Contact):
     SETTLED = 1e-6  # demanded
     # Sites that a dense matrix holds, per pixel of a side: beyond, transforms of the whole grid cost less. With 4 and 8
     # pads of 128^2 sites take 0.8 of the time with 16. The other bound keeps the matrix below 140 MB.
-    DENSE_PER_PIXEL = 4
+    DENSE_PER_PIXEL = 8
     LONGEST_GUESS = 2.0  # over the last step: so far pressures are taken to go on as in it
-    DENSE = 4096
+    DENSE = 2048
     # nm, and largest displacements: sites nearer than both count with their displacement in the attraction, the others
     # without. Errs by at most 1.2 % at a single step (128^2 and 256^2, elastic and plastic, RMS 2 to 15 nm, to 10 MPa);
     # without the second by 30 % on the roughest
@@ -53,6 +53,7 @@ class CoupledContact(Contact):
     # pressure than so many for each of its sites: a transform takes as long
     COARSE = 128
     PAIRS_PER_SITE = 16
+    TRANSFORM_PAIRS = 8  # pairs of sites for each of the cell that take as long as a transform there and back
     AIMS_AT_END = True
     ROUNDS = 40
     FALLING_ROUNDS = 10  # from here on hardness may only fall, so that the rounds come to an end
@@ -216,7 +217,7 @@ class CoupledContact(Contact):
         """Pressure (GPa) and gap (nm; 0 in contact) of all sites at the current separation, shapes (N, N)."""
         pressure = np.zeros(self.heights.size)
         pressure[self.sites] = self.pressure
-        displacement = (self.grid or self._whole()).displacement(pressure)
+        displacement = self.whole.displacement(pressure)
         gap = np.where(pressure > 0.0, 0.0, np.maximum(self.heights + self.separation + displacement, 0.0))
         return pressure.reshape(self.n, self.n), gap.reshape(self.n, self.n)
 
@@ -256,28 +257,12 @@ class CoupledContact(Contact):
             self._know(self._pressed)
             gap, limit = self._open_gap(), self._bounds()
             if self.grid is None:
-                _, settled = dense.solve(
-                    self.matrix,
-                    self.sites.size,
-                    gap,
-                    limit,
-                    self.stiffness,
-                    self.TOLERANCE,
-                    self.pressure,
-                    self.displacement,
-                )
+                cell = (self.sites, self.place, self.n, self.stencil)
+                solution = (self.TOLERANCE, self.pressure, self.displacement)
+                _, settled = dense.solve(self.matrix, cell, gap, limit, *solution)
             else:
-                _, settled = grid.solve(
-                    self.grid,
-                    self.table,
-                    self.sites,
-                    gap,
-                    limit,
-                    self.stiffness,
-                    self.GRID_TOLERANCE,
-                    self.pressure,
-                    self.displacement,
-                )
+                solution = (self.GRID_TOLERANCE, self.pressure, self.displacement)
+                _, settled = grid.solve(self.grid, self.sites, self.place, gap, limit, *solution)
             if not settled:
                 settled = self._project(gap, limit)
             if self._knows_enough(self._pressed):
@@ -325,7 +310,7 @@ class CoupledContact(Contact):
         old, count = self.sites.size, self.sites.size + new.size
         if self.grid is None and count > self.dense:
             self.matrix = self.matrix[:0, :0].copy()  # frees its memory
-            self.grid = self._whole()
+            self.grid = self.whole
             self.grid.displace(self.sites, self.pressure)
         before, pressure, limit = self.sites, self.pressure, self.limit
         sites = np.concatenate((before, new))
@@ -343,7 +328,14 @@ class CoupledContact(Contact):
         else:
             self.displacement = self.grid.field[self.sites]
 
-    def _whole(self) -> grid.Grid:
+    @cached_property
+    def stencil(self) -> np.ndarray:
+        """`half_space.stiffness_between_neighbours` of this half-space."""
+        return half_space.stiffness_between_neighbours(self.table)
+
+    @cached_property
+    def whole(self) -> grid.Grid:
+        """The half-space of all sites."""
         return grid.Grid(self.n, self.length, self.e_star, self.bodies)
 
     @property
@@ -381,11 +373,16 @@ class CoupledContact(Contact):
             if (count - known) * np.count_nonzero(self.pressure) > self.PAIRS_PER_SITE * self.COARSE**2:
                 last = max(int(np.searchsorted(self.order_heights[:count], edge)), known)
                 displacement[last:] = self._coarse_field()[self._coarse_site(sites[last:])]
-            clusters.displace(
-                self.table, self.scale, self.n, self.sites, self.pressure, sites[known:last], displacement[known:last]
-            )
+            self._displace(sites[known:last], displacement[known:last])
         gap = self.heights[sites[:count]] + separation + displacement[:count]
         return law.deformed(gap, self._weight(sites[:count]), separation, wet)
+
+    def _displace(self, others: np.ndarray, displacement: np.ndarray) -> None:
+        """Add the displacements (nm) of other sites by the pressures: of many pairs of sites by a transform."""
+        if others.size * np.count_nonzero(self.pressure) > self.TRANSFORM_PAIRS * self.heights.size:
+            displacement += self.whole.displacement(self.whole.spread(self.sites, self.pressure))[others]
+            return
+        clusters.displace(self.table, self.scale, self.n, self.sites, self.pressure, others, displacement)
 
     def _coarse_site(self, sites: np.ndarray) -> np.ndarray:
         """Sites of a coarse grid on which some sites are."""

@@ -7,6 +7,7 @@ The displacement vanishes far away: the separation is that of the flat from the 
 """
 
 import math
+from functools import cached_property
 
 import numpy as np
 from scipy import fft
@@ -44,9 +45,13 @@ class FreeContact(CoupledContact):
         pressure, gap = (field[:rows, :columns] for field in super().fields())
         return pressure, gap
 
-    def _whole(self) -> grid.Grid:
-        whole = super()._whole()  # its stiffness of periodic cells still preconditions
-        whole.compliance = self.scale * np.real(np.asarray(fft.rfft2(_everywhere(self.table, self.n))))
+    @cached_property
+    def whole(self) -> grid.Grid:
+        """The half-space of all sites."""
+        whole = super().whole
+        whole.table = self.table
+        distance = np.minimum(np.arange(self.n), self.n - np.arange(self.n))
+        whole.compliance = self.scale * np.real(np.asarray(fft.rfft2(self.table[np.ix_(distance, distance)])))
         whole.single_compliance = whole.compliance.astype(np.float32)
         return whole
 
@@ -60,9 +65,3 @@ def free_influence(pixels: int) -> np.ndarray:
     x, y = edge[:, None], edge[None, :]
     corners = x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))
     return np.ascontiguousarray(np.diff(np.diff(corners, axis=0), axis=1)) / (math.pi * pixels)
-
-
-def _everywhere(table: np.ndarray, pixels: int) -> np.ndarray:
-    """Influences on all sites of a cell (N, N), from those on a quarter."""
-    distance = np.minimum(np.arange(pixels), pixels - np.arange(pixels))
-    return table[np.ix_(distance, distance)]

@@ -1,9 +1,9 @@
 """Pressures between bounds where many sites can touch: active sets, with the half-space applied by FFT.
 
 The problem is that of `dense`. Here the linear system of each step is solved by conjugate gradients that are
-preconditioned with the stiffness of the free half-space, without layers E* abs(q) / 2 (Vollebregt,
-doi:10.1007/s10957-013-0433-z), or with their matrix where few sites are free. Steps are in single precision, which adds
-to the displacements; double precision has the last word.
+preconditioned with the stiffness of the half-space (Vollebregt, doi:10.1007/s10957-013-0433-z) between neighbours, or
+with their matrix where few sites are free. Steps are in single precision, which adds to the displacements; double
+precision has the last word.
 """
 
 from collections.abc import Callable
@@ -23,7 +23,8 @@ FACE_SHARE = 0.3  # each linear system is solved to this share of its first gap:
 DIRECT = 256  # free sites up to which a linear system has a matrix
 TABLE_SHARE = 0.5  # of the grid's sites: so many pairs of sites cost less by the table than a transform
 
-Apply = Callable[[np.ndarray], np.ndarray]
+Array = np.ndarray
+Apply = Callable[[Array], Array]
 
 
 class Grid:
@@ -32,33 +33,25 @@ class Grid:
     Attributes
     ----------
     field : displacement (nm) of all sites by the pressures that `displace` had last.
+    table : influence of one site on another (`half_space.influence`).
     """
 
     def __init__(self, pixels: int, length: float, e_star: float, bodies: tuple[Body, ...] = ()):
         self.shape, self.scale = (pixels, pixels), length / e_star
         number = half_space.wave_numbers(pixels) / half_space.softness(pixels, length, bodies)
-        number[0, 0] = 1.0  # a preconditioner must not swallow the mean
-        self.stiffness = (number * (np.pi * e_star / length)).astype(np.float32)
         number[0, 0] = np.inf
         self.compliance = (length / (np.pi * e_star)) / number
         self.single_compliance = self.compliance.astype(np.float32)
         self.field = np.zeros(pixels**2)
+        self.table = half_space.influence(pixels, length, bodies)
 
-    def displacement(self, pressure: np.ndarray) -> np.ndarray:
+    def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) by a pressure (GPa), mean zero, in the precision of the pressure."""
-        single = pressure.dtype == np.float32
-        return self._filtered(pressure, self.single_compliance if single else self.compliance)
-
-    def pressure(self, displacement: np.ndarray) -> np.ndarray:
-        """Pressure (GPa) that makes a displacement (nm), but for its mean, which none makes; single precision."""
-        return self._filtered(displacement, self.stiffness)
-
-    def _filtered(self, values: np.ndarray, factor: np.ndarray) -> np.ndarray:
-        spectrum = np.asarray(fft.rfft2(values.reshape(self.shape)))
-        spectrum *= factor
+        spectrum = np.asarray(fft.rfft2(pressure.reshape(self.shape)))
+        spectrum *= self.single_compliance if pressure.dtype == np.float32 else self.compliance
         return np.asarray(fft.irfft2(spectrum, s=self.shape, overwrite_x=True)).reshape(-1)
 
-    def spread(self, sites: np.ndarray, values: np.ndarray) -> np.ndarray:
+    def spread(self, sites: Array, values: Array) -> Array:
         """Values of some sites, in the order of the cell, on all; 0 on the others."""
         if sites.size == self.field.size:
             return values
@@ -66,15 +59,15 @@ class Grid:
         everywhere[sites] = values
         return everywhere
 
-    def gather(self, sites: np.ndarray, everywhere: np.ndarray) -> np.ndarray:
+    def gather(self, sites: Array, everywhere: Array) -> Array:
         """Values on all sites at some of them."""
         return everywhere if sites.size == self.field.size else everywhere[sites]
 
-    def displacement_at(self, sites: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    def displacement_at(self, sites: Array, pressure: Array) -> Array:
         """Displacement (nm) of some sites by their pressures (GPa), in the precision of the pressures."""
         return self.gather(sites, self.displacement(self.spread(sites, pressure)))
 
-    def displace(self, sites: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    def displace(self, sites: Array, pressure: Array) -> Array:
         """The same; that of all sites is kept in `field`, which nothing changes in place."""
         self.field = self.displacement(self.spread(sites, pressure))
         return self.field[sites]
@@ -82,67 +75,62 @@ class Grid:
 
 def solve(
     grid: Grid,
-    table: np.ndarray,
-    sites: np.ndarray,
-    gap: np.ndarray,
-    limit: np.ndarray,
-    stiffness: float,
+    sites: Array,
+    place: Array,
+    gap: Array,
+    limit: Array,
     tolerance: float,
-    pressure: np.ndarray,
-    displacement: np.ndarray,
+    pressure: Array,
+    displacement: Array,
 ) -> tuple[int, bool]:
-    """Find the pressures of n sites of a grid.
-
-    Parameters
-    ----------
-    table : influence of one site on another (`half_space.influence`)
-    sites : (n,), numbers of the sites that can touch, rising
-    gap, limit : (n,), gap of the undeformed surface (nm), largest pressures (GPa)
-    stiffness : what makes a pressure of a gap in the residual, GPa/nm
-    tolerance : of the residual over the largest pressure
-    pressure, displacement : (n,), GPa and nm; a first guess, and the answer
+    """Find the pressures of n sites of a grid; the arguments are those of `dense.solve`, sites in rising order.
 
     Returns
     -------
     Newton steps, and whether they settled. `grid.field` has the displacements of all sites.
     """
-    state = np.full(gap.size, 1, np.int8)
-    change, block, exact = np.zeros(gap.size), None, False
+    stiffness, stencil = 1.0 / (grid.scale * grid.table[0, 0]), half_space.stiffness_between_neighbours(grid.table)
+    state, numbers = np.full(gap.size, 1, np.int8), np.arange(gap.size)
+    change, block, around, exact = np.zeros(gap.size), None, np.empty((0, 9), np.int32), False
     for step in range(NEWTON_STEPS):
         moved = dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0 or step == 0
-        if dense.bind(pressure, limit, state, change, gap.size):
-            exact = False
-            _follow(grid, table, sites, change, displacement)
-        if dense.residual(gap, pressure, displacement, limit, stiffness, gap.size) <= tolerance:
-            if exact:
-                return step, True
+        settled = dense.residual(gap, pressure, displacement, limit, stiffness, gap.size) <= tolerance
+        if settled and exact:
+            return step, True
+        bound = dense.bind(pressure, limit, state, change, gap.size)
+        if settled:
             displacement[:], exact = grid.displace(sites, pressure), True
-            if dense.residual(gap, pressure, displacement, limit, stiffness, gap.size) <= tolerance:
-                return step, True
             continue
-        free = state == 1
-        count, exact = int(np.count_nonzero(free)), False
+        free, exact = state == 1, False
+        count = int(np.count_nonzero(free))
+        if bound:
+            _follow(grid, sites, change, displacement)
         if 0 < count <= min(DIRECT, gap.size - 1):
             places = np.flatnonzero(free)
             if moved or block is None:
-                block = dense.block(table, grid.scale, sites[places], grid.shape[0])
+                block = dense.block(grid.table, grid.scale, sites[places], grid.shape[0])
+                number = np.where(free, np.cumsum(free) - 1, -1)
+                around = dense.neighbours(sites, place, grid.shape[0], places, number)
             change[:] = 0.0
-            change[places] = dense.close_gaps(block, gap[places] + displacement[places], 0.0, SINGLE_SHARE)
+            open_gap = gap[places] + displacement[places]
+            change[places] = dense.close_gaps(block, around, stencil, open_gap, 0.0, SINGLE_SHARE)
             pressure += change
-            _follow(grid, table, sites, change, displacement)
+            _follow(grid, sites, change, displacement)
         elif count:
             goal = 0.1 * tolerance * float(pressure.max()) / stiffness
-            _close_gaps(grid, sites, free, gap, pressure, displacement, goal, FACE_SHARE if moved else 0.0)
+            around = dense.neighbours(sites, place, grid.shape[0], numbers[free], numbers)
+            share = FACE_SHARE if moved else 0.0
+            _close_gaps(grid, sites, free, (around, stencil), gap, (pressure, displacement), goal, share)
             if count == grid.field.size:  # a uniform pressure moves nothing: take the least, so that the sets change
                 pressure -= pressure.min()
     displacement[:] = grid.displace(sites, pressure)
     return NEWTON_STEPS, False
 
 
-def _follow(grid: Grid, table: np.ndarray, sites: np.ndarray, change: np.ndarray, displacement: np.ndarray) -> None:
+def _follow(grid: Grid, sites: Array, change: Array, displacement: Array) -> None:
     """Add what a change of the pressures (GPa) displaces: of few sites by the table, of many in single precision."""
     if np.count_nonzero(change) * sites.size <= TABLE_SHARE * grid.field.size:
-        clusters.displace(table, grid.scale, grid.shape[0], sites, change, sites, displacement)
+        clusters.displace(grid.table, grid.scale, grid.shape[0], sites, change, sites, displacement)
         return
     largest = float(np.abs(change).max())
     displacement += largest * grid.displacement_at(sites, (change / largest).astype(np.float32))
@@ -150,11 +138,11 @@ def _follow(grid: Grid, table: np.ndarray, sites: np.ndarray, change: np.ndarray
 
 def _close_gaps(
     grid: Grid,
-    sites: np.ndarray,
-    free: np.ndarray,
-    gap: np.ndarray,
-    pressure: np.ndarray,
-    displacement: np.ndarray,
+    sites: Array,
+    free: Array,
+    near: tuple[Array, Array],
+    gap: Array,
+    solution: tuple[Array, Array],
     goal: float,
     share: float,
 ) -> None:
@@ -162,14 +150,15 @@ def _close_gaps(
 
     Both change in place. Single precision is three times as fast.
     """
+    (around, stencil), (pressure, displacement) = near, solution
     first = np.where(free, -(gap + displacement), 0.0)
     largest = float(np.abs(first).max())
     goal = max(goal / largest, share, SINGLE_SHARE)
     r = (first / largest).astype(np.float32)
-    x, u, d = np.zeros_like(r), np.zeros_like(r), np.zeros_like(r)
-    last = 1.0
+    x, u, d, z = (np.zeros_like(r) for _ in range(4))
+    stencil, last = (stencil / grid.scale).astype(np.float32), 1.0
     for _ in range(FACE_STEPS):
-        z = grid.gather(sites, grid.pressure(grid.spread(sites, r)))
+        dense.stiffen(around, stencil, r, z)
         rz = _turn(z, r, free, last, d)
         last = rz
         q = grid.displacement_at(sites, d)
@@ -209,8 +198,8 @@ def _advance(step, d, q, free, x, u, r):
 
 
 def project(
-    apply: Apply, norm: float, gap: np.ndarray, limit: np.ndarray, stiffness: float, tolerance: float, guess: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, int, bool]:
+    apply: Apply, norm: float, gap: Array, limit: Array, stiffness: float, tolerance: float, guess: Array
+) -> tuple[Array, Array, int, bool]:
     """The same by modified proportioning with reduced gradient projections, which converges from any guess.
 
     Dostal and Schoeberl, doi:10.1007/s10589-005-5395-6. `apply` makes displacements of pressures, `norm` bounds its
