@@ -29,30 +29,17 @@ REPLACED = {
     "hardness.area": "the potential's file says with what its area is calibrated",
     **{
         f"hardness.closing.{key}": "a rigid flat at constant speed presses every asperity"
-        for key in (
-            "depth_over_amplitude",
-            "counterface",
-            "control",
-            "interface",
-            "counter_material",
-            "counter_potential",
-            "dwell_ps",
-        )
+        for key in ("counterface", "control", "interface", "counter_material", "counter_potential", "dwell_ps")
     },
+    "hardness.closing.depth_over_amplitude": "always 2.2",
     "hardness.fit": "H_macro is that of Table 1; H' follows from it",
     "hardness.plasticity": "`closing.stop: window` takes runs to their end",
     **dict.fromkeys(("elastic.ions", "elastic.relaxed_structures"), "ions are clamped in E(V)"),
     "elastic.poisson": "state the range as elastic.poisson_ratio",
-    **dict.fromkeys(
-        (
-            "elastic.strains",
-            "elastic.samples",
-            "elastic.dft.basis",
-            "elastic.lda_structures",
-            "elastic.glass.quench_rate_K_ps",
-        ),
-        "the stage has its own",
-    ),
+    **{
+        f"elastic.{key}": "the stage has its own"
+        for key in ("strains", "samples", "dft.basis", "lda_structures", "glass.quench_rate_K_ps")
+    },
     **{f"elastic.dft.{key}": "PySCF computes; state an e_star of another code" for key in ("engine", "parameters")},
     "elastic.relaxation": "max_steps is dft.relaxation_steps, basis and cut-off are those of dft",
     "contact.unloading_radius": "take mechanics: coupled where opening matters",
@@ -60,11 +47,9 @@ REPLACED = {
     "contact.surface": "topography finds it; in Python ContactSettings(surface=…) takes it",
     "topography.max_missing": "always 5 %",
     "topography.synthetic.large_length_nm": "always 10 um",
-    "failure.confidence": "always 90 %",
     "history.creep_time_s": "always 1 s",
     "topography.method": "maximum likelihood; figure 10 shows the paper's line fits, too",
     "coupling": "both mechanics were compared once (docs/contact.md)",
-    "resistance": "in Python it is a function (docs/resistance.md)",
     "report": "the page shows the studies that ran: targets accuracy and stability",
     "history.seeds": "always four surfaces",
     "history.creep": "creep_exponent states the power law, else it is logarithmic; dwell_s: 0 has none",
