@@ -11,7 +11,7 @@ from atomistic.materials import Core, Tersoff
 
 @dataclass(frozen=True)
 class Quench:
-    """How a cell is melted and quenched, beside its rate; a glass below films takes the same temperatures.
+    """How a cell is melted and quenched; a glass below films takes the same temperatures.
 
     Attributes
     ----------

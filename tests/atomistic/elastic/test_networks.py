@@ -147,8 +147,8 @@ def test_a_quench_goes_on_when_it_ends_in_a_network_that_is_there_already(tmp_pa
 
 
 def test_a_quenched_cell_rests_in_a_shape_of_its_own(tmp_path, monkeypatch):
-    monkeypatch.setattr(networks, "QUENCH", Quench(melt_ps=0.5))
-    settings = NitrideGlassSettings(formula_units=2, quench_rate_K_ps=2000)
+    monkeypatch.setattr(networks, "QUENCH", Quench(melt_ps=0.5, rate_K_ps=2000))
+    settings = NitrideGlassSettings(formula_units=2)
     first, again = (quench(NITRIDE, settings, 3, tmp_path) for _ in range(2))
     assert np.array_equal(first.positions, again.positions)
     assert first.symbols.formula.count() == {"Si": 6, "N": 8}
