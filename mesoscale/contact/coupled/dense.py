@@ -167,6 +167,8 @@ def close_gaps(block, around, stencil, gap, goal, share):
             break
         stiffen(around, stencil, r, z)
         rz = r @ z
+        if not rz > 0.0:
+            break
         d = z + (rz / last) * d
         last = rz
         _multiply_block(block, d.astype(np.float32), q)

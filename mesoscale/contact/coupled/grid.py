@@ -94,6 +94,7 @@ def solve(
     change, block, around, exact = np.zeros(gap.size), None, np.empty((0, 9), np.int32), False
     for step in range(NEWTON_STEPS):
         moved = dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0 or step == 0
+        block = None if moved else block
         settled = dense.residual(gap, pressure, displacement, limit, stiffness, gap.size) <= tolerance
         if settled and exact:
             return step, True
@@ -107,7 +108,7 @@ def solve(
             _follow(grid, sites, change, displacement)
         if 0 < count <= min(DIRECT, gap.size - 1):
             places = np.flatnonzero(free)
-            if moved or block is None:
+            if block is None:
                 block = dense.block(grid.table, grid.scale, sites[places], grid.shape[0])
                 number = np.where(free, np.cumsum(free) - 1, -1)
                 around = dense.neighbours(sites, place, grid.shape[0], places, number)
@@ -163,7 +164,7 @@ def _close_gaps(
         last = rz
         q = grid.displacement_at(sites, d)
         dq = float(d @ q)
-        if not dq > 1e-7 * rz:  # rounding of what moves nothing
+        if not dq > 1e-7 * rz > 0.0:  # rounding of what moves nothing
             break
         if _advance(np.float32(rz / dq), d, q, free, x, u, r) <= goal:
             break
