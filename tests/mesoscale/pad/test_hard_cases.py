@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from mesoscale.contact import ContactInputs
-from mesoscale.pad.cells import Cell, PadGrid, close_cells
+from mesoscale.contact.coupled import dense
+from mesoscale.inputs.contact import FilmInputs
+from mesoscale.pad.cells import Cell, PadGrid, close_cells, plan_grid, sample_cells
 from mesoscale.pad.curves import press_cells
 from mesoscale.pad.memory import flats_of, law_of
 from mesoscale.settings import ContactSettings
@@ -54,3 +56,38 @@ def test_cells_of_extreme_attraction_join_the_flats_beyond_their_curves(mechanic
     # 1 + 6 (rms / separation)^2 is 4e-4
     assert inside == pytest.approx(beyond, rel=1e-3, abs=0)
     assert beyond == pytest.approx(-hamaker / (6 * np.pi * (ends + gap_cutoff_nm) ** 3), rel=1e-6, abs=0)
+
+
+def test_soft_cells_are_solved_with_the_blocks_of_their_own_sites(monkeypatch):
+    """The sets of one change in a step that has settled: the block at hand is then of other sites."""
+    inputs = FilmInputs(
+        hamaker=0.23430521548187047,
+        e_star=87.33645149865933,
+        h_macro=1.3514625286680215,
+        h_prime=0.0,
+        q0=0.024611629023254433,
+        hurst=0.414520185165477,
+        rms=5.611248889630058,
+        h_film=12.005406156058228,
+        t_film=4.981708320199124,
+        k_film=0.012690575388624947,
+        m_film=2.8674830766657347,
+        rms_scatter=0.41774411004146894,
+    )
+    contact = ContactSettings(
+        mechanics="coupled",
+        attraction="offset",
+        pixels=128,
+        q1_per_nm=0.3394476182237757,
+        gap_cutoff_nm=0.27372814778958604,
+    )
+    close_gaps, sizes = dense.close_gaps, []
+
+    def noted(block, around, stencil, gap, goal, share):
+        sizes.append({len(block), len(around), len(gap)})
+        return close_gaps(block, around, stencil, gap, goal, share)
+
+    monkeypatch.setattr(dense, "close_gaps", noted)
+    plan_grid(inputs, contact, sample_cells(inputs, 64, 5_000_017_001_000, 6e4), lambda nm: np.full_like(nm, 0.04))
+    assert sizes
+    assert all(len(of) == 1 for of in sizes)
