@@ -7,6 +7,7 @@ precision has the last word.
 """
 
 from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 from numba import njit
@@ -44,6 +45,11 @@ class Grid:
         self.single_compliance = self.compliance.astype(np.float32)
         self.field = np.zeros(pixels**2)
         self.table = half_space.influence(pixels, length, bodies)
+
+    @cached_property
+    def stencil(self) -> Array:
+        """`half_space.stiffness_between_neighbours` of this half-space."""
+        return half_space.stiffness_between_neighbours(self.table)
 
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) by a pressure (GPa), mean zero, in the precision of the pressure."""
@@ -89,7 +95,7 @@ def solve(
     -------
     Newton steps, and whether they settled. `grid.field` has the displacements of all sites.
     """
-    stiffness, stencil = 1.0 / (grid.scale * grid.table[0, 0]), half_space.stiffness_between_neighbours(grid.table)
+    stiffness, stencil = 1.0 / (grid.scale * grid.table[0, 0]), grid.stencil
     state, numbers = np.full(gap.size, 1, np.int8), np.arange(gap.size)
     change, block, around, exact = np.zeros(gap.size), None, np.empty((0, 9), np.int32), False
     for step in range(NEWTON_STEPS):
