@@ -29,6 +29,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from asperity.guards.errors import InputError
+from atomistic.hardness.size_effect import FIT_RULES, samples_of
 
 DENSE_CUTOFF_A = 1.65
 """D of flat dense solids, Å (Israelachvili, section 13.13)."""
@@ -38,6 +39,8 @@ STEP_A = 0.02
 """Between the gaps at which force and energy are looked at; their extremes are then refined."""
 FREE_ATOMS = 0.9
 """D0, by work, of a top whose atoms follow the pull, over that of the rigid top (study `hardness.tops`)."""
+SCATTERS = np.geomspace(0.03, 10.0, 40)
+"""Standard deviations that are weighed: of runs, over what all runs have; of glasses, over that of runs."""
 BULK_A = (6.0, 18.0)
 """Heights above the frozen bottom's lowest atom between which the density is counted, Å: glass without a surface."""
 
@@ -63,9 +66,9 @@ def gap_cutoff(
 ) -> dict[str, Any] | None:
     """The cut-off D0 of all tops of some runs: its distribution, and what each run says.
 
-    It is that of the work; the one of the largest force stands beside it. The distribution is uniform between tops
-    whose atoms follow the pull (`FREE_ATOMS`) and rigid ones. Either end is wider by the error of a mean: over runs or,
-    since runs of one glass have the same top, over glasses, whichever is larger.
+    It is that of the work; the one of the largest force stands beside it. The mean over all glasses is known as far as
+    runs and glasses scatter. It is multiplied by a uniform factor between tops whose atoms follow (`FREE_ATOMS`) and
+    rigid ones.
 
     Parameters
     ----------
@@ -74,7 +77,7 @@ def gap_cutoff(
 
     Returns
     -------
-    `distribution`, `a`, `b`, `unit` as an input has them, and `runs`; None where fewer than two runs have a top.
+    `distribution`, `values`, `unit` as an input has them, and `runs`; None where a fit needs more runs with a top.
     """
     runs = {
         run: [
@@ -85,26 +88,49 @@ def gap_cutoff(
         for run, rows in witnesses.items()
     }
     runs = {run: tops for run, tops in runs.items() if tops}
-    if len(runs) < 2:
+    if len(runs) < FIT_RULES.least_runs:
         return None
-    of_glasses: dict[int, list[TopAttraction]] = {}
-    for run, tops in runs.items():
-        of_glasses.setdefault(glasses[run], []).extend(tops)
-    by_run, by_glass = (
-        np.array([combined_cutoffs_nm(tops) for tops in groups.values()]) for groups in (runs, of_glasses)
-    )
+    by_run = np.array([combined_cutoffs_nm(tops) for tops in runs.values()])
     by_work = combined_cutoffs_nm(top for tops in runs.values() for top in tops)[1]
-    error = max(float(of[:, 1].std(ddof=1) / np.sqrt(len(of))) for of in (by_run, by_glass) if len(of) > 1)
+    logs, rng = np.log(by_run[:, 1]), np.random.default_rng(0)
+    errors = mean_over_glasses(logs, [glasses[run] for run in runs], FIT_RULES.samples, rng) - logs.mean()
+    cutoffs = by_work * np.exp(errors) * rng.uniform(FREE_ATOMS, 1.0, FIT_RULES.samples)
     return {
-        "distribution": "uniform",
-        "a": float(FREE_ATOMS * by_work - error),
-        "b": float(by_work + error),
-        "unit": "nm",
+        **samples_of(cutoffs, "nm"),
         "runs": [
             {"run": run, "snapshots": len(tops), "by_force_nm": force, "by_work_nm": work}
             for (run, tops), (force, work) in zip(runs.items(), by_run.tolist(), strict=True)
         ],
     }
+
+
+def mean_over_glasses(values: np.ndarray, glasses: Sequence[int], count: int, rng: np.random.Generator) -> np.ndarray:
+    """Samples of the mean over all glasses, of which a few were made and each was used for several runs.
+
+    Runs scatter within a glass, and glasses differ. Two glasses leave open by how much. So all standard deviations
+    count, each by its restricted likelihood; that of glasses over that of runs has a half-Cauchy prior of scale 1
+    (Gelman 2006, doi:10.1214/06-BA117A).
+
+    Parameters
+    ----------
+    values : of the runs, shape (runs,).
+    glasses : seed of each run's glass.
+    """
+    of_glass = np.unique(glasses, return_inverse=True)[1]
+    runs = np.bincount(of_glass)
+    means = np.bincount(of_glass, values) / runs
+    within, freedom = np.sum((values - means[of_glass]) ** 2), len(values) - len(runs)
+    scale = max(float(values.std()), np.finfo(float).eps)
+    of_runs, ratio = (grid[..., None] for grid in np.meshgrid(scale * SCATTERS, SCATTERS))
+    weights = 1 / (of_runs**2 * (ratio**2 + 1 / runs))
+    total = weights.sum(axis=-1)
+    centre = weights @ means / total
+    logs = 0.5 * (np.log(weights) - weights * (means - centre[..., None]) ** 2).sum(axis=-1) - 0.5 * np.log(total)
+    logs += (-freedom * np.log(of_runs) - 0.5 * within / of_runs**2)[..., 0]
+    logs += (np.log(ratio) - np.log1p(ratio**2))[..., 0]  # even steps of the logarithm
+    shares = np.exp(logs - logs.max()).ravel()
+    chosen = rng.choice(shares.size, count, p=shares / shares.sum())
+    return centre.ravel()[chosen] + rng.normal(size=count) / np.sqrt(total.ravel()[chosen])
 
 
 def combined_cutoffs_nm(tops: Iterable[TopAttraction]) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.stats import t
 
 from asperity.guards.errors import InputError
 from atomistic.hardness.top_attraction import (
@@ -10,6 +11,7 @@ from atomistic.hardness.top_attraction import (
     combined_cutoffs_nm,
     contact_distance_A,
     gap_cutoff,
+    mean_over_glasses,
 )
 
 DENSITY = 0.0668  # atoms per Å^3: silica of 2.22 g/cm3
@@ -123,37 +125,54 @@ def rows(*tops):
     ]
 
 
+SEEDS = {name: number // 3 for number, name in enumerate("abcdef")}
+"""Two glasses of three runs each."""
+
+
 def test_the_distribution_spans_free_and_rigid_tops_of_all_runs():
     depths = -SPACING * np.arange(40)
     smooth = attract_top(depths, np.ones(40), 1 / LAYER, DENSITY)
     small = {"top_area_nm2": np.nan, "top_force_over_hamaker": np.nan, "top_work_over_hamaker": np.nan}
-    witnesses = {"first": [small, *rows(smooth)], "second": rows(smooth, smooth), "third": [small]}
-    found = gap_cutoff(witnesses, {"first": 1, "second": 2, "third": 3})
+    witnesses = {"a": [small, *rows(smooth)], **{name: rows(smooth, smooth) for name in "bcdef"}, "none": [small]}
+    found = gap_cutoff(witnesses, {**SEEDS, "none": 7})
     assert found is not None
     by_force, by_work = combined_cutoffs_nm([smooth])
     # runs of one kind of top do not scatter
-    assert (found["a"], found["b"]) == pytest.approx((0.9 * by_work, by_work))
+    ends = found["values"][0], found["values"][-1]
+    assert ends == pytest.approx((0.9 * by_work, by_work), rel=2e-3)
     assert found["runs"][0]["by_force_nm"] == pytest.approx(by_force)
-    assert [(run["run"], run["snapshots"]) for run in found["runs"]] == [("first", 1), ("second", 2)]
+    assert [(run["run"], run["snapshots"]) for run in found["runs"]] == [("a", 1), *((name, 2) for name in "bcdef")]
 
 
-def test_runs_of_one_glass_count_as_one_where_glasses_differ():
-    smooth, rough = (
-        attract_top(-SPACING * np.r_[0.0, bare * np.ones(3), np.arange(1, 40)], np.ones(43), 1 / LAYER, DENSITY)
-        for bare in (0.0, 2.0)
+def test_fewer_runs_than_a_fit_needs_give_no_distribution():
+    top = rows(attract_top(-SPACING * np.arange(40), np.ones(40), 1 / LAYER, DENSITY))
+    assert gap_cutoff({name: top for name in "abcde"}, SEEDS) is None
+
+
+@pytest.mark.parametrize(("of_glasses", "least"), [(0.0, 0.9), (0.5, 0.9), (1.0, 0.86)])
+def test_the_mean_over_glasses_is_held_as_often_as_stated(of_glasses, least):
+    rng = np.random.default_rng(1)
+    held = []
+    for _ in range(100):
+        values = np.repeat(of_glasses * rng.normal(size=2), 5) + rng.normal(size=10)
+        low, high = np.quantile(mean_over_glasses(values, np.repeat([1, 2], 5), 1000, rng), [0.05, 0.95])
+        held.append(low < 0 < high)
+    assert np.mean(held) >= least
+
+
+def test_glasses_that_differ_widen_the_mean():
+    rng = np.random.default_rng(2)
+    of_runs = np.array([0.0, 0.1, -0.1])
+    alike, apart = (
+        np.ptp(np.quantile(mean_over_glasses(np.r_[of_runs, of_runs + by], [1] * 3 + [2] * 3, 4000, rng), [0.05, 0.95]))
+        for by in (0.0, 1.0)
     )
-    witnesses = {name: rows(smooth if name in "ab" else rough) for name in "abcd"}
-    of_runs = gap_cutoff(witnesses, dict(zip("abcd", range(4), strict=True)))
-    of_two = gap_cutoff(witnesses, {"a": 1, "b": 1, "c": 2, "d": 2})
-    assert of_runs is not None
-    assert of_two is not None
-    by_work = combined_cutoffs_nm([smooth, smooth, rough, rough])[1]
-    ends = [combined_cutoffs_nm([top])[1] for top in (smooth, rough)]
-    # two values half a range from their mean each: s/sqrt(2) is half the range, and of two such pairs s/2 is 0.58 of it
-    assert of_two["b"] - by_work == pytest.approx(abs(ends[0] - ends[1]) / 2, rel=1e-6)
-    assert of_two["b"] - by_work == pytest.approx(np.sqrt(3) * (of_runs["b"] - by_work), rel=1e-6)
+    assert apart > 1.3 * alike
 
 
-def test_one_run_gives_no_distribution():
-    depths = -SPACING * np.arange(40)
-    assert gap_cutoff({"only": rows(attract_top(depths, np.ones(40), 1 / LAYER, DENSITY))}, {"only": 1}) is None
+def test_runs_of_one_glass_each_are_as_student_has_it():
+    rng = np.random.default_rng(3)
+    values = rng.normal(size=8)
+    drawn = mean_over_glasses(values, range(8), 20_000, rng)
+    low, high = t.interval(0.9, 7, values.mean(), values.std(ddof=1) / np.sqrt(8))
+    assert np.quantile(drawn, [0.05, 0.95]) == pytest.approx([low, high], abs=0.1 * (high - low))

@@ -164,9 +164,10 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
             f"Runs have L/t from {show(low)} to {show(high)}; wider contacts extrapolate the law."
         )
     if cutoff := fit.get("inputs", {}).get("gap_cutoff"):
+        low, high = np.quantile(cutoff["values"], [0.05, 0.95]).tolist()
         notes.append(
             f"The tops of {len(fit['tops'])} runs attract a smooth body with the work of a flat of cut-off D₀, "
-            f"{show(cutoff['a'])} nm (atoms follow) to {show(cutoff['b'])} nm (rigid). Their largest force is that of "
+            f"{show(low)} to {show(high)} nm (90 % interval). Their largest force is that of "
             f"{show(float(np.mean(column(fit['tops'], 'by_force_nm'))))} nm, which no contact of several tops feels."
         )
     return notes
