@@ -85,17 +85,19 @@ class Beam:
         return (np.cumsum(self.sizes_m) - self.sizes_m)[:, None] + self.sizes_m[:, None] * self.within
 
     @cached_property
-    def mechanics(self) -> tuple[Array, Array, Array, Array, float, float, Array, int]:
-        """Hermite's shapes, elements against bending and unit tension, weights times width, and what `newton_step`
-        takes after them."""
+    def mechanics(self) -> tuple[Array, Array, Array, Array, Array, float, float, Array, int]:
+        """Hermite's shapes, elements against bending and unit tension, weights times width, these times products of
+        two shapes, and what `newton_step` takes after them."""
         shapes = np.array([_shapes(size, self.within) for size in self.sizes_m])
         bending, pulled = (np.array(parts) for parts in zip(*map(_stiffness, self.sizes_m.tolist()), strict=True))
         unknowns = 2 * self.elements - (0 if self.cantilever else 2)
+        weights = self.width_m * self.weights_m
         return (
             shapes,
             self.bending_N_m2 * bending,
             pulled,
-            self.width_m * self.weights_m,
+            weights,
+            shapes[:, :, None] * shapes[:, None] * weights[:, None, None],
             self.tension_N,
             self.stretching_N_m,
             self.rest_nodal,
@@ -231,7 +233,7 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
         return stated
     newton_MPa = settings.width_um * settings.thickness_um * 1e-6
     heat = settings.heating_MPa * newton_MPa
-    _, bending, pulled, _, _, stretching, rest, unknowns = stated.mechanics
+    _, bending, pulled, _, _, _, stretching, rest, unknowns = stated.mechanics
     freedoms = slice(2, 2 + unknowns)
     bends, pulls = (assembled(parts)[freedoms, freedoms] for parts in (bending, pulled))
     z0, share = rest.ravel()[freedoms], np.concatenate([[0.0], np.cumsum(stated.sizes_m)]) / stated.length_m

@@ -137,6 +137,7 @@ def newton_step(
     bends,
     pulled,
     weights,
+    coupled,
     tension,
     stretching,
     rest,
@@ -167,12 +168,14 @@ def newton_step(
                 right[row, 0] -= bends[e, i, j] * moved + drawn * (tension * moved + more * (moved + at_rest))
                 right[row, 2] += drawn * (moved + at_rest)
                 column = 2 * e + j - 2
-                if column < 0 or column >= unknowns:
+                if j > i or column < 0:
                     continue
                 entry = bends[e, i, j] + (tension + more) * drawn
                 for g in range(points):
-                    entry += (inertia - slope_Pa_m[e, g]) * weights[e, g] * shape[e, i, g] * shape[e, j, g]
+                    entry += (inertia - slope_Pa_m[e, g]) * coupled[e, i, j, g]
                 bands[row, column - row + BANDS] += entry
+                if j < i:
+                    bands[column, row - column + BANDS] += entry
     force = right[:, 0].copy()
     for row in range(unknowns):
         border[row] = stretching * right[row, 2]

@@ -328,19 +328,30 @@ class _Moving:
         return ended == SETTLED
 
     def open(self, hold_V: float) -> tuple[float, float]:
-        """Lower the voltage until the beam lets go; the release voltage (0: stuck) and the share landed before."""
-        held = self.nodal.copy(), self.deepest.copy()
-        share = self.landed_share()
-        high, low = hold_V, None
+        """Lower the voltage until the beam lets go; the release voltage (0: stuck) and the share landed before.
+
+        The voltage is halved in the longer steps of closing until it opens. These may tear off a little more than they
+        should, so the way from the last voltage but one is gone again in short steps.
+        """
+
+        def lower(voltage: float) -> float:
+            """Half, or none where it holds at little."""
+            return 0.5 * voltage if voltage > SWITCH.little * hold_V else 0.0
+
+        # an opening is elastic, so the state at a lower voltage is reached from any higher one
+        closed = [(hold_V, self.nodal.copy(), self.deepest.copy())]
+        while closed[-1][0] > 0.0 and self.creep(lower(closed[-1][0]), CLOSING_NM):
+            closed.append((lower(closed[-1][0]), self.nodal.copy(), self.deepest.copy()))
+        high, *held = closed[-2:][0]
+        self.nodal, self.deepest = (state.copy() for state in held)
+        share, low = self.landed_share(), None
         while low is None or high - low > SWITCH.release_tolerance * high:
-            # down to no voltage where it holds at little, else between the last voltages
-            voltage = 0.5 * (low + high) if low is not None else 0.5 * high if high > SWITCH.little * hold_V else 0.0
-            # an opening is elastic, so the state at a lower voltage is reached from any higher one
+            voltage = lower(high) if low is None else 0.5 * (low + high)
             if self.creep(voltage, OPENING_NM):
-                high, share, held = voltage, self.landed_share(), (self.nodal.copy(), self.deepest.copy())
+                high, share, held = voltage, self.landed_share(), [self.nodal.copy(), self.deepest.copy()]
                 if voltage == 0.0:
                     return 0.0, share
             else:
                 low = voltage
-                self.nodal, self.deepest = held[0].copy(), held[1].copy()
+                self.nodal, self.deepest = (state.copy() for state in held)
         return high, share

@@ -10,10 +10,12 @@ places are few and carry most of the load, so more of the cells are rough ones, 
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import rfft2
 
 from mesoscale.contact.displacement import Closing, Displacement, close_by_separation
 from mesoscale.contact.menisci import reach_nm
@@ -138,22 +140,29 @@ class FilmPieces:
         """Heights (pixels, pixels) in nm of one cell, from the mean plane of the film; contact is at its minima."""
         heights = random_surface(self.inputs, self.contact, cell.seed)
         # the realisation was scaled to its own RMS; its short waves, of which there are many, tell by how much
-        realised = np.abs(np.fft.rfft2(heights)) ** 2 / heights.size**2
+        realised = np.abs(rfft2(heights)) ** 2 / heights.size**2
         ratio = float(np.mean(realised[self.known] / self.power[self.known]))
         return heights / np.sqrt(ratio) + self.plane_deviation_nm * cell.plane
 
 
-def at_place(inputs: ContactInputs, cell: Cell) -> ContactInputs:
-    """The inputs with the RMS height of the cell's place."""
-    if not isinstance(inputs, FilmInputs):
-        return inputs
-    place = {field.name: getattr(inputs, field.name) for field in fields(ContactInputs)}
-    return ContactInputs(**{**place, "rms": inputs.rms * float(np.exp(inputs.rms_scatter * cell.rough))})
+def place_ratio(inputs: ContactInputs, cell: Cell) -> float:
+    """RMS height of the cell's place over that of the median place."""
+    return float(np.exp(inputs.rms_scatter * cell.rough)) if isinstance(inputs, FilmInputs) else 1.0
 
 
 def surface_of(inputs: ContactInputs, contact: ContactSettings, cell: Cell) -> Array:
     """Heights (pixels, pixels) in nm of a cell with the RMS height of its place, from the mean plane of the film."""
-    return FilmPieces(at_place(inputs, cell), contact).surface(cell)
+    return place_ratio(inputs, cell) * _surface(inputs, contact, cell)
+
+
+@lru_cache(maxsize=16)  # the plan of a point's pad looks at the surfaces that are closed next
+def _surface(inputs: ContactInputs, contact: ContactSettings, cell: Cell) -> Array:
+    return _pieces(inputs, contact).surface(cell)
+
+
+@lru_cache(maxsize=1)
+def _pieces(inputs: ContactInputs, contact: ContactSettings) -> FilmPieces:
+    return FilmPieces(inputs, contact)
 
 
 class SideBySide:
@@ -294,8 +303,8 @@ def _close(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cell:
     """One cell at the separations of the pad; a rough one in longer steps, between which its forces are straight."""
     heights = surface_of(inputs, contact, cell)
     plane = float(heights.mean())  # the separation is that from the mean plane of the film
-    here = at_place(inputs, cell).rms
-    kept = _own_steps(grid, min(PAD.place_step_rms * here**2 / inputs.rms, PAD.longest_place_step_nm))
+    ratio = place_ratio(inputs, cell)
+    kept = _own_steps(grid, min(PAD.place_step_rms * ratio**2 * inputs.rms, PAD.longest_place_step_nm))
     known = grid.separation_nm[kept]
     closed = close_by_separation(inputs, contact, heights, known + plane, np.flatnonzero(np.isin(kept, grid.depths)))
     opening = np.array([_between(grid.separation_nm, known, branch) for branch in closed.opening])

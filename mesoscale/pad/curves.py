@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mesoscale.contact.displacement import Displacement
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.pad.cells import Cell, PadGrid, at_place, close_cells, half_of
+from mesoscale.pad.cells import Cell, PadGrid, close_cells, half_of, place_ratio
 from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
@@ -87,7 +87,7 @@ def assemble(
     return PadCells(
         grid,
         np.array([cell.weight for cell in cells]),
-        np.array([at_place(inputs, cell).rms / inputs.rms for cell in cells]),
+        np.array([place_ratio(inputs, cell) for cell in cells]),
         np.array([cell.first_contact_nm for cell in closed]),
         np.array([cell.closing for cell in closed]) / area,
         np.array([cell.opening for cell in closed]) / area,

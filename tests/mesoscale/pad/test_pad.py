@@ -14,8 +14,8 @@ from mesoscale.pad.cells import (
     Cell,
     FilmPieces,
     PadGrid,
-    at_place,
     half_of,
+    place_ratio,
     plan_grid,
     sample_cells,
     surface_of,
@@ -74,15 +74,13 @@ def test_the_grid_reaches_the_pressure_and_all_first_contacts(pad):
 
 
 def test_a_pad_that_one_tall_grain_carries_is_opened_from_light_loads(monkeypatch):
-    piece = FilmPieces.surface
-
-    def with_a_grain(self, cell):
-        heights = piece(self, cell)
+    def with_a_grain(inputs, contact, cell):
+        heights = surface_of(inputs, contact, cell)
         if cell.seed == PAD.first_seed:
             heights[:48, :48] -= 20.0
         return heights
 
-    monkeypatch.setattr(FilmPieces, "surface", with_a_grain)
+    monkeypatch.setattr("mesoscale.pad.cells.surface_of", with_a_grain)
     pad = pressed(MIDDLE, sample_cells(MIDDLE, 4))
     assert pad.mean(pad.closing)[0, pad.grid.depths[0]] < 0.3e-3 * WANTED_MPa
 
@@ -281,7 +279,7 @@ def test_where_rough_places_alone_carry_the_pad_the_grid_ends_above_the_typical_
 def test_mean_planes_and_heights_of_a_place_grow_together():
     """As in a film whose amplitude varies slowly from place to place."""
     cell = Cell(PAD.first_seed + 3, 0.7, -0.4, 1.0)
-    times = at_place(film(0.5), cell).rms / MIDDLE.rms
+    times = place_ratio(film(0.5), cell)
     here = surface_of(film(0.5), CONTACT, cell)
     assert here == pytest.approx(times * FilmPieces(MIDDLE, CONTACT).surface(cell), abs=1e-9)
 
