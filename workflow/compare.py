@@ -127,7 +127,7 @@ def _said(folder: Path) -> str:
     try:
         said = verdict(results_in(folder))
     except Exception as error:
-        return f"{folder.name}: its switch cannot be read ({type(error).__name__})"
+        return f"{folder.name}: its switch cannot be read ({type(error).__name__}): damaged, or of another version"
     return f"{folder.name}: {said.sentence if said else 'no switch on a pad'}".replace("\u00a0", " ")
 
 
