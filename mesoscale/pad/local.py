@@ -28,7 +28,7 @@ class LocalPad:
         shallow = law.depth_nm[-1]
         highest = max(PAD.highest_rise_nm, _reach_nm(law)) if shallow > PAD.coarse_nm else PAD.highest_rise_nm
         self.rise_nm = np.linspace(0.0, min(law.separation_nm[-1] - shallow, highest), PAD.memory_rises)
-        self.opening = np.array([law.opening_GPa(depth + self.rise_nm, depth) for depth in self.depth_nm])
+        self.opening = law.opened(self.rise_nm, self.depth_nm).sum(axis=1)
 
     @property
     def tables(self) -> tuple[Array, Array, Array, Array, Array, float, float]:

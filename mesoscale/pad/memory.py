@@ -98,19 +98,27 @@ class PadLaw:
                 f"({self.closing_GPa(high) * 1e3:.3g} .. {self.closing_GPa(low) * 1e3:.3g} MPa)"
             )
         s = np.maximum(np.asarray(separation_nm, float), deepest_nm)
-        return self._extended(s, self.opened(s - deepest_nm, deepest_nm).sum(axis=0))
+        return self._extended(s, self.opened(s - deepest_nm, np.array([deepest_nm]))[0].sum(axis=0))
 
-    def opened(self, risen_nm: Array, deepest_nm: float) -> Array:
-        """Repulsive and attractive pressure (GPa) that far above a depth in the range, while opening; a row each."""
-        upper = int(np.clip(np.searchsorted(self.depth_nm, deepest_nm), min(1, self.depth_nm.size - 1), None))
-        lower = max(upper - 1, 0)
-        apart = self.depth_nm[upper] - self.depth_nm[lower]
-        share = (deepest_nm - self.depth_nm[lower]) / apart if apart > 0 else 0.0  # 0: a pad of one depth
-        shallow, deep = (
-            rows_at(self.depth_nm[number] + risen_nm, *self._logarithms[number]) for number in (upper, lower)
-        )
-        repulsion, attraction = np.exp((1.0 - share) * deep + share * shallow)
-        return np.stack([np.where(repulsion > 2.0 * FLOOR_GPa, repulsion, 0.0), -attraction])
+    def opened(self, risen_nm: Array, deepest_nm: Array) -> Array:
+        """Repulsive and attractive pressure (GPa) that far above depths in the range, while opening.
+
+        Of the shape (depths, 2) + that of the rises.
+        """
+        upper = np.clip(np.searchsorted(self.depth_nm, deepest_nm), min(1, self.depth_nm.size - 1), None)
+        lower = np.maximum(upper - 1, 0)
+        apart = self.depth_nm[upper] - self.depth_nm[lower]  # 0: a pad of one depth
+        share = np.divide(deepest_nm - self.depth_nm[lower], apart, out=np.zeros(upper.size), where=apart > 0)
+        curves = {
+            number: rows_at(self.depth_nm[number] + risen_nm, *self._logarithms[number])
+            for number in {*upper.tolist(), *lower.tolist()}
+        }
+        shallow, deep = (np.array([curves[number] for number in of]) for of in (upper.tolist(), lower.tolist()))
+        share = share.reshape(-1, *[1] * (deep.ndim - 1))
+        rows = np.exp((1.0 - share) * deep + share * shallow)
+        rows[:, 0][rows[:, 0] <= 2.0 * FLOOR_GPa] = 0.0
+        rows[:, 1] *= -1.0
+        return rows
 
     @cached_property
     def _logarithms(self) -> list[tuple[Array, Array]]:
@@ -189,12 +197,11 @@ def law_of(cells: PadCells, flats: Flats) -> PadLaw:
     closing, opening = np.zeros((2, separation.size)), np.zeros((depth.size, 2, separation.size))
     shifts_nm = _shifts_nm(cells)
     for law, weight, of_cell in zip(laws, cells.weight / shifts_nm.shape[1], shifts_nm, strict=True):
-        for shift in of_cell:
-            closing += weight * _closing(law, separation - shift)
-            for number, deepest in enumerate(depth):
-                way = separation >= deepest
-                opening[number][:, way] += weight * _opened(law, separation[way] - deepest, deepest - shift)
-                opening[number][:, ~way] = np.nan
+        closing += weight * sum(_closing(law, separation - shift) for shift in of_cell)
+        for number, deepest in enumerate(depth):
+            way = separation >= deepest
+            opening[number][:, way] += weight * _opened(law, separation[way] - deepest, deepest - of_cell).sum(axis=0)
+            opening[number][:, ~way] = np.nan
     return PadLaw(separation, closing, depth, opening, flats)
 
 
@@ -212,15 +219,14 @@ def _shifts_nm(cells: PadCells) -> Array:
     return cells.rms_ratio[:, None] * (drawn * apart[:, None] + kernel)
 
 
-def _opened(law: PadLaw, risen_nm: Array, deepest_nm: float) -> Array:
-    """Rows of `PadLaw.opened` from any depth, in proportion to where closing ended; the nearest known depth counts.
+def _opened(law: PadLaw, risen_nm: Array, deepest_nm: Array) -> Array:
+    """As `PadLaw.opened` from any depths, in proportion to where closing ended; the nearest known depth counts.
 
     The first rise is 0.
     """
-    known_nm = float(np.clip(deepest_nm, law.depth_nm[0], law.depth_nm[-1]))
-    rows = law.opened(risen_nm, known_nm)
-    start, ended = rows[:, 0], _closing(law, np.array([deepest_nm]))[:, 0]
-    return rows * np.divide(ended, start, out=np.ones(2), where=start != 0.0)[:, None]
+    rows = law.opened(risen_nm, np.clip(deepest_nm, law.depth_nm[0], law.depth_nm[-1]))
+    start, ended = rows[:, :, 0], _closing(law, deepest_nm).T
+    return rows * np.divide(ended, start, out=np.ones_like(start), where=start != 0.0)[:, :, None]
 
 
 def _closing(law: PadLaw, separation_nm: Array) -> Array:
