@@ -95,8 +95,10 @@ def _fit(units: Array, release_V: Array, power: int, degree: int) -> Additive:
         values[stuck] = below
         if settled:
             break
-    left = (values - columns @ (inverse @ values)) / (1.0 - np.einsum("pi,ip->p", columns, inverse))
-    explained = 1.0 - float(np.mean(left**2)) / (values.var() or 1.0)
+    free, explained = 1.0 - np.einsum("pi,ip->p", columns, inverse), 0.0
+    if free.min() > 1e-9:  # else a switch is needed for the fit: without it, it is not predicted
+        left = (values - columns @ (inverse @ values)) / free
+        explained = 1.0 - float(np.mean(left**2)) / (values.var() or 1.0)
     return Additive(power, degree, inverse @ values, inverse @ inverse.T * missed**2, missed, explained, values)
 
 

@@ -153,6 +153,34 @@ def test_the_answer_keeps_its_causes_apart(known):
     assert said.cells == 2 * 96
 
 
+def test_two_points_have_an_answer_that_explains_nothing(known):
+    said = answer(model_of(PLATE, 2))
+    assert said.points == 2
+    assert said.explained == 0.0
+    assert said.stuck["low"] < 0.2
+    assert said.stuck["high"] > 0.5
+
+
+def test_a_pad_that_one_cell_in_a_hundred_carries_is_undecided(monkeypatch):
+    """The half of the cells without it has no pressure, so that it cannot carry the switch."""
+    law = known_pad(central_point(TABLE, CONTACT, PLATE)).law
+    pair = cells_of(law, 0.0)
+    share = np.where(np.arange(100) == 37, 100.0, 0.0)
+    cells = PadCells(
+        pair.grid,
+        np.full(100, 0.01),
+        np.ones(100),
+        np.full(100, 30.0),
+        share[:, None, None] * pair.closing[0],
+        share[:, None, None, None] * pair.opening[0],
+        np.ones(100, bool),
+    )
+    monkeypatch.setattr(points, "press_pad", lambda *_, **__: Pad(cells, law.flats))
+    solved = solve_point(central_point(TABLE, CONTACT, PLATE), CONTACT, 100, 0)
+    assert solved.states["release_V"] == pytest.approx(solve_deepened(PLATE, law)["release_V"], rel=1e-3)
+    assert solved.undecided
+
+
 def test_quantiles_err_as_their_stated_error_says(known):
     """Fifty answers of 24 points each, beside 600 points; a Latin hypercube errs by less."""
     release = np.concatenate([model_of(PLATE, 600).states("release_V")])
