@@ -243,7 +243,7 @@ class AdhesiveContact(CoupledContact):
     def _highest(self, force: float) -> float:
         return super()._highest(force) - float(self.now.shift.min())
 
-    def _solve(self) -> bool:
+    def _solve(self, coarser: float = 1.0) -> bool:
         """Find the stresses with the limits at hand; True if they settled."""
         law, strongest = self.adhesion, self.strongest
         wanted = safe = self.now.pull

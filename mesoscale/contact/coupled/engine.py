@@ -35,8 +35,9 @@ class CoupledContact(Contact):
     """A surface on an elastic half-space, and its pressures at the current separation."""
 
     TOLERANCE = 1e-9  # aimed at, residual of the pressures over the largest one
-    GRID_TOLERANCE = 1e-7  # the same where the whole grid is transformed: half the time of 1e-9
+    GRID_TOLERANCE = 5e-7  # the same where the whole grid is transformed: half the time of 1e-9
     SETTLED = 1e-6  # demanded
+    COARSER = 100.0  # tolerances to which pressures are solved while hardness still changes with the clusters
     # Sites that a dense matrix holds, per pixel of a side: beyond, transforms of the whole grid cost less. With 4 and 8
     # pads of 128^2 sites take 0.8 of the time with 16. The other bound keeps the matrix below 140 MB.
     DENSE_PER_PIXEL = 8
@@ -158,14 +159,15 @@ class CoupledContact(Contact):
         now, before = self.before, self.earlier
         last = now.separation - before.separation
         share = (separation - now.separation) / last if last and math.isfinite(last) else 0.0
-        if 0.0 < share <= self.LONGEST_GUESS and (now.field is None) == (before.field is None):
+        guessed = 0.0 < share <= self.LONGEST_GUESS and (now.field is None) == (before.field is None)
+        if guessed:
             change = now.pressure.copy()
             change[self.place[before.sites]] -= before.pressure
             self.pressure += share * change
-            if self.grid is not None and now.field is not None and before.field is not None:
-                self.grid.field = now.field + share * (now.field - before.field)
         if self.grid is not None:
             self.displacement = self.grid.field[self.sites]
+            if guessed and before.field is not None:
+                self.displacement += share * (self.displacement - before.field[self.sites])
 
     def remarks(self) -> dict[str, float]:
         """What says whether the model holds, for the flags of a cycle (`validity`); the contact as it is now."""
@@ -230,14 +232,17 @@ class CoupledContact(Contact):
         lower one. Returns the rounds and whether they settled.
         """
         for rounds in range(1, self.ROUNDS + 1):
-            solved = self._solve()
-            wanted = self._hardness_of(self._clusters()[0])
-            if rounds >= self.FALLING_ROUNDS:
-                wanted = np.minimum(wanted, self.limit)
-            touching = self.pressure > 0.0
-            if self.hardness.constant or np.array_equal(wanted[touching], self.limit[touching]):
+            for coarser in (1.0,) if self.hardness.constant else (self.COARSER, 1.0):
+                solved = self._solve(coarser)
+                wanted = self._hardness_of(self._clusters()[0])
+                if rounds >= self.FALLING_ROUNDS:
+                    wanted = np.minimum(wanted, self.limit)
+                touching = self.pressure > 0.0
+                if not (self.hardness.constant or np.array_equal(wanted[touching], self.limit[touching])):
+                    self.limit = wanted
+                    break
+            else:
                 return rounds, solved
-            self.limit = wanted
         return self.ROUNDS, False
 
     def _clusters(self) -> tuple[np.ndarray, int]:
@@ -251,17 +256,17 @@ class CoupledContact(Contact):
         area = self.site_area * np.where(number >= 0, sites[number], 1)
         return self.hardness.pressure(area)
 
-    def _solve(self) -> bool:
-        """Find the pressures with the limits at hand; True if they settled."""
+    def _solve(self, coarser: float = 1.0) -> bool:
+        """Find the pressures with the limits at hand, to so many tolerances; True if they settled."""
         while True:
             self._know(self._pressed)
             gap, limit = self._open_gap(), self._bounds()
             if self.grid is None:
                 cell = (self.sites, self.place, self.n, self.stencil)
-                solution = (self.TOLERANCE, self.pressure, self.displacement)
+                solution = (coarser * self.TOLERANCE, self.pressure, self.displacement)
                 _, settled = dense.solve(self.matrix, cell, gap, limit, *solution)
             else:
-                solution = (self.GRID_TOLERANCE, self.pressure, self.displacement)
+                solution = (coarser * self.GRID_TOLERANCE, self.pressure, self.displacement)
                 _, settled = grid.solve(self.grid, self.sites, self.place, gap, limit, *solution)
             if not settled:
                 settled = self._project(gap, limit)
@@ -311,22 +316,23 @@ class CoupledContact(Contact):
         if self.grid is None and count > self.dense:
             self.matrix = self.matrix[:0, :0].copy()  # frees its memory
             self.grid = self.whole
-            self.grid.displace(self.sites, self.pressure)
-        before, pressure, limit = self.sites, self.pressure, self.limit
-        sites = np.concatenate((before, new))
-        self.sites = sites if self.grid is None else np.sort(sites)
+            self.displacement = self.grid.displace(self.sites, self.pressure)
+        displacement = np.zeros(count)
+        displacement[:old] = self.displacement
+        if self.grid is not None:
+            self._displace(new, displacement[old:])
+        values = (self.pressure, np.zeros(new.size)), (self.limit, np.full(new.size, self._fresh_limit))
+        self.sites = np.concatenate((self.sites, new))
+        order = slice(None) if self.grid is None else np.argsort(self.sites)
+        self.sites = self.sites[order]
+        self.pressure, self.limit, self.displacement = (
+            values[order] for values in (*map(np.concatenate, values), displacement)
+        )
         self.place[self.sites] = np.arange(count, dtype=np.int32)
-        places = self.place[before]
-        self.pressure = np.zeros(count)
-        self.limit = np.full(count, self._fresh_limit)
-        self.pressure[places], self.limit[places] = pressure, limit
         if self.grid is None:
             if self.matrix.size == 0:  # memory is touched only as sites come in; the odd length keeps cache lines apart
                 self.matrix = np.empty((self.dense, self.dense + 8))
             dense.extend(self.matrix, self.table, self.scale, self.sites, old, count, self.n)
-            self.displacement = np.zeros(count)
-        else:
-            self.displacement = self.grid.field[self.sites]
 
     @cached_property
     def stencil(self) -> np.ndarray:

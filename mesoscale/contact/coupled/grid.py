@@ -21,8 +21,9 @@ FACE_STEPS = 500
 GRADIENT_STEPS = 500
 SINGLE_SHARE = 1e-6  # single precision gets a linear system at least this far
 FACE_SHARE = 0.3  # each linear system is solved to this share of its first gap: the sets change before more pays
-DIRECT = 256  # free sites up to which a linear system has a matrix
-TABLE_SHARE = 0.5  # of the grid's sites: so many pairs of sites cost less by the table than a transform
+COARSE = 1e-5  # tolerances beyond it need no displacements in double precision
+DIRECT = 1024  # free sites up to which a linear system has a matrix
+TABLE_SHARE = 3.0  # of the grid's sites: so many pairs of sites cost less by the table than a transform
 
 Array = np.ndarray
 Apply = Callable[[Array], Array]
@@ -97,7 +98,8 @@ def solve(
     """
     stiffness, stencil = 1.0 / (grid.scale * grid.table[0, 0]), grid.stencil
     state, numbers = np.full(gap.size, 1, np.int8), np.arange(gap.size)
-    change, block, around, exact = np.zeros(gap.size), None, np.empty((0, 9), np.int32), False
+    coarse = tolerance > COARSE
+    change, block, around, exact = np.zeros(gap.size), None, np.empty((0, 9), np.int32), coarse
     for step in range(NEWTON_STEPS):
         moved = dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0 or step == 0
         block = None if moved else block
@@ -108,7 +110,7 @@ def solve(
         if settled:
             displacement[:], exact = grid.displace(sites, pressure), True
             continue
-        free, exact = state == 1, False
+        free, exact = state == 1, coarse
         count = int(np.count_nonzero(free))
         if bound:
             _follow(grid, sites, change, displacement)
