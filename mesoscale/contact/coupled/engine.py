@@ -38,11 +38,10 @@ class CoupledContact(Contact):
     GRID_TOLERANCE = 5e-7  # the same where the whole grid is transformed: half the time of 1e-9
     SETTLED = 1e-6  # demanded
     COARSER = 100.0  # tolerances to which pressures are solved while hardness still changes with the clusters
-    # Sites that a dense matrix holds, per pixel of a side: beyond, transforms of the whole grid cost less. With 4 and 8
-    # pads of 128^2 sites take 0.8 of the time with 16. The other bound keeps the matrix below 140 MB.
-    DENSE_PER_PIXEL = 8
+    # Sites that a dense matrix holds: so many per pixel of a side, and times the pixels. Beyond, transforms of the whole
+    # grid cost less: pads of 128^2 sites take 0.8 of the time with 4 or 8 per pixel instead of 16.
+    DENSE_PER_PIXEL, DENSE_TIMES_PIXELS = 8, 2**18
     LONGEST_GUESS = 2.0  # over the last step: so far pressures are taken to go on as in it
-    DENSE = 2048
     # nm, and largest displacements: sites nearer than both count with their displacement in the attraction, the others
     # without. Errs by at most 1.2 % at a single step (128^2 and 256^2, elastic and plastic, RMS 2 to 15 nm, to 10 MPa);
     # without the second by 30 % on the roughest
@@ -71,7 +70,7 @@ class CoupledContact(Contact):
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
         # how far 1 nN raises the surface at most, anywhere: it does, because the mean of the displacement is 0
         self.rise = -self.scale * float(self.table.min()) / self.site_area
-        self.dense = min(self.DENSE, self.DENSE_PER_PIXEL * self.n, self.heights.size - 1)
+        self.dense = min(self.DENSE_PER_PIXEL * self.n, self.DENSE_TIMES_PIXELS // self.n, self.heights.size - 1)
         self.matrix = np.empty((0, 0))
         self.place = np.full(self.heights.size, -1, np.int32)
         self.mean = self.offset

@@ -22,7 +22,7 @@ GRADIENT_STEPS = 500
 SINGLE_SHARE = 1e-6  # single precision gets a linear system at least this far
 FACE_SHARE = 0.3  # each linear system is solved to this share of its first gap: the sets change before more pays
 COARSE = 1e-5  # tolerances beyond it need no displacements in double precision
-DIRECT = 1024  # free sites up to which a linear system has a matrix
+DIRECT, DIRECT_PER_PIXEL = 256, 2  # free sites up to which a linear system has a matrix; the same over pixels a side
 TABLE_SHARE = 3.0  # of the grid's sites: so many pairs of sites cost less by the table than a transform
 
 Array = np.ndarray
@@ -114,7 +114,7 @@ def solve(
         count = int(np.count_nonzero(free))
         if bound:
             _follow(grid, sites, change, displacement)
-        if 0 < count <= min(DIRECT, gap.size - 1):
+        if 0 < count <= min(max(DIRECT, DIRECT_PER_PIXEL * grid.shape[0]), gap.size - 1):
             places = np.flatnonzero(free)
             if block is None:
                 block = dense.block(grid.table, grid.scale, sites[places], grid.shape[0])
