@@ -59,6 +59,7 @@ class AdhesiveContact(CoupledContact):
     """A surface on an elastic half-space that attraction deforms, too, and its stresses at the current separation."""
 
     REVERSIBLE = False
+    DENSE_TIMES_PIXELS = 2**20  # each step of the iteration solves anew, and needs no other sites for it
     FORCE_TOLERANCE = 1e-4
     SMALLEST_STEP = 1e-4
     JUMP_STEP = 3e-3  # over the roughness: a step that jumps on the way to a separation is halved down to this
@@ -97,6 +98,7 @@ class AdhesiveContact(CoupledContact):
         nothing = np.zeros(self.heights.size)
         self.now = self.last = Pulled(math.inf, nothing, nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.saved = (self.now, self.last)
+        self.undone: Pulled | None = None  # the state of the last step back, where nothing touched
 
     @property
     def dispersion(self) -> float:
@@ -118,6 +120,7 @@ class AdhesiveContact(CoupledContact):
 
     def back(self) -> None:
         """Undo the last move, its flow and its stresses."""
+        self.undone = None if self.pressure.any() else self.now
         super().back()
         self.now, self.last = self.saved
         self.displacement = self.now.moved[self.sites].astype(float)
@@ -156,13 +159,21 @@ class AdhesiveContact(CoupledContact):
         return loss, 0.25 * abs((now.net - was.net) * step)
 
     def _expected(self, separation: float) -> np.ndarray:
-        """Attraction of the sites if it goes on as in the last step."""
-        step, last = separation - self.now.separation, self.now.separation - self.last.separation
-        if not (math.isfinite(last) and last * step > 0.0):
-            return self.now.pull
-        change = min(step / last, 1.0) * (self.now.pull - self.last.pull)
-        change[self.now.pull <= self.MIXED_PULL * self.strongest] = 0.0
-        return np.clip(self.now.pull + change, 0.0, self.strongest)
+        """Attraction of the sites if it goes on as in the last step, or towards a state without touch that was undone."""
+        now, last = self.now, self.last
+        if self.undone and not self.pressure.any():
+            whole = self.undone.separation - now.separation
+            share = (separation - now.separation) / whole if whole else 0.0
+            if 0.0 < share <= 1.0:
+                return now.pull + share * (self.undone.pull - now.pull)
+        step, before = separation - now.separation, now.separation - last.separation
+        if not (math.isfinite(before) and before * step > 0.0):
+            return now.pull
+        change = now.pull - last.pull
+        change *= min(step / before, 1.0)
+        change[now.pull <= self.MIXED_PULL * self.strongest] = 0.0
+        change += now.pull
+        return np.clip(change, 0.0, self.strongest, out=change)
 
     @property
     def lost(self) -> float:
@@ -244,26 +255,30 @@ class AdhesiveContact(CoupledContact):
         return super()._highest(force) - float(self.now.shift.min())
 
     def _solve(self, coarser: float = 1.0) -> bool:
-        """Find the stresses with the limits at hand; True if they settled."""
-        law, strongest = self.adhesion, self.strongest
+        return self._solve_rounds()[1]
+
+    def _solve_rounds(self) -> tuple[int, bool]:
+        """Find the stresses; each step of the iteration is a round of hardness, too, until the clusters keep theirs."""
+        law, strongest, undeformed = self.adhesion, self.strongest, self.heights + self.separation
         wanted = safe = self.now.pull
         mixed = np.empty(0, int)
         steps: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=self.MIXED)
-        lowest, settled, change = math.inf, False, math.inf
+        lowest, settled, change, rounds = math.inf, False, math.inf, 1
         for _ in range(self.STEPS):
             self.now = self.now._replace(pull=wanted, shift=-self._bent(wanted))
             settled = super()._solve()
-            pressure = self._spread()
-            moved = self.now.shift + (self._bent(pressure) if self.grid is None else self.grid.field)
-            reached = np.zeros(moved.size)
-            energy = change = 0.0
+            moved = self.now.shift
+            if self.pressure.any():  # else nothing costs no transform
+                moved = moved + (self._bent(self._spread()) if self.grid is None else self.grid.field)
+            reached, change = np.zeros(moved.size), 0.0
+            energy = 0.5 * float(self.pressure @ moved[self.sites])
             if law is not None:
-                stresses, walls = (pressure, wanted), (law.least, law.offset, law.rate, law.reach_nm)
-                energy, change = attract(
-                    self.heights + self.separation, moved, *stresses, self.hamaker, walls, self.liquid_law, reached
-                )
+                walls = (law.least, law.offset, law.rate, law.reach_nm)
+                gained, change = attract(undeformed, moved, wanted, self.hamaker, walls, self.liquid_law, reached)
+                energy += gained
             yielding = self.pressure >= self._bounds()
-            overlap = -(self.heights + self.separation + moved)[self.sites[yielding]]
+            pressed = self.sites[yielding]
+            overlap = -(undeformed[pressed] + moved[pressed])
             flowing = float(self.limit[yielding] @ overlap)
             energy += flowing + strongest * float(overlap.sum())
             self.now = self.now._replace(
@@ -272,7 +287,9 @@ class AdhesiveContact(CoupledContact):
                 flowing=flowing * self.site_area,
                 total=float(reached.sum()) * self.site_area,
             )
-            if change <= self.CHANGE * strongest:
+            if self.bounded and rounds < self.ROUNDS and self._hardens(rounds):
+                rounds, lowest = rounds + 1, math.inf
+            elif change <= self.CHANGE * strongest:
                 break
             if wanted is not safe and energy > lowest:  # a mix that leads astray
                 steps.clear()
@@ -287,7 +304,7 @@ class AdhesiveContact(CoupledContact):
                 wanted = reached.copy()
                 wanted[mixed] = np.clip(mix(steps), 0.0, strongest)
         self.displacement = self.now.moved[self.sites].astype(float)
-        return settled and change <= self.CHANGE * strongest
+        return rounds, settled and change <= self.CHANGE * strongest and rounds < self.ROUNDS
 
 
 def mix(steps: deque[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
@@ -299,7 +316,7 @@ def mix(steps: deque[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
 
 
 @njit(cache=True)
-def attract(undeformed, moved, pressure, pull, hamaker, walls, liquid, reached):
+def attract(undeformed, moved, pull, hamaker, walls, liquid, reached):
     """Attraction (GPa) of the sites of a deformed surface, into `reached`.
 
     The energy of flats s apart is -A_H / (12 pi s^2 (1 + c s)); within the least distance the attraction is constant.
@@ -307,7 +324,7 @@ def attract(undeformed, moved, pressure, pull, hamaker, walls, liquid, reached):
 
     Returns
     -------
-    Elastic and adhesive energy, nN/nm, and the largest change of the attraction from `pull`, GPa.
+    Elastic and adhesive energy of the attraction, nN/nm, and the largest change of the attraction from `pull`, GPa.
     """
     strength, (least, offset, rate, reach) = hamaker / (6.0 * np.pi), walls
     (share, laplace), outer = liquid, max(reach, least) + offset
@@ -318,7 +335,7 @@ def attract(undeformed, moved, pressure, pull, hamaker, walls, liquid, reached):
         gap = undeformed[k] + moved[k]
         apart = max(gap, least) + offset
         reached[k] = strength * inverse_cube(apart, rate)
-        energy += 0.5 * (pressure[k] - pull[k]) * moved[k]
+        energy -= 0.5 * pull[k] * moved[k]
         parting = 0.5 * strength / (apart * apart * (1.0 + rate * apart)) + reached[k] * max(least - gap, 0.0)
         if gap < reach:
             reached[k] = share * reached[k] + laplace

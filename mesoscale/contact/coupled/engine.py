@@ -233,16 +233,24 @@ class CoupledContact(Contact):
         for rounds in range(1, self.ROUNDS + 1):
             for coarser in (1.0,) if self.hardness.constant else (self.COARSER, 1.0):
                 solved = self._solve(coarser)
-                wanted = self._hardness_of(self._clusters()[0])
-                if rounds >= self.FALLING_ROUNDS:
-                    wanted = np.minimum(wanted, self.limit)
-                touching = self.pressure > 0.0
-                if not (self.hardness.constant or np.array_equal(wanted[touching], self.limit[touching])):
-                    self.limit = wanted
+                if self._hardens(rounds):
                     break
             else:
                 return rounds, solved
         return self.ROUNDS, False
+
+    def _hardens(self, rounds: int) -> bool:
+        """Take the hardness of the clusters, after many rounds only a lower one; whether that changes any limit."""
+        if self.hardness.constant:
+            return False
+        wanted = self._hardness_of(self._clusters()[0])
+        if rounds >= self.FALLING_ROUNDS:
+            wanted = np.minimum(wanted, self.limit)
+        touching = self.pressure > 0.0
+        if np.array_equal(wanted[touching], self.limit[touching]):
+            return False
+        self.limit = wanted
+        return True
 
     def _clusters(self) -> tuple[np.ndarray, int]:
         """Number of the cluster of each known site, -1 where it is apart, and how many there are."""
