@@ -213,7 +213,9 @@ def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False)
         return _refuse(f"scene={given.scene}: characters that do not print; rename the file")
     options = ["--dry-run", "--quiet", "rules"]
     if not dry:
-        options = ["--resources", f"mem_mb={_memory_MB()}", "--quiet", "host", "reason"]
+        from mesoscale.checks import machine_MB
+
+        options = ["--resources", f"mem_mb={machine_MB()}", "--quiet", "host", "reason"]
     _become(
         *("-c", START, "--snakefile", str(ROOT / "Snakefile"), "--profile", "none", "--workflow-profile", "none"),
         *("--rerun-incomplete", "--nolock", "--max-checksum-file-size", "1000000000"),  # as workflow/profiles/local
@@ -243,13 +245,6 @@ def _hours(text: str) -> float:
     if not 0 < hours < float("inf"):
         raise argparse.ArgumentTypeError(f"{shown(text)}: accepted is a number > 0")
     return hours
-
-
-def _memory_MB() -> int:
-    """Memory of this machine, which jobs share."""
-    import psutil
-
-    return psutil.virtual_memory().total // 10**6
 
 
 def _refuse(message: str) -> int:

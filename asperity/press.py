@@ -7,7 +7,7 @@ from typing import Any, get_args
 import numpy as np
 
 from asperity.film import Shown
-from mesoscale.checks import check_number, checked_array, checked_heights
+from mesoscale.checks import check_memory, check_number, checked_array, checked_heights
 from mesoscale.contact.attraction import attracting
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.coupled.free import FreeContact
@@ -119,7 +119,7 @@ def press(
 
     Raises
     ------
-    InputError : no such map, side, load or material; a load beyond full contact.
+    InputError : no such map, side, load or material; a map beyond memory; a load beyond full contact.
     """
     surface, spacing = _surface(heights, counterface, side_nm, periodic, contact_at)
     if (loads_nN is None) == (approach_nm is None):
@@ -175,6 +175,7 @@ def _surface(
         raise InputError(f"heights: {shape[0]} x {shape[1]} sites; periodic maps are square: cut it, or periodic=False")
     if contact_at not in get_args(ContactAt):
         raise InputError(f"contact_at = {contact_at}: accepted are highest (measured maps) and lowest")
+    check_memory(shape[0] ** 2 if periodic else 4 * max(shape) ** 2, "coupled")
     together = maps[0] + maps[1][::-1] if counterface is not None else maps[0]
     return (-together if contact_at == "highest" else together.copy()), spacing
 

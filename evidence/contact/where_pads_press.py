@@ -3,7 +3,8 @@
 A pair (there and back, double precision) is timed after every step of the cycle, so that the unit has the load of the
 machine. Film: the medians of scene `reduced` at 40 MPa. Table 1: the paper's means, 7 MPa, sites of 1 nm. Shares: a
 smooth elastic surface closed to a share of contact. tamaas solves one elastic load at the largest force; its time is
-multiplied by the rows of the cycle. Needs `pip install tamaas` for the ratio.
+multiplied by the rows of the cycle. Needs `pip install tamaas` for the ratio. With `--choices` each numerical choice
+of the solver is tried on the smooth surfaces: the largest error of a net force, over the largest force.
 """
 
 import argparse
@@ -46,6 +47,13 @@ FILM = FilmInputs(
 FILM_CELL = {"length_nm": 1000.0, "q1_per_nm": 0.2895, "gap_cutoff_nm": 0.285}
 SMOOTH = replace(MIDDLE, rms=2.0, q0=0.015)
 SMOOTH_CELL = {"length_nm": 1000.0, "q1_per_nm": 0.1}
+CHOICES = (  # the first is the reference
+    *((CoupledContact, "GRID_TOLERANCE", value) for value in (1e-10, 1e-8, 1e-7, 5e-7, 1e-6, 1e-5)),
+    *((CoupledContact, "DENSE_TIMES_PIXELS", value) for value in (0, 2**18, 2**20)),
+    *((grid, "DIRECT_PER_PIXEL", value) for value in (0, 2, 4)),
+    *((grid, "TABLE_SHARE", value) for value in (0.0, 0.5, 3.0)),
+    (grid.Grid, "stencil", np.eye(9)[4]),  # conjugate gradients without preconditioner
+)
 ADHESIVE = {"mechanics": "adhesive", "gap_cutoff_nm": 0.3, "q1_per_nm": 0.4}
 
 
@@ -80,10 +88,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--pixels", type=int, nargs="+", default=[256, 512, 1024, 2048])
     parser.add_argument("--only", default="", help="what has these words in its name")
     parser.add_argument("--no-peer", action="store_true", help="without tamaas")
+    parser.add_argument("--choices", action="store_true", help="of the solver, instead")
 
 
 def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """A row for each grid and cycle; printed as it comes."""
+    if given.choices:
+        yield from _choices(given.pixels)
+        return
     peer = importlib.util.find_spec("tamaas") and not given.no_peer
     for case in cases(128):  # all is compiled, or loaded
         if given.only in case.name and case.name != "adhesive":
@@ -91,11 +103,24 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     for pixels in given.pixels:
         for case in cases(pixels):
             if given.only in case.name:
-                row = {"pixels": pixels, "what": case.name, "MPa": case.stress_MPa, **_timed(case)}
+                row = {"pixels": pixels, "what": case.name, "MPa": case.stress_MPa, **_timed(case)[0]}
                 if peer and case.settings.model == "elastic":
                     row |= _beside(case, row)
                 print(*row.values(), flush=True)
                 yield row
+
+
+def _choices(grids: Sequence[int]) -> Iterator[dict[str, Any]]:
+    """A row for each choice on each smooth surface; the error is over the largest force."""
+    for case in (case for pixels in grids for case in cases(pixels) if case.name.startswith("smooth")):
+        exact = None
+        for owner, name, value in CHOICES:
+            with mock.patch.object(owner, name, value):
+                row, forces = _timed(case)
+            exact = forces if exact is None else exact
+            what = f"{case.name}, {name} = {value}"
+            row = {"pixels": case.settings.pixels, "what": what, "MPa": case.stress_MPa, **row}
+            yield row | {"error": float(np.abs(forces - exact).max() / exact.max())}
 
 
 def _surface(case: Case) -> np.ndarray:
@@ -106,8 +131,8 @@ def _force_nN(case: Case) -> float:
     return 1e-3 * case.stress_MPa * case.settings.length_nm**2
 
 
-def _timed(case: Case) -> dict[str, Any]:
-    """Seconds of a cycle, less those of the pairs that are its unit, and what it counted."""
+def _timed(case: Case) -> tuple[dict[str, Any], np.ndarray]:
+    """Seconds of a cycle, less those of the pairs that are its unit, and what it counted; its net forces (nN)."""
     heights, pairs, newton = _surface(case), [], []
     noise = np.random.default_rng(SEED).standard_normal(heights.shape)
 
@@ -137,7 +162,8 @@ def _timed(case: Case) -> dict[str, Any]:
         "converged": cycle.converged,
         "peer_load_s": np.nan,
         "times_peer": np.nan,
-    }
+        "error": np.nan,
+    }, np.concatenate((cycle.closing.net_nN, cycle.opening.net_nN))
 
 
 @contextmanager
@@ -164,4 +190,5 @@ def _beside(case: Case, row: Mapping[str, Any]) -> dict[str, float]:
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Pairs of each cycle, by its name and grid."""
-    return {f"{row['what'].replace(' ', '_')}_{row['pixels']}": f"{float(row['pairs']):.0f}" for row in rows}
+    cycles = [row for row in rows if row["error"] == "nan"]
+    return {f"{row['what'].replace(' ', '_')}_{row['pixels']}": f"{float(row['pairs']):.0f}" for row in cycles}

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesoscale.checks import check_number, check_seed
+from mesoscale.checks import check_memory, check_number, check_seed
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.path import reopen, trace
 from mesoscale.contact.pressed import Contact, Row
@@ -138,14 +138,15 @@ def run_cycle(
     Raises
     ------
     InputError
-        For heights without `contact_at` or that are not a square of real, finite numbers in nm on the stated side, a
-        force that is not positive, or a seed that is no whole number.
+        For a surface beyond memory, heights without `contact_at` or that are not a square of real, finite numbers in
+        nm on the stated side, a force that is not positive, or a seed that is no whole number.
     """
     plastic = settings.model == "plastic"
     check_seed(seed)
     force = settings.max_force_nN if max_force_nN is None else max_force_nN
     check_number("max_force_nN", force, SMALLEST_FORCE_NN, LARGEST_FORCE_NN, "nN")
     surface, settings = given_surface(heights, length_nm, contact_at, settings)
+    check_memory(settings.pixels**2, settings.mechanics)
     if surface is None:
         surface = random_surface(inputs, settings, seed)
     elif plastic:

@@ -6,6 +6,7 @@ Everything here is known before the first job. Imports the table of the inputs (
 import math
 from collections.abc import Iterator, Mapping
 
+from mesoscale.checks import machine_MB
 from mesoscale.contact.menisci import water_vapour_kPa
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import check_literature
@@ -13,7 +14,7 @@ from mesoscale.settings import DeviceSettings
 from mesoscale.settings.contact import AirSettings, advised_grid, base_modulus
 from mesoscale.settings.definitions import BY_NAME
 from workflow.scene.definition import Scene
-from workflow.scene.memory import contact_MB, machine_MB
+from workflow.scene.memory import contact_MB
 
 
 def mistakes(scene: Scene, samples: Mapping[str, str]) -> list[str]:

@@ -1,13 +1,11 @@
 """Memory that a contact needs, and that this machine has.  Imports little: every job reads it."""
 
-import psutil
-
+from mesoscale.checks import SITE_MB
 from mesoscale.settings import HistorySettings, SceneContact, UncertaintySettings
 from mesoscale.settings.history import DWELL_STEPS, SURFACES
 from mesoscale.settings.uncertainty import RESAMPLES
 
 PROCESS_MB = 600.0  # a job is two processes with their packages
-SITE_MB = {"asperity": 62e-6, "coupled": 140e-6, "adhesive": 260e-6}  # 4096^2 sites take 1.1 GB, 1024^2 323 and 515 MB
 RUN_MB = 6e-3  # a direct run in regressions: 4000 to 10,000 of them take 26 MB, their rows 1.5 kB each
 RESAMPLED_MB = 32e-6  # a direct run in each resampling; measured with 10,000 runs, 24e-6 with 30,000
 ROW_MB = 1.4e-3  # a row of a history's table, as it is made and written
@@ -28,8 +26,3 @@ def propagation_MB(uncertainty: UncertaintySettings) -> int:
     """Memory of the process that fits the responses to all direct runs and resamples these, in MB."""
     run_MB = RUN_MB + RESAMPLED_MB * RESAMPLES
     return round(PROCESS_MB + run_MB * uncertainty.direct_runs)
-
-
-def machine_MB() -> int:
-    """Memory of this machine, in MB."""
-    return psutil.virtual_memory().total // 10**6

@@ -66,7 +66,8 @@ class AdhesiveContact(CoupledContact):
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
-    MIXED_PULL = 1e-3  # sites with less than this share of the largest attraction are not mixed
+    # of the largest attraction: sites with less are not mixed; where a step changes less, energies differ by rounding
+    MIXED_PULL = 1e-3
 
     def __init__(
         self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
@@ -159,7 +160,7 @@ class AdhesiveContact(CoupledContact):
         return loss, 0.25 * abs((now.net - was.net) * step)
 
     def _expected(self, separation: float) -> np.ndarray:
-        """Attraction of the sites if it goes on as in the last step, or towards a state without touch that was undone."""
+        """Attraction of the sites if it goes on as in the last step, or towards an undone state without touch."""
         now, last = self.now, self.last
         if self.undone and not self.pressure.any():
             whole = self.undone.separation - now.separation
@@ -291,7 +292,9 @@ class AdhesiveContact(CoupledContact):
                 rounds, lowest = rounds + 1, math.inf
             elif change <= self.CHANGE * strongest:
                 break
-            if wanted is not safe and energy > lowest:  # a mix that leads astray
+            if (
+                wanted is not safe and energy > lowest and change > self.MIXED_PULL * strongest
+            ):  # a mix that leads astray
                 steps.clear()
                 wanted = safe
                 continue

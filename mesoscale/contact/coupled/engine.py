@@ -38,8 +38,8 @@ class CoupledContact(Contact):
     GRID_TOLERANCE = 5e-7  # the same where the whole grid is transformed: half the time of 1e-9
     SETTLED = 1e-6  # demanded
     COARSER = 100.0  # tolerances to which pressures are solved while hardness still changes with the clusters
-    # Sites that a dense matrix holds: so many per pixel of a side, and times the pixels. Beyond, transforms of the whole
-    # grid cost less: pads of 128^2 sites take 0.8 of the time with 4 or 8 per pixel instead of 16.
+    # Bounds of the sites that a dense matrix holds: over the pixels of a side, and times these. Beyond, transforms of
+    # the whole grid cost less: pads of 128^2 sites take 0.8 of the time with 4 or 8 per pixel instead of 16.
     DENSE_PER_PIXEL, DENSE_TIMES_PIXELS = 8, 2**18
     LONGEST_GUESS = 2.0  # over the last step: so far pressures are taken to go on as in it
     # nm, and largest displacements: sites nearer than both count with their displacement in the attraction, the others

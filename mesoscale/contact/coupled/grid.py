@@ -126,7 +126,7 @@ def solve(
             pressure += change
             _follow(grid, sites, change, displacement)
         elif count:
-            goal = 0.1 * tolerance * float(pressure.max()) / stiffness
+            goal = 0.3 * tolerance * float(pressure.max()) / stiffness
             around = dense.neighbours(sites, place, grid.shape[0], numbers[free], numbers)
             share = FACE_SHARE if moved else 0.0
             _close_gaps(grid, sites, free, (around, stencil), gap, (pressure, displacement), goal, share)
