@@ -97,6 +97,13 @@ def test_a_pressed_map_is_drawn_and_says_what_it_is():
     assert list(pressed.lines())[2].startswith("1000 nN: ")
 
 
+@pytest.mark.parametrize(("periodic", "needed"), [(True, "0.00229"), (False, "0.00918")])
+def test_a_map_beyond_memory_is_refused(monkeypatch, periodic, needed):
+    monkeypatch.setattr("mesoscale.checks.machine_MB", lambda: 2)
+    with pytest.raises(asp.InputError, match=f"needs {needed} GB of memory, this machine has 0.002; take a part"):
+        asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=periodic)
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

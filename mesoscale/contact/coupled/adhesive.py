@@ -161,20 +161,16 @@ class AdhesiveContact(CoupledContact):
 
     def _expected(self, separation: float) -> np.ndarray:
         """Attraction of the sites if it goes on as in the last step, or towards an undone state without touch."""
-        now, last = self.now, self.last
+        step, last = separation - self.now.separation, self.now.separation - self.last.separation
         if self.undone and not self.pressure.any():
-            whole = self.undone.separation - now.separation
-            share = (separation - now.separation) / whole if whole else 0.0
-            if 0.0 < share <= 1.0:
-                return now.pull + share * (self.undone.pull - now.pull)
-        step, before = separation - now.separation, now.separation - last.separation
-        if not (math.isfinite(before) and before * step > 0.0):
-            return now.pull
-        change = now.pull - last.pull
-        change *= min(step / before, 1.0)
-        change[now.pull <= self.MIXED_PULL * self.strongest] = 0.0
-        change += now.pull
-        return np.clip(change, 0.0, self.strongest, out=change)
+            whole = self.undone.separation - self.now.separation
+            if 0.0 < step / (whole or math.inf) <= 1.0:
+                return self.now.pull + step / whole * (self.undone.pull - self.now.pull)
+        if not (math.isfinite(last) and last * step > 0.0):
+            return self.now.pull
+        change = min(step / last, 1.0) * (self.now.pull - self.last.pull)
+        change[self.now.pull <= self.MIXED_PULL * self.strongest] = 0.0
+        return np.clip(self.now.pull + change, 0.0, self.strongest)
 
     @property
     def lost(self) -> float:
@@ -292,10 +288,8 @@ class AdhesiveContact(CoupledContact):
                 rounds, lowest = rounds + 1, math.inf
             elif change <= self.CHANGE * strongest:
                 break
-            if (
-                wanted is not safe and energy > lowest and change > self.MIXED_PULL * strongest
-            ):  # a mix that leads astray
-                steps.clear()
+            if wanted is not safe and energy > lowest and change > self.MIXED_PULL * strongest:
+                steps.clear()  # a mix that leads astray
                 wanted = safe
                 continue
             if not steps:

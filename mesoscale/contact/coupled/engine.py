@@ -49,10 +49,6 @@ class CoupledContact(Contact):
     # share of the cell: so few sites near liquid count with their displacement. Where it fills more, its edge is far
     # from most contacts, and the others err by at most 0.5 % (128^2 and 256^2, 20 nN to 20 uN, RMS 2 and 5 nm)
     NEAR_LIQUID = 0.1
-    # sites a side of the grid for the displacement of sites near liquid, where they make more pairs with those under
-    # pressure than so many for each of its sites: a transform takes as long
-    COARSE = 128
-    PAIRS_PER_SITE = 16
     TRANSFORM_PAIRS = 8  # pairs of sites for each of the cell that take as long as a transform there and back
     AIMS_AT_END = True
     ROUNDS = 40
@@ -382,11 +378,7 @@ class CoupledContact(Contact):
         displacement = np.zeros(sites.size)
         if self.force > 0.0:
             displacement[:known] = self.displacement
-            last = count
-            if (count - known) * np.count_nonzero(self.pressure) > self.PAIRS_PER_SITE * self.COARSE**2:
-                last = max(int(np.searchsorted(self.order_heights[:count], edge)), known)
-                displacement[last:] = self._coarse_field()[self._coarse_site(sites[last:])]
-            self._displace(sites[known:last], displacement[known:last])
+            self._displace(sites[known:count], displacement[known:count])
         gap = self.heights[sites[:count]] + separation + displacement[:count]
         return law.deformed(gap, self._weight(sites[:count]), separation, wet)
 
@@ -396,21 +388,6 @@ class CoupledContact(Contact):
             displacement += self.whole.displacement(self.whole.spread(self.sites, self.pressure))[others]
             return
         clusters.displace(self.table, self.scale, self.n, self.sites, self.pressure, others, displacement)
-
-    def _coarse_site(self, sites: np.ndarray) -> np.ndarray:
-        """Sites of a coarse grid on which some sites are."""
-        side = min(self.COARSE, self.n)
-        return sites // self.n * side // self.n * side + sites % self.n * side // self.n
-
-    def _coarse_field(self) -> np.ndarray:
-        """Displacement (nm) of a coarse grid; a pixel away from the contacts it is that of the sites."""
-        side = min(self.COARSE, self.n)
-        pressure = np.bincount(self._coarse_site(self.sites), self.pressure, side**2)
-        return self._coarse.displacement(pressure * (side / self.n) ** 2)
-
-    @cached_property
-    def _coarse(self) -> grid.Grid:
-        return grid.Grid(min(self.COARSE, self.n), self.length, self.e_star, self.bodies)
 
     def _weight(self, sites: np.ndarray) -> np.ndarray:
         touching = self.adhesion is not None and self.adhesion.touching

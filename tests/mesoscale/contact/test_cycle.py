@@ -202,6 +202,15 @@ def test_measured_heights_touch_at_their_peaks_and_heights_of_no_stated_side_are
         run_cycle(INPUTS, settings_for(), 1, heights=ROUGH)
 
 
+def test_a_surface_beyond_memory_is_refused_before_it_is_made(monkeypatch):
+    monkeypatch.setattr("mesoscale.checks.machine_MB", lambda: 16_000)
+    monkeypatch.setattr("mesoscale.contact.cycle.random_surface", None)
+    settings = ContactSettings(mechanics="coupled").model_copy(update={"pixels": 16384})
+    with pytest.raises(InputError, match=r"needs 37\.6 GB of memory, this machine has 16; take a part") as refusal:
+        run_cycle(INPUTS, settings, 1)
+    assert "\n" not in str(refusal.value)
+
+
 def test_a_side_without_heights_is_refused():
     with pytest.raises(InputError, match="give both"):
         run_cycle(INPUTS, settings_for(), 1, length_nm=250.0)
