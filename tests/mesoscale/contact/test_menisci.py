@@ -267,17 +267,6 @@ def test_liquid_far_from_contacts_counts_undeformed(monkeypatch, humidity):
     assert np.abs(pulls[0.0] / exact - 1.0).max() > 1e-4
 
 
-def test_the_coarse_grid_moves_the_edge_of_the_liquid_alike(monkeypatch):
-    pulls = []
-    for pairs in (np.inf, 0.0):
-        monkeypatch.setattr(CoupledContact, "PAIRS_PER_SITE", pairs)
-        monkeypatch.setattr(CoupledContact, "COARSE", 48)
-        inputs, settings = rough(air=AirSettings(humidity=0.8))
-        pulls.append(run_cycle(inputs, settings, 1).closing.attractive_nN)
-    assert pulls[1] == pytest.approx(pulls[0], rel=0.01)
-    assert not np.array_equal(*pulls)
-
-
 @pytest.mark.parametrize("mechanics", ["asperity", "coupled"])
 def test_a_flooded_pad_is_two_flats(mechanics):
     inputs, settings = rough(mechanics, air=AirSettings(humidity=0.98))
