@@ -227,11 +227,12 @@ class CoupledContact(Contact):
         lower one. Returns the rounds and whether they settled.
         """
         for rounds in range(1, self.ROUNDS + 1):
-            for coarser in (1.0,) if self.hardness.constant else (self.COARSER, 1.0):
-                solved = self._solve(coarser)
+            if not self.hardness.constant:
+                self._solve(self.COARSER)
                 if self._hardens(rounds):
-                    break
-            else:
+                    continue
+            solved = self._solve()
+            if not self._hardens(rounds):
                 return rounds, solved
         return self.ROUNDS, False
 
