@@ -12,8 +12,7 @@ from mesoscale.errors import InputError
 MIN_ROUGHNESS, MAX_ROUGHNESS = 1e-9, 1e5
 """RMS height over side beyond which the two are in different units: a factor of 1e9 misses any real surface."""
 MIN_LENGTH_NM, MAX_LENGTH_NM = 0.1, 1e9
-SITE_MB = {"asperity": 62e-6, "coupled": 140e-6, "adhesive": 260e-6}
-"""Memory of a site of a contact by its mechanics: 4096^2 sites take 1.1 GB, 1024^2 323 and 515 MB."""
+SITE_MB = {"asperity": 62e-6, "coupled": 140e-6, "adhesive": 260e-6}  # 4096^2 sites take 1.1 GB, 1024^2 323 and 515 MB
 
 
 def check_number(name: str, value: Any, low: float, high: float, unit: str, zero: bool = False) -> None:
@@ -47,18 +46,11 @@ def machine_MB() -> int:
 
 
 def check_memory(sites: int, mechanics: str) -> None:
-    """Refuse a surface whose contact needs more memory than this machine has, before it is made.
-
-    Raises
-    ------
-    InputError
-    """
-    needed, present = SITE_MB[mechanics] * sites, machine_MB()
+    """Refuse a surface whose contact needs more memory than this machine has (InputError), before it is made."""
+    needed, present = SITE_MB[mechanics] * sites / 1000, machine_MB() / 1000
     if needed > present:
-        raise InputError(
-            f"a contact of {sites} sites needs {needed / 1000:.3g} GB of memory, this machine has "
-            f"{present / 1000:.3g}; take a part of the surface, or every second site"
-        )
+        needs = f"a contact of {sites} sites needs {needed:.3g} GB of memory, this machine has {present:.3g}"
+        raise InputError(f"{needs}; take a part of the surface, or every second site")
 
 
 def checked_array(name: str, values: Any, unit: str, missing: bool = False) -> np.ndarray:

@@ -66,8 +66,7 @@ class AdhesiveContact(CoupledContact):
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
-    # of the largest attraction: sites with less are not mixed; where a step changes less, energies differ by rounding
-    MIXED_PULL = 1e-3
+    MIXED_PULL = 1e-3  # of the largest attraction: sites below are not mixed, energies of smaller steps not compared
 
     def __init__(
         self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
@@ -222,18 +221,12 @@ class AdhesiveContact(CoupledContact):
         """Stress (GPa, compression positive) and gap (nm) of all sites, shapes (N, N)."""
         shape = (self.n, self.n)
         gap = np.maximum(self.heights + self.separation + self.now.moved, 0.0)
-        return (self._spread() - self.now.pull).reshape(shape), gap.reshape(shape)
+        return (self.whole.spread(self.sites, self.pressure) - self.now.pull).reshape(shape), gap.reshape(shape)
 
     def filled_share(self, separation: float) -> float:
         """Share of the cell that liquid fills at the current separation."""
         reach = self.adhesion.reach_nm if self.adhesion else 0.0
         return float(np.mean(np.maximum(self.heights + separation + self.now.moved, 0.0) < reach))
-
-    def _spread(self) -> np.ndarray:
-        """Pressures of all sites, shape (N^2,)."""
-        pressure = np.zeros(self.heights.size)
-        pressure[self.sites] = self.pressure
-        return pressure
 
     def _bent(self, stress: np.ndarray) -> np.ndarray:
         """Displacement (nm) by stresses (GPa), (N^2,); none costs no transform, and single precision is enough."""
@@ -265,8 +258,10 @@ class AdhesiveContact(CoupledContact):
             self.now = self.now._replace(pull=wanted, shift=-self._bent(wanted))
             settled = super()._solve()
             moved = self.now.shift
-            if self.pressure.any():  # else nothing costs no transform
-                moved = moved + (self._bent(self._spread()) if self.grid is None else self.grid.field)
+            if self.grid is not None:
+                moved = moved + self.grid.field
+            elif self.pressure.any():
+                moved = moved + self._bent(self.whole.spread(self.sites, self.pressure))
             reached, change = np.zeros(moved.size), 0.0
             energy = 0.5 * float(self.pressure @ moved[self.sites])
             if law is not None:
@@ -274,8 +269,7 @@ class AdhesiveContact(CoupledContact):
                 gained, change = attract(undeformed, moved, wanted, self.hamaker, walls, self.liquid_law, reached)
                 energy += gained
             yielding = self.pressure >= self._bounds()
-            pressed = self.sites[yielding]
-            overlap = -(undeformed[pressed] + moved[pressed])
+            overlap = -(undeformed[self.sites] + moved[self.sites])[yielding]
             flowing = float(self.limit[yielding] @ overlap)
             energy += flowing + strongest * float(overlap.sum())
             self.now = self.now._replace(

@@ -62,6 +62,7 @@ class CoupledContact(Contact):
         self.hamaker, self.settings = float(inputs.hamaker), settings
         self.bodies = settings.bodies
         self.table = half_space.influence(self.n, self.length, self.bodies)
+        self.stencil = half_space.stiffness_between_neighbours(self.table)
         self.scale = self.length / self.e_star
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
         # how far 1 nN raises the surface at most, anywhere: it does, because the mean of the displacement is 0
@@ -212,8 +213,7 @@ class CoupledContact(Contact):
 
     def fields(self) -> tuple[np.ndarray, np.ndarray]:
         """Pressure (GPa) and gap (nm; 0 in contact) of all sites at the current separation, shapes (N, N)."""
-        pressure = np.zeros(self.heights.size)
-        pressure[self.sites] = self.pressure
+        pressure = self.whole.spread(self.sites, self.pressure.copy())
         displacement = self.whole.displacement(pressure)
         gap = np.where(pressure > 0.0, 0.0, np.maximum(self.heights + self.separation + displacement, 0.0))
         return pressure.reshape(self.n, self.n), gap.reshape(self.n, self.n)
@@ -238,13 +238,11 @@ class CoupledContact(Contact):
 
     def _hardens(self, rounds: int) -> bool:
         """Take the hardness of the clusters, after many rounds only a lower one; whether that changes any limit."""
-        if self.hardness.constant:
-            return False
         wanted = self._hardness_of(self._clusters()[0])
         if rounds >= self.FALLING_ROUNDS:
             wanted = np.minimum(wanted, self.limit)
         touching = self.pressure > 0.0
-        if np.array_equal(wanted[touching], self.limit[touching]):
+        if self.hardness.constant or np.array_equal(wanted[touching], self.limit[touching]):
             return False
         self.limit = wanted
         return True
@@ -321,27 +319,19 @@ class CoupledContact(Contact):
             self.matrix = self.matrix[:0, :0].copy()  # frees its memory
             self.grid = self.whole
             self.displacement = self.grid.displace(self.sites, self.pressure)
-        displacement = np.zeros(count)
+        sites, pressure = np.append(self.sites, new), np.append(self.pressure, np.zeros(new.size))
+        limit, displacement = np.append(self.limit, np.full(new.size, self._fresh_limit)), np.zeros(count)
         displacement[:old] = self.displacement
         if self.grid is not None:
             self._displace(new, displacement[old:])
-        values = (self.pressure, np.zeros(new.size)), (self.limit, np.full(new.size, self._fresh_limit))
-        self.sites = np.concatenate((self.sites, new))
-        order = slice(None) if self.grid is None else np.argsort(self.sites)
-        self.sites = self.sites[order]
-        self.pressure, self.limit, self.displacement = (
-            values[order] for values in (*map(np.concatenate, values), displacement)
-        )
+        order = slice(None) if self.grid is None else np.argsort(sites)
+        known = (sites[order], pressure[order], limit[order], displacement[order])
+        self.sites, self.pressure, self.limit, self.displacement = known
         self.place[self.sites] = np.arange(count, dtype=np.int32)
         if self.grid is None:
             if self.matrix.size == 0:  # memory is touched only as sites come in; the odd length keeps cache lines apart
                 self.matrix = np.empty((self.dense, self.dense + 8))
             dense.extend(self.matrix, self.table, self.scale, self.sites, old, count, self.n)
-
-    @cached_property
-    def stencil(self) -> np.ndarray:
-        """`half_space.stiffness_between_neighbours` of this half-space."""
-        return half_space.stiffness_between_neighbours(self.table)
 
     @cached_property
     def whole(self) -> grid.Grid:
