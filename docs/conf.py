@@ -26,6 +26,7 @@ extensions = [
 exclude_patterns = ["_build", "*.py", "api/*/modules.rst"]
 html_theme = "furo"
 html_title = "Asperity"
+html_search_scorer = "search_order.js"
 default_role = "code"
 myst_heading_anchors = 3
 myst_enable_extensions = ["dollarmath", "substitution"]

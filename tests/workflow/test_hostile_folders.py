@@ -47,6 +47,8 @@ def test_an_ordinary_folder_passes(results):
         (lambda folder: (folder / ".lock").symlink_to("../outside"), "out of its folder"),
         (lambda folder: (folder / "law").symlink_to("/tmp"), "out of its folder"),
         (lambda folder: (folder / "work/glass/log.lammps").symlink_to("/tmp/x"), "out of its folder"),
+        (lambda folder: (folder / "law").symlink_to("/proc/1/cwd"), "out of its folder"),  # which only root may read
+        (lambda folder: (folder / "law").symlink_to("law"), "out of its folder"),
         (lambda folder: os.mkfifo(folder / ".scene"), "a pipe or device"),
         (lambda folder: os.mkfifo(folder / "work/glass/table"), "a pipe or device"),
         (lambda folder: (folder / "work/glass/ucx.conf").write_text("x"), "network layer"),
@@ -92,6 +94,15 @@ def test_a_folder_of_somebody_else_behind_a_link_stays_as_it_is(tmp_path):
         ] or "compare" in command
         assert listing(home) == before
         assert sorted(os.listdir(home)) == sorted({path.relative_to(home).parts[0] for path in before})
+
+
+@pytest.mark.skipif(os.path.exists("/proc/1/cwd"), reason="this user may read everything")
+@pytest.mark.parametrize("link", ["results", "results/paper"])
+def test_a_link_to_where_one_may_not_look_is_refused(tmp_path, link):
+    (tmp_path / link).parent.mkdir(exist_ok=True)
+    (tmp_path / link).symlink_to("/proc/1/cwd")
+    done = subprocess.run([ASPERITY, "plan", "paper", "inputs"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.stderr == f"ERROR {link}: a link to /proc/1/cwd, which is not there; mount it, or remove the link\n"
 
 
 def test_a_checkout_in_a_path_with_a_space_and_a_site_with_a_profile_run(tmp_path):

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from asperity.guards.foreign_yaml import load_mapping
+from mesoscale.settings import DeviceSettings
 from workflow.files.results import load_csv, load_h5, load_json
 
 COMPUTED, LITERATURE, SYNTHETIC = "computed", "literature", "synthetic"
@@ -66,6 +68,12 @@ class Results:
     def contact(self) -> dict[str, Any]:
         """The contact settings that the curves were made with; none without curves."""
         return json.loads(self.h5("curves/nominal.h5")[1]["contact"]) if self.has("curves/nominal.h5") else {}
+
+    @property
+    def device(self) -> DeviceSettings | None:
+        """The device of the scene; none without the record of its run."""
+        record = load_mapping(self.root / "scene.yaml", "record of a run") if self.has("scene.yaml") else {}
+        return DeviceSettings(**record["scene"]["device"]) if record else None
 
     @property
     def coupled(self) -> bool:

@@ -35,9 +35,9 @@ except SceneError as error:
 RESULTS = f"results/{SCENE.name}"
 
 for folder in (Path(RESULTS), Path(RESULTS).parent):
-    if folder.is_symlink() and not folder.exists():
+    if os.path.islink(folder) and not os.path.exists(folder):  # unlike Path.exists, False where one may not look
         refuse(f"{folder}: a link to {os.readlink(folder)}, which is not there; mount it, or remove the link")
-writable = next(folder for folder in (Path(RESULTS), *Path(RESULTS).parents) if folder.exists())
+writable = next(folder for folder in (Path(RESULTS), *Path(RESULTS).parents) if os.path.exists(folder))
 if not (writable.is_dir() and os.access(writable, os.W_OK)):
     refuse(f"{RESULTS}: cannot write to {writable}; run in a folder you may write to")
 

@@ -21,6 +21,7 @@ from workflow.run.job import last_line
 FULL_DISK = 100_000  # bytes left: less than a job and its log need
 LAST_PART = 0.1  # of the time of a job at work that takes longer than planned, still to come
 
+EARLY_PAGE = "output files of rule report were not present"
 NO_SUCH_TARGET = re.compile(r"MissingRuleException:\nNo rule to produce (.*) \(if you use input functions")
 
 
@@ -183,7 +184,7 @@ def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: st
 
     def is_needed(record: logging.LogRecord) -> bool:
         in_detail = workflow.dryrun and getattr(record, "event", None) == "job_info"  # --dry-run without --quiet
-        in_own_words = NO_SUCH_TARGET.match(record.getMessage())
+        in_own_words = NO_SUCH_TARGET.match(record.getMessage()) or EARLY_PAGE in record.getMessage()
         return (record.levelno > logging.INFO and not in_own_words) or in_detail or workflow.output_settings.verbose
 
     for handler in logger.handlers:

@@ -1,9 +1,13 @@
 """Press the pads of some points, and solve the switch on each.
 
-In: inputs.csv.  Out: pad/points/chunk_NNN.h5 (GPa against nm; V). Number 0 is the point at central inputs.
+In: inputs.csv.  Out: pad/points/chunk_NNN.h5 (GPa against nm; V). Number 0 is the point at central inputs, whose job
+also writes report.html, as far as it is known then.
 """
 
-from mesoscale.device.points import solve_point, solve_points, surfaces_of
+from pathlib import Path
+
+from mesoscale.device.points import PadModel, solve_point, solve_points, surfaces_of
+from workflow.files.results import write_text
 from workflow.run.job import job
 from workflow.run.pads import points_of_job, write_solved
 
@@ -19,3 +23,10 @@ with job(snakemake) as run:
             solved[number] = one
             run.progress(len(solved) / len(numbers), f"{len(solved)} of {len(numbers)} points")
     write_solved(snakemake.output[0], solved, run.provenance)
+    if snakemake.rule.endswith("press_pads") and 0 in solved and pad.points and solved[0].states:
+        from workflow.report.early import early_page  # the other jobs draw nothing
+
+        page = Path(snakemake.output[0]).parents[2] / "report.html"
+        central = PadModel(solved[0], points.design, ())
+        write_text(page, early_page(page.parent, list(snakemake.input), central, points.contact))
+        run.say(f"{page} shows it, and at the end of the run its interval")
