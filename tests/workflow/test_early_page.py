@@ -1,0 +1,28 @@
+"""The page before a run ends shows the switch at central inputs, and says that it is not the last word."""
+
+import numpy as np
+
+from mesoscale.device.points import Pad, PadModel, Solved
+from mesoscale.inputs.table import to_rows
+from mesoscale.pad.memory import Flats
+from mesoscale.settings import ContactSettings, DeviceSettings
+from tests.mesoscale.device.test_release import MIDDLE, SEPARATION, TABLE, cells_of
+from workflow.files.results import write_csv
+from workflow.report.early import STATUS, early_page
+from workflow.run.pads import ScenePoints
+
+
+def test_the_switch_at_central_inputs_has_a_page(tmp_path):
+    contact = ContactSettings(mechanics="coupled", attraction="offset")
+    points = ScenePoints(TABLE, contact, DeviceSettings(), 2)
+    pad = Pad(cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165))
+    states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "landed_share": 0.5, "deepened": 0.0}
+    central = PadModel(Solved(points.by_number[0], pad, states, (5.9, 6.1)), points.design, ())
+    root = tmp_path / "results/mine"
+    write_csv(root / "inputs.csv", to_rows(TABLE))
+    page = early_page(root, [str(root / "inputs.csv")], central, contact)
+    assert f"At central inputs the switch lets go at 6.00 V; no interval, because {STATUS}." in page
+    assert "could not be drawn" not in page
+    assert "What if the device were another" in page
+    assert "From a cell to a pad" not in page  # its curves have no file yet
+
