@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from evidence.attacks.runs import CONTACT, HANG_S, Attack, campaign_table, commanded, figures
+from evidence.attacks.runs import CONTACT, HANG_S, TRACE, Attack, campaign_table, commanded, figures
 
 __all__ = ["campaign", "figures", "rows"]
 MODULES = (
@@ -121,7 +121,7 @@ def _judged(kind: str, place: Path, scene: str, results: str, outside: Path) -> 
         for word, is_so in (
             ("planted code ran", (place.with_name("ran")).exists() or bool(list(place.rglob("ran")))),
             ("written outside", any(outside.iterdir())),
-            ("traceback", "Traceback" in said or "internal error" in said),
+            ("traceback", bool(TRACE.search(said))),
             ("control characters", "\x1b" in said.replace("\x1b[3", "").replace("\x1b[0m", "").replace("\x1b[1", "")),
             (f"more than {HANG_S:.0f} s", seconds > 3 * HANG_S),  # of a busy machine
             (f"neither done nor refused: {said[-300:]}", not done and not refused),

@@ -21,6 +21,7 @@ import psutil
 from evidence.attacks.runs import (
     CONTACT,
     GLASS,
+    TRACE,
     Attack,
     campaign_table,
     contents,
@@ -113,7 +114,7 @@ def _ended(rng: random.Random, place: Path, path: Path, target: str, longest: fl
         os.kill(pid, signal.SIGKILL)
     process.wait()
     words = (place / "said.txt").read_text(errors="replace")
-    fault = f"lives on: {len(left)} processes" if left else "Traceback" if "Traceback" in words else ""
+    fault = f"lives on: {len(left)} processes" if left else "Traceback" if TRACE.search(words) else ""
     return Attack(way, "fault" if fault else "used", time.monotonic() - ended, fault or f"after {moment:.0f} s")
 
 

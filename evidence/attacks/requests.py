@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from asperity.models import MODELS
-from evidence.attacks.runs import HANG_S, Attack, figures, table
+from evidence.attacks.runs import HANG_S, TRACE, Attack, figures, table
 
 __all__ = ["campaign", "figures", "rows"]
 CENTRE = [0.215, 91.0, 1.95, 8.4, 0.025, 0.75, 8.5]
@@ -79,7 +79,7 @@ def campaign(seed: int, count: int) -> Iterator[Attack]:
                 yield Attack(kind, "fault" if seconds > HANG_S else outcome, seconds, words)
             errors.seek(0)
             said = errors.read().decode(errors="replace")
-            words = said[-300:] if "Traceback" in said or server.poll() is not None else "quiet"
+            words = said[-300:] if TRACE.search(said) or server.poll() is not None else "quiet"
             yield Attack("what the server says", "used" if words == "quiet" else "fault", 0.0, words)
         finally:
             server.terminate()

@@ -1,6 +1,7 @@
 """What attacks share: small scenes, the command that runs them, what results say, and a table of outcomes."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -15,6 +16,10 @@ from asperity.guards.bundle import ROOT
 from workflow.run.job import result_checksum
 
 HANG_S = 60.0
+TRACE = re.compile(
+    r'^\s*(Traceback|File "|\w*(Error|Exception)\b)|^Fatal Python|Segmentation fault|internal error', re.MULTILINE
+)
+"""What no user should read: Python's traces, those that Snakemake prints without the word, and faults of our own."""
 LITERATURE = {
     "e_star": "{distribution: normal, values: [91, 3.8]}",
     "h_prime": "{values: [1.95, 14.8]}",
@@ -153,6 +158,6 @@ def contents(results: Path) -> dict[str, str]:
 def last_words(said: str) -> str:
     """How a run ends by what it said: its first ERROR line, else its last line; 'Traceback' where it shows one."""
     lines = said.strip().splitlines()
-    if any("Traceback" in line or "internal error" in line for line in lines):
+    if TRACE.search(said):
         return "Traceback"
     return next((line for line in lines if line.startswith("ERROR ")), lines[-1] if lines else "")

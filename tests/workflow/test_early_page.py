@@ -25,4 +25,3 @@ def test_the_switch_at_central_inputs_has_a_page(tmp_path):
     assert "could not be drawn" not in page
     assert "What if the device were another" in page
     assert "From a cell to a pad" not in page  # its curves have no file yet
-

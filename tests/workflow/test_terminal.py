@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from workflow.run.cost import Costs, refusal, wall_seconds
-from workflow.run.progress import Terminal, duration
+from workflow.run.progress import Terminal, duration, speak
 from workflow.scene import load_scene
 
 
@@ -113,6 +113,19 @@ def test_the_release_is_told_as_switches_are_solved(capsys, tmp_path):
     first, second = (line for line in capsys.readouterr().err.splitlines() if "so far" in line)
     assert first == "  release of 2 switches so far: 2 V (5 to 95 %: 0.2 V to 3.8 V); 50% stick"
     assert second == "  release of 5 switches so far: 5 V (5 to 95 %: 0.8 V to 6.8 V); 20% stick"
+
+
+def test_the_page_before_the_end_brings_no_warning():
+    """Snakemake warns where a file came that no job of its plan had made."""
+    logger, heard = logging.Logger("snakemake"), []
+    handler = logging.Handler()
+    handler.emit = heard.append
+    logger.addHandler(handler)
+    snakemake = SimpleNamespace(dryrun=False, output_settings=SimpleNamespace(verbose=False))
+    speak(snakemake, logger, Costs(load_scene("paper"), {}), "nothing to do", 12)
+    for rule in ("report", "device"):
+        logger.warning(f"Warning: the following output files of rule {rule} were not present when the DAG was created:")
+    assert [" of rule device " in record.getMessage() for record in heard] == [True]
 
 
 def test_nothing_to_do_names_the_report(capsys):

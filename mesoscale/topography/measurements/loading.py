@@ -28,6 +28,7 @@ from mesoscale.topography.measurements.profiles import Profile, profile_of
 MIN_SIDE = 32
 FILE_NM = (10.0, 1e8)  # plausible sizes: the largest real map at hand has 12 mm; beyond, a reader mistakes the unit
 HEAD_BYTES = 8192  # of a text file, in which the heads of its columns stand
+MOST_NAMES = 10  # of channels in a message: a file may have hundreds
 NO_HEIGHT = re.compile(r"deflection|amplitude|error|phase|friction|lateral|thumb|preview|current|potential", re.I)
 DIRECTION = re.compile(r"\W*\b(forward|backward|fwd|bwd|trace|retrace|left|right)\b\W*", re.I)
 BACKWARD = re.compile(r"\b(backward|bwd|retrace|left)\b", re.I)
@@ -295,7 +296,8 @@ def _height_channel(
     most = max(pixels.values(), default=0) / 16  # of a thumbnail
     heights = [c for c in lengths if not NO_HEIGHT.search(str(c.name)) and pixels[id(c)] > most]
     names = list(dict.fromkeys(str(c.name) for c in heights))
-    listed = ", ".join(names)[:300] or "none"  # a file may have hundreds
+    listed = ", ".join(names[:MOST_NAMES]) or "none"
+    listed += f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
     if wanted is not None:
         heights = [c for c in heights if str(c.name) == wanted]
         if not heights and wanted in (str(c.name) for c in channels):

@@ -11,7 +11,7 @@ import pytest
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan, clean
-from mesoscale.topography.measurements.loading import load_measurements, write_gwy
+from mesoscale.topography.measurements.loading import _height_channel, load_measurements, write_gwy
 
 IN_NM = TopographySettings(instruments=(InstrumentSettings(files="*", unit="nm"),))
 AFM = Path(__file__).resolve().parents[5] / "shared" / "afm"
@@ -125,6 +125,19 @@ def test_several_height_channels_are_asked_for(tmp_path):
     assert load_scan(path, channel="ZSensor").heights_nm.max() == pytest.approx(1.0)
     with pytest.raises(InputError, match="no height channel 'Phase'"):
         load_scan(path, channel="Phase")
+
+
+def test_of_hundreds_of_channels_some_are_listed():
+    channels = [
+        SimpleNamespace(
+            is_height_channel=True, name=f"Height {k}", unit="m", dim=2, nb_grid_pts=(64, 64), physical_sizes=(1.0, 1.0)
+        )
+        for k in range(300)
+    ]
+    with pytest.raises(InputError, match=r"Height 9 and 290 more; name one") as error:
+        _height_channel(Path("a.gwy"), channels, InstrumentSettings(files="*"), None)
+    assert len(str(error.value)) < 250
+    assert _height_channel(Path("a.gwy"), channels, InstrumentSettings(files="*"), "Height 299")[0] is channels[299]
 
 
 @pytest.mark.parametrize(
