@@ -21,8 +21,12 @@ from workflow.run.job import last_line
 FULL_DISK = 100_000  # bytes left: less than a job and its log need
 LAST_PART = 0.1  # of the time of a job at work that takes longer than planned, still to come
 
-EARLY_PAGE = "output files of rule report were not present"
 NO_SUCH_TARGET = re.compile(r"MissingRuleException:\nNo rule to produce (.*) \(if you use input functions")
+
+IN_OWN_WORDS = re.compile(  # the terminal names the target, the page comes before its job, and a failed job says why
+    rf"{NO_SUCH_TARGET.pattern}|Warning: the following output files of rule report were not|"
+    r"RuleException:\nCalledProcessError|Exiting because a job|WorkflowError:\nAt least one job"
+)
 
 
 class Terminal(logging.Handler):
@@ -183,9 +187,10 @@ def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: st
     """Let `Terminal` tell what goes on instead of Snakemake, whose warnings and errors stay."""
 
     def is_needed(record: logging.LogRecord) -> bool:
-        in_detail = workflow.dryrun and getattr(record, "event", None) == "job_info"  # --dry-run without --quiet
-        in_own_words = NO_SUCH_TARGET.match(record.getMessage()) or EARLY_PAGE in record.getMessage()
-        return (record.levelno > logging.INFO and not in_own_words) or in_detail or workflow.output_settings.verbose
+        event = getattr(record, "event", None)
+        in_detail = workflow.dryrun and event == "job_info"  # --dry-run without --quiet
+        told = event == "job_error" and workflow.local_exec or IN_OWN_WORDS.match(record.getMessage())
+        return (record.levelno > logging.INFO and not told) or in_detail or workflow.output_settings.verbose
 
     for handler in logger.handlers:
         handler.addFilter(is_needed)
