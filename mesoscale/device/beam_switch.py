@@ -261,10 +261,11 @@ class _Moving:
         ------
         InputError : the beam rests in its pad.
         """
-        if self.over_nm().min() <= 0.0:
+        if (over := float(self.over_nm().min())) <= 0.0:
+            enough = 3.5e-3 * (self.flat_nm - over)  # a beam that only stretches snaps as low as at 1 / 3.3 of its gap
             raise InputError(
-                "device: the beam rests within reach of its pad; lower tilt_nm, dimple_nm or stopper_nm, or raise "
-                "gap_um or bow_nm"
+                f"device: the beam rests within reach of its pad; raise gap_um to {enough:.3g}, or bow_nm, or lower "
+                "tilt_nm, dimple_nm or stopper_nm"
             )
         at = self.leading()
         way = float(self.over_nm()[max(at - 1, 0) : at + 1].mean())

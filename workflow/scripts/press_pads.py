@@ -13,17 +13,18 @@ from workflow.run.pads import points_of_job, write_solved
 
 with job(snakemake) as run:
     points, pad = points_of_job(snakemake)
-    numbers, solved = range(*snakemake.params.bounds), {}
+    numbers, solved, follows = range(*snakemake.params.bounds), {}, False
     if 0 in numbers:
         solved[0] = solve_point(points.by_number[0], points.on_grid, pad.cells, surfaces_of(0), run.progress)
-        run.say(f"at central inputs {solved[0].outcome}{'; its interval follows' if pad.points else ''}")
+        follows = pad.points > 0 and not solved[0].refused
+        run.say(f"at central inputs {solved[0].outcome}{'; its interval follows' if follows else ''}")
     else:
         asked = [(number, points.by_number[number]) for number in numbers]
         for number, one in zip(numbers, solve_points(asked, points.on_grid, pad.point_cells), strict=True):
             solved[number] = one
             run.progress(len(solved) / len(numbers), f"{len(solved)} of {len(numbers)} points")
     write_solved(snakemake.output[0], solved, run.provenance)
-    if snakemake.rule.endswith("press_pads") and 0 in solved and pad.points and solved[0].states:
+    if follows and snakemake.rule.endswith("press_pads"):  # not where a calibration presses pads of the prior
         from workflow.report.early import early_page  # the other jobs draw nothing
 
         page = Path(snakemake.output[0]).parents[2] / "report.html"

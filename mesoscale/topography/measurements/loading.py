@@ -10,6 +10,7 @@ import tempfile
 import warnings
 import zipfile
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fnmatch import fnmatch
 from pathlib import Path
@@ -170,11 +171,20 @@ def plain_text(path: Path, head: bytes) -> Path:
         text = re.sub(r"(?<=\d),(?=\d)", ".", text)
     if ";" in start:
         text = text.replace(";", "\t")
-    if not (commas or encoded or ";" in start):
+    if not (commas or encoded) and (";" not in start or _is_understood(path)):
         return path
     copy = Path(tempfile.mkdtemp()) / path.name
     copy.write_text(text, encoding="utf-8")
     return copy
+
+
+def _is_understood(path: Path) -> bool:
+    """Whether a reader takes the file as it is: some instruments write semicolons."""
+    from SurfaceTopography.IO import open_topography
+
+    with suppress(Exception):  # readers of foreign formats fail in many ways
+        return bool(open_topography(str(path)).channels)
+    return False
 
 
 def _given(where: str, channel: Any, instrument: InstrumentSettings) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from mesoscale.device.beam_switch import solve_beam
 from mesoscale.device.electrode import with_pad
 from mesoscale.device.spread import check_spread
 from mesoscale.errors import InputError
+from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
 from tests.mesoscale.device.test_beam import made_up_law
 
@@ -81,6 +82,29 @@ def test_beams_that_are_no_switch_are_refused_in_one_line(name):
     with pytest.raises(InputError, match=words) as caught:
         with_pad(lambda law: solve_beam(DeviceSettings(**change), law), made_up_law())
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"thickness_um": 0.5},
+        {"residual_stress_MPa": 200.0},
+        {"bow_nm": -1000.0},
+        {"tilt_nm": 1000.0},
+        {"ends": "cantilever", "length_um": 250.0},
+    ],
+)
+def test_a_pad_higher_than_the_gap_names_a_gap_that_works(change):
+    """As rough as optical maps are: it reaches 6 um above its mean plane."""
+    law = made_up_law(2.0)
+    law = PadLaw(law.separation_nm + 6e3, law.closing, law.depth_nm + 6e3, law.opening, law.flats)
+    with pytest.raises(InputError, match="rests within reach of its pad; raise gap_um to") as caught:
+        solve_beam(DeviceSettings(**change), law)
+    gap_um = float(str(caught.value).partition("gap_um to ")[2].partition(",")[0])
+    states, _ = with_pad(lambda law: solve_beam(DeviceSettings(**change, gap_um=gap_um), law, 64), law)
+    assert states.landed_share > 0.0
+    assert states.release_V > 0.0
 
 
 def test_a_spread_that_leaves_no_device_and_a_beam_without_lumps_are_refused_in_one_line():

@@ -92,6 +92,16 @@ def test_latin_1_semicolons_and_commas_of_a_profile(tmp_path):
     assert measured.data.heights_nm == pytest.approx(z, abs=1e-4)
 
 
+def test_semicolons_that_a_reader_takes_stay(tmp_path):
+    """As a confocal point sensor writes them (HFM); with tabs it would be a map without size."""
+    x, z = 0.002 * np.arange(512), np.random.default_rng(0).standard_normal(512)
+    rows = (f"{8.0 + a:.6f};{106.0 + 1e-3 * b:.6f};1\r\n" for a, b in zip(x, z, strict=True))
+    (tmp_path / "line.hfm").write_text("X;Y;valid\r\n[mm];[mm];[1/0]\r\n" + "".join(rows))
+    (measured,) = load_measurements(tmp_path / "line.hfm")
+    assert measured.data.length_nm == pytest.approx(1.024e6)
+    assert measured.data.heights_nm.std() == pytest.approx(1e3 * z.std(), rel=1e-2)
+
+
 def test_size_and_units_of_a_bare_map_are_stated_beside_it(tmp_path):
     heights = np.random.default_rng(0).standard_normal((64, 64))
     np.savetxt(tmp_path / "bare.txt", heights)
