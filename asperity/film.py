@@ -50,9 +50,7 @@ MATERIAL = {
     "h_macro": TABLE_1.rows()["h_macro"],
     "h_prime": PAPER_ROWS["h_prime"],
     "hamaker": TABLE_1.rows()["hamaker"],
-    "gap_cutoff": InputRow(
-        values=(0.25, 0.29), source="tops of six glasses of silica made of atoms (docs/hardness.md)"
-    ),
+    "gap_cutoff": InputRow(values=(0.25, 0.29), source="tops of six glasses of silica (docs/hardness.md)"),
 }
 """The material where none is given: the paper's films, and D0 of silica."""
 

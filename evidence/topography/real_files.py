@@ -3,7 +3,7 @@
 Every file below a folder: the test data of SurfaceTopography, and the diamond film of `config/measurements`. Each map
 with square pixels judges the description made from itself. Loads that
 press more than half of a scan into contact are counted apart: a scene does not ask for them. Outside are an
-interferometer map of 1.8 mm with dust, and the area of a ridged map (doubt `anisotropic`).
+interferometer map of 1.8 mm with dust, and numbers of two ridged maps (doubt `anisotropic`).
 """
 
 import argparse

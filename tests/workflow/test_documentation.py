@@ -5,6 +5,7 @@ import re
 import shlex
 import subprocess
 import tomllib
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +16,12 @@ import yaml
 import asperity as asp
 from asperity.__main__ import COMMANDS as DOORS
 from asperity.__main__ import _parser as parser
-from asperity.__main__ import targets
+from asperity.__main__ import targets as stages
 from asperity.door import device_of, material_of
 from mesoscale.inputs.table import collect
 from mesoscale.law.parameters import FITTED
 from mesoscale.settings import UncertaintySettings
-from mesoscale.topography.measurements.loading import write_gwy
+from mesoscale.topography.measurements.loading import load_measurements, write_gwy
 from mesoscale.uncertainty.propagation import NodeOutputs, propagate, surrogate_json
 from workflow.files.results import write_json
 from workflow.scene import load_scene
@@ -44,18 +45,29 @@ def test_a_scene_of_a_page_is_accepted(block, tmp_path):
     assert load_scene(str(path)).name == "of_a_page"
 
 
+PAGES = (
+    *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "config/README.md")),
+    *sorted(ROOT.glob("docs/*.md")),
+)
 COMMANDS = [
     pytest.param(page, line.partition(" #")[0].strip(), id=line.strip())
-    for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md")))
-    for block in re.findall(r"^```sh\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
-    for line in block.splitlines()
-    if re.match(r"make |asperity |\.venv/bin/asperity ", line)
+    for page in PAGES
+    for line in re.findall(
+        r"^(?:    )?((?:make|asperity|\.venv/bin/asperity) .*)", page.read_text("utf-8"), re.MULTILINE
+    )
 ]
 
 
+@pytest.fixture(scope="module")
+def plan(make_workflow, tmp_path_factory):
+    """Jobs of a shipped scene, from nothing."""
+    return cache(make_workflow(tmp_path_factory.mktemp("plans")).planned)
+
+
 @pytest.mark.parametrize(("page", "command"), COMMANDS)
-def test_a_command_of_a_page_is_understood(page, command):
-    """Make has its target, the command its options, materials and keys; a scene ships or the page writes it."""
+def test_a_command_of_a_page_is_understood(page, command, plan):
+    """Make has its target, the command its options, materials and keys; a scene ships and can be planned, or the page
+    writes it."""
     if command.startswith("make"):
         done = subprocess.run(["make", "-n", *shlex.split(command)[1:]], cwd=ROOT, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
@@ -65,16 +77,16 @@ def test_a_command_of_a_page_is_understood(page, command):
     words = shlex.split(command)
     words = words[[word.endswith("asperity") for word in words].index(True) + 1 :]
     given = parser().parse_args(words if words[0] in DOORS else ["film", *words])
+    scene, targets = getattr(given, "scene", None), getattr(given, "target", [])
     if given.command == "film":
         material_of(given.material)
         device_of(given.device)
-    elif scene := getattr(given, "scene", ""):
-        written = f"`{scene}`", f"--scene {scene}", f"asperity {Path(scene).stem}/"
-        assert (ROOT / "config/scenes" / f"{scene}.yaml").is_file() or any(
-            words in page.read_text(encoding="utf-8") for words in written
-        )
-    for target in getattr(given, "target", []):
-        assert target in targets()
+    elif given.command == "demo" or (scene and (ROOT / "config/scenes" / f"{scene}.yaml").is_file()):
+        assert plan(scene or "demo", *targets)
+    elif scene:
+        written = "asperity run scene.yaml", f"`{scene}`", f"--scene {scene}", f"asperity {Path(scene).stem}/"
+        assert any(words in page.read_text(encoding="utf-8") for words in written)
+        assert set(targets) <= set(stages())
 
 
 def test_extras_are_named_one_way():
@@ -94,6 +106,14 @@ def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):
     names: dict[str, Any] = {}
     exec(code, names)
     assert names["switch"].release_V >= 0.0
+
+
+def test_the_python_of_the_page_on_extending_writes_a_scan(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extending.md").read_text(encoding="utf-8"), re.DOTALL)
+    exec(code, {})
+    (measured,) = load_measurements("my_scan.gwy")
+    assert measured.data.lengths_nm == pytest.approx((1000.0, 1000.0))
 
 
 def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):

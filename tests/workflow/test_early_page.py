@@ -20,8 +20,11 @@ def test_the_switch_at_central_inputs_has_a_page(tmp_path):
     central = PadModel(Solved(points.by_number[0], pad, states, (5.9, 6.1)), points.design, ())
     root = tmp_path / "results/mine"
     write_csv(root / "inputs.csv", to_rows(TABLE))
-    page = early_page(root, [str(root / "inputs.csv")], central, contact)
+    scene = {"contact": contact.model_dump(mode="json"), "device": DeviceSettings().model_dump(mode="json")}
+    page = early_page(root, [str(root / "inputs.csv")], central, 1e6, scene)
     assert f"At central inputs the switch lets go at 6.00 V; no interval, because {STATUS}." in page
     assert "could not be drawn" not in page
+    assert "by the other one, with three times the work of adhesion" in page
+    assert "beam of 510 × 123 µm, bending" in page
     assert "What if the device were another" in page
     assert "From a cell to a pad" not in page  # its curves have no file yet

@@ -1,15 +1,14 @@
 """The result files a report may show: what exists is read, what does not exist leaves no section."""
 
 import json
-from collections.abc import Iterable
-from functools import cache
+from collections.abc import Iterable, Mapping
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from asperity.guards.foreign_yaml import load_mapping
-from mesoscale.settings import DeviceSettings
 from workflow.files.results import load_csv, load_h5, load_json
 
 COMPUTED, LITERATURE, SYNTHETIC = "computed", "literature", "synthetic"
@@ -22,12 +21,13 @@ class Results:
     """Result files of one scene by their path inside `results/<scene>/`.
 
     Only files named at the start are seen, so that a report depends on its declared inputs and on nothing
-    that happens to lie beside them.
+    that happens to lie beside them. `at_hand` is the content of JSON and YAML files that are not written yet.
     """
 
-    def __init__(self, root: str | Path, paths: Iterable[str | Path], scene: str) -> None:
-        self.root = Path(root)
-        self.scene = scene
+    def __init__(
+        self, root: str | Path, paths: Iterable[str | Path], scene: str, at_hand: Mapping[str, Any] | None = None
+    ) -> None:
+        self.root, self.scene, self.at_hand = Path(root), scene, at_hand or {}
         self.paths = {Path(path).relative_to(self.root).as_posix() for path in map(Path, paths)}
 
     @property
@@ -37,7 +37,7 @@ class Results:
 
     def has(self, *names: str) -> bool:
         """Are all these files there?"""
-        return all(name in self.paths for name in names)
+        return all(name in self.paths or name in self.at_hand for name in names)
 
     def matching(self, prefix: str, suffix: str) -> list[str]:
         """Names that begin and end so, sorted."""
@@ -51,7 +51,12 @@ class Results:
     @cache  # noqa: B019
     def json(self, name: str) -> dict[str, Any]:
         """Content of a JSON file."""
-        return load_json(self.root / name)
+        return self.at_hand[name] if name in self.at_hand else load_json(self.root / name)
+
+    @cached_property
+    def record(self) -> dict[str, Any]:
+        """What the run depends on: its scene, versions, commit."""
+        return self.at_hand.get("scene.yaml") or load_mapping(self.root / "scene.yaml", "record of a run")
 
     @cache  # noqa: B019
     def h5(self, name: str) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
@@ -66,14 +71,10 @@ class Results:
 
     @property
     def contact(self) -> dict[str, Any]:
-        """The contact settings that the curves were made with; none without curves."""
-        return json.loads(self.h5("curves/nominal.h5")[1]["contact"]) if self.has("curves/nominal.h5") else {}
-
-    @property
-    def device(self) -> DeviceSettings | None:
-        """The device of the scene; none without the record of its run."""
-        record = load_mapping(self.root / "scene.yaml", "record of a run") if self.has("scene.yaml") else {}
-        return DeviceSettings(**record["scene"]["device"]) if record else None
+        """The contact settings that the curves were made with; without curves those that are at hand."""
+        if self.has("curves/nominal.h5"):
+            return json.loads(self.h5("curves/nominal.h5")[1]["contact"])
+        return self.record["scene"]["contact"] if self.at_hand else {}
 
     @property
     def coupled(self) -> bool:

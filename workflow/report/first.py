@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
+from mesoscale.settings import DeviceSettings
 from workflow.report.available import Results
 from workflow.report.numbers import show
 from workflow.report.verdict import Verdict, does, in_words, verdict, volts
@@ -119,9 +120,9 @@ def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
 
 def _device(results: Results) -> str:
     """A picture of the switch with its sizes, not to scale."""
-    device = results.device
-    if device is None:
+    if not results.has("scene.yaml"):
         return ""
+    device = DeviceSettings(**results.record["scene"]["device"])
     rough = "".join(f"l4 {3 * (-1) ** k * (1 + k * 7 % 3) / 2:g}" for k in range(70))
     anchors = "M10 40h12v110H10zM378 40h12v110h-12z"
     if device.ends == "cantilever" and device.bends:

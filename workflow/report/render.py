@@ -10,7 +10,6 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from asperity.guards.foreign_text import shown
-from asperity.guards.foreign_yaml import load_mapping
 from workflow.report.available import Results
 from workflow.report.drawing import SUBSCRIPT
 from workflow.report.first import first_screen
@@ -83,6 +82,5 @@ def low(text: str) -> Markup:
 def _provenance(results: Results) -> list[tuple[str, str]]:
     if not results.has("scene.yaml"):
         return []
-    record = load_mapping(results.root / "scene.yaml", "record of a run")
-    rows = [("git commit", str(record.get("git_commit", "")))]
-    return rows + [(name, str(version)) for name, version in record.get("versions", {}).items()]
+    rows = [("git commit", str(results.record.get("git_commit", "")))]
+    return rows + [(name, str(version)) for name, version in results.record.get("versions", {}).items()]

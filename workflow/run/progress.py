@@ -189,8 +189,8 @@ def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: st
     def is_needed(record: logging.LogRecord) -> bool:
         event = getattr(record, "event", None)
         in_detail = workflow.dryrun and event == "job_info"  # --dry-run without --quiet
-        told = event == "job_error" and workflow.local_exec or IN_OWN_WORDS.match(record.getMessage())
-        return (record.levelno > logging.INFO and not told) or in_detail or workflow.output_settings.verbose
+        replaced = (event == "job_error" and workflow.local_exec) or IN_OWN_WORDS.match(record.getMessage())
+        return (record.levelno > logging.INFO and not replaced) or in_detail or workflow.output_settings.verbose
 
     for handler in logger.handlers:
         handler.addFilter(is_needed)

@@ -27,7 +27,7 @@ with job(snakemake) as run:
     if follows and snakemake.rule.endswith("press_pads"):  # not where a calibration presses pads of the prior
         from workflow.report.early import early_page  # the other jobs draw nothing
 
-        page = Path(snakemake.output[0]).parents[2] / "report.html"
-        central = PadModel(solved[0], points.design, ())
-        write_text(page, early_page(page.parent, list(snakemake.input), central, points.contact))
-        run.say(f"{page} shows it, and at the end of the run its interval")
+        root, central = Path(snakemake.output[0]).parents[2], PadModel(solved[0], points.design, ())
+        area, scene = points.contact.length_nm**2, dict(snakemake.params)
+        write_text(root / "report.html", early_page(root, list(snakemake.input), central, area, scene))
+        run.say(f"{root / 'report.html'} shows it, and at the end of the run its interval")
