@@ -2,9 +2,8 @@
 
 import pytest
 
-from workflow.report.measured_surface import doubts
+from workflow.report.measured_surface import doubts, short_names
 from workflow.report.page import DoubtNote
-from workflow.report.surface_picture import short_names
 
 DOUBTS = [
     {"code": "gap", "about": "spectrum", "text": "nothing is measured there", "remedy": "add scans"},

@@ -12,7 +12,7 @@ STATUS = "the run goes on; its end renews this page"
 
 
 def early_page(root: Path, paths: list[str], central: PadModel, cell_area_nm2: float, scene: dict[str, Any]) -> str:
-    """HTML of the page, from finished files in results/<scene>, the pad at central inputs, and sections of the scene."""
+    """HTML of the page, from finished files in results/<scene>, the pad at central inputs, sections of the scene."""
     switch = switch_on_pad(central, cell_area_nm2) | {"answer_status": STATUS}
     at_hand = {"device/pad_switch.json": switch, "scene.yaml": {"scene": scene}}
     return render(Results(root, paths, root.name, at_hand))

@@ -1,13 +1,13 @@
 """What describes the measured surface: the evidence, the doubts, the spectrum over all scales, the scans as judges."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import takewhile
 from typing import Any
 
 from workflow.report.available import CsvRow, Results
-from workflow.report.drawing import draw
+from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, SOFT, draw
 from workflow.report.numbers import cell, show, shown_unit
 from workflow.report.page import Block, DoubtNote, Figure, PageTable, table
-from workflow.report.surface_picture import draw_one_spectrum, short_names
 
 JUDGED = "topography/judged.csv"
 QUANTITIES = {
@@ -61,13 +61,42 @@ def doubts(parameters: Mapping[str, Any], *about: str) -> Iterator[DoubtNote]:
             yield DoubtNote(f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}")
 
 
+def short_names(names: Sequence[str]) -> dict[str, str]:
+    """Names of measurements without what all of them begin with."""
+    parts = [name.split("_") for name in names]
+    alike = sum(1 for _ in takewhile(lambda column: len(set(column)) == 1, zip(*parts, strict=False)))
+    cut = min(alike, *(len(part) - 1 for part in parts)) if len(names) > 1 else 0
+    return {name: "_".join(part[cut:]) for name, part in zip(names, parts, strict=True)}
+
+
 def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None:
+    """All spectra with their trusted parts, and the one over all scales with its band."""
     groups, _, attributes = results.h5("topography/spectra.h5")
     if "one_spectrum" not in groups:
         return None
+    names = sorted(name for name in groups if name.startswith("scans/"))
+    short = short_names([name.removeprefix("scans/") for name in names])
+    apart = (BLUE, GREEN, PURPLE, SKY)
+    several = 1 < len(names) <= len(apart)
 
     def plot(axis: Any) -> None:
-        draw_one_spectrum(axis, groups, attributes, parameters)
+        for name, color in zip(names, apart if several else [SKY] * len(names), strict=False):
+            q, psd = groups[name]["q"], groups[name]["psd"]
+            low, high = float(attributes[name]["trusted_low"]), float(attributes[name]["trusted_high"])
+            trusted = (q >= low) & (q <= high)
+            label = f"{short[name.removeprefix('scans/')]}, trusted range" if several else None
+            axis.loglog(q, psd, color=SOFT, linewidth=0.6, alpha=0.7, zorder=1)
+            axis.loglog(q[trusted], psd[trusted], color=color, linewidth=1.6, zorder=4, label=label)
+        if not several:
+            axis.plot([], [], color=SKY, label="measurements, trusted range")
+        axis.plot([], [], color=SOFT, label="limited by levelling, tip, noise or pixels")
+        one, level = groups["one_spectrum"], f"{float(parameters['confidence']):.0%}"
+        axis.fill_between(one["q"], one["band_low"], one["band_high"], color=ORANGE, alpha=0.25, linewidth=0)
+        axis.loglog(one["q"], one["psd"], color=ORANGE, label=f"one spectrum, {level} band", zorder=3)
+        end = parameters["trusted_end"]
+        axis.axvline(end["value"], color=INK, linewidth=0.8, linestyle="--", label=f"trusted end ({end['limit']})")
+        axis.set(xlabel="wave vector q (1/nm)", ylabel="PSD (nm⁴)")
+        axis.legend(fontsize=8)
 
     return draw("one_spectrum", "Spectrum over all scales", plot, (5.6, 4.4))
 

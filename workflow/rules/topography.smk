@@ -68,7 +68,6 @@ rule pool_spectra:
     output:
         spectra=f"{RESULTS}/topography/spectra.h5",
         parameters=f"{RESULTS}/topography/parameters.json",
-        picture=f"{RESULTS}/topography/surface.png",
     log:
         f"{RESULTS}/logs/pool_spectra.log",
     params:

@@ -16,9 +16,6 @@ def closing_words(results: Path) -> Iterator[str]:
     description = content["description"]
     chosen = "set by the scene" if description["overridden"] else "chosen by evidence"
     yield f"described by {description['name']} ({chosen}): {description['meaning']}"
-    picture = results / "topography/surface.png"
-    if picture.is_file():
-        yield f"a picture is in {picture}"
     if (results / "topography/judged.csv").is_file():
         yield from judgement(load_csv(results / "topography/judged.csv"))
     yield from doubt_lines(content)

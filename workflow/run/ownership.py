@@ -24,7 +24,7 @@ from typing import NoReturn
 from asperity.guards.environment import READ
 
 RUN = "ASPERITY_RUN"  # environment variable with the process id of the run that a job belongs to
-FILES = {".cir", ".csv", ".data", ".h5", ".html", ".json", ".log", ".png", ".sub", ".va", ".xyz", ".yaml"}  # results
+FILES = {".cir", ".csv", ".data", ".h5", ".html", ".json", ".log", ".sub", ".va", ".xyz", ".yaml"}  # results
 PATIENCE_S = 60.0  # for jobs of a killed run to end
 
 
@@ -55,8 +55,8 @@ def inspect(*folders: Path) -> None:
         for entry in _entries(folder):
             path = Path(entry.path)
             if entry.is_symlink():
-                if _leads_out(path, inside):
-                    raise Refused(f"{path}: a link to {os.readlink(path)}, out of its folder; remove it")
+                if not (os.path.exists(path) and path.resolve().is_relative_to(inside)):
+                    raise Refused(f"{path}: a link to {os.readlink(path)}, to nowhere or out of its folder; remove it")
             elif entry.name in READ:
                 raise Refused(f"{path}: {READ[entry.name]}; move it away")
             elif entry.is_dir() and path.suffix in FILES:
@@ -65,14 +65,6 @@ def inspect(*folders: Path) -> None:
                 raise Refused(f"{path}: a pipe or device; move it away")
             elif not os.access(path, os.R_OK | (os.X_OK if entry.is_dir() else 0)):
                 raise Refused(f"{path}: may not be read; change its permissions or move it away")
-
-
-def _leads_out(link: Path, inside: Path) -> bool:
-    """Whether a link ends out of a folder, in a circle, or where one may not look."""
-    try:
-        return not link.resolve().is_relative_to(inside)
-    except (OSError, RuntimeError):
-        return True
 
 
 def _entries(folder: Path) -> Iterator[os.DirEntry[str]]:

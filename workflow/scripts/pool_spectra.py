@@ -1,7 +1,7 @@
 """Describe the surface behind all measurements: q0, q1, slope and RMS, one spectrum, and what random surfaces follow.
 
 In: topography/spectra/chunk_*.h5, truth.json for synthetic scans.
-Out: topography/spectra.h5 (figures 9 and 10), topography/parameters.json (1/nm, 1, nm), topography/surface.png.
+Out: topography/spectra.h5 (figures 9 and 10), topography/parameters.json (1/nm, 1, nm).
 """
 
 import math
@@ -12,8 +12,7 @@ from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import DATASETS, KEPT, in_order
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.summary import parameters, scan_rows
-from workflow.files.results import Dataset, atomic_path, load_h5, load_json, write_h5, write_json
-from workflow.report.surface_picture import surface_picture
+from workflow.files.results import Dataset, load_h5, load_json, write_h5, write_json
 from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
@@ -51,6 +50,3 @@ with job(snakemake) as run:
         {f"scans/{name}": values for name, values in attributes.items()},
     )
     write_json(snakemake.output.parameters, parameters(pooled, rows, settings, truth), run.provenance)
-    with atomic_path(snakemake.output.picture) as temporary:
-        drawn, _, drawn_attributes = load_h5(snakemake.output.spectra)
-        surface_picture(drawn, drawn_attributes, load_json(snakemake.output.parameters), temporary)

@@ -28,6 +28,7 @@ with job(snakemake) as run:
         from workflow.report.early import early_page  # the other jobs draw nothing
 
         root, central = Path(snakemake.output[0]).parents[2], PadModel(solved[0], points.design, ())
-        area, scene = points.contact.length_nm**2, dict(snakemake.params)
-        write_text(root / "report.html", early_page(root, list(snakemake.input), central, area, scene))
+        spectra = [path.replace("parameters.json", "spectra.h5") for path in snakemake.input]  # of the same job
+        files, area = sorted({*snakemake.input, *spectra}), points.contact.length_nm**2
+        write_text(root / "report.html", early_page(root, files, central, area, dict(snakemake.params)))
         run.say(f"{root / 'report.html'} shows it, and at the end of the run its interval")

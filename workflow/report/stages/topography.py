@@ -7,10 +7,9 @@ import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SKY, SOFT, draw
-from workflow.report.measured_surface import chosen_description, described_surface, doubts
+from workflow.report.measured_surface import chosen_description, described_surface, doubts, short_names
 from workflow.report.numbers import SYMBOLS, cell, show, shown_unit
 from workflow.report.page import Block, Figure, PageTable, stage, table
-from workflow.report.surface_picture import short_names
 
 
 @stage("Surface topography", *("topography/spectra.h5", "topography/parameters.json"), also=("topography/judged.csv",))
