@@ -71,6 +71,9 @@ class Settings(BaseModel, metaclass=_OneLine):
     """Base of all settings: unknown keys, infinities and NaN are refused; instances are frozen."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    if TYPE_CHECKING:  # of frozen models, which checkers do not see
+
+        def __hash__(self) -> int: ...
 
     @classmethod
     def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:

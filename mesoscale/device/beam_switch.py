@@ -340,7 +340,7 @@ class _Moving:
             return 0.5 * voltage if voltage > SWITCH.little * hold_V else 0.0
 
         # an opening is elastic, so the state at a lower voltage is reached from any higher one
-        closed = [(hold_V, self.nodal.copy(), self.deepest.copy())]
+        closed: list[tuple[float, Array, Array]] = [(hold_V, self.nodal.copy(), self.deepest.copy())]
         while closed[-1][0] > 0.0 and self.creep(lower(closed[-1][0]), CLOSING_NM):
             closed.append((lower(closed[-1][0]), self.nodal.copy(), self.deepest.copy()))
         high, *held = closed[-2:][0]

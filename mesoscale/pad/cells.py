@@ -140,7 +140,7 @@ class FilmPieces:
         """Heights (pixels, pixels) in nm of one cell, from the mean plane of the film; contact is at its minima."""
         heights = random_surface(self.inputs, self.contact, cell.seed)
         # the realisation was scaled to its own RMS; its short waves, of which there are many, tell by how much
-        realised = np.abs(rfft2(heights)) ** 2 / heights.size**2
+        realised = np.abs(np.asarray(rfft2(heights))) ** 2 / heights.size**2
         ratio = float(np.mean(realised[self.known] / self.power[self.known]))
         return heights / np.sqrt(ratio) + self.plane_deviation_nm * cell.plane
 
