@@ -95,16 +95,16 @@ def release_V(point: Point, inputs: ContactInputs, settings: ContactSettings, ce
 def _row(
     scene: str, kind: str, point: int, cells: int, release_V: float, error_V: float, cpu_s: float
 ) -> dict[str, Any]:
-    row = {"scene": scene, "kind": kind, "point": point, "cells": cells, "release_V": release_V}
-    return row | {"error_V": error_V, "cpu_s": cpu_s}
+    names = ("scene", "kind", "point", "cells", "release_V", "error_V", "cpu_s")
+    return dict(zip(names, (scene, kind, point, cells, release_V, error_V, cpu_s), strict=True))
 
 
 def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """RMS and mean of the differences, beside the stated error; the worst points; quantiles and share that sticks."""
     shown = {}
     for scene in dict.fromkeys(row["scene"] for row in table):
-        by = {kind: _releases(table, scene, kind) for kind in ("answer", "other", "many", "fresh")}
-        stated = {int(row["point"]): float(row["error_V"]) for row in table if _is(row, scene, "answer")}
+        by = {kind: _by_point(table, scene, kind) for kind in ("answer", "other", "many", "fresh")}
+        stated = _by_point(table, scene, "answer", "error_V")
         both = [k for k in by["other"] if np.isfinite(by["other"][k] - by["answer"][k])]
         if both:
             apart = np.array([by["answer"][k] - by["other"][k] for k in both])
@@ -127,9 +127,6 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
     return shown
 
 
-def _is(row: Mapping[str, str], scene: str, kind: str) -> bool:
-    return (row["scene"], row["kind"]) == (scene, kind)
-
-
-def _releases(table: Sequence[Mapping[str, str]], scene: str, kind: str) -> dict[int, float]:
-    return {int(row["point"]): float(row["release_V"]) for row in table if _is(row, scene, kind)}
+def _by_point(table: Sequence[Mapping[str, str]], scene: str, kind: str, column: str = "release_V") -> dict[int, float]:
+    rows = (row for row in table if (row["scene"], row["kind"]) == (scene, kind))
+    return {int(row["point"]): float(row[column]) for row in rows}
