@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam_kernels import NM, deflect, elongation, newton_step
+from mesoscale.device.beam_kernels import NM, deflect, newton_step
 from mesoscale.device.numerics import SWITCH
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
@@ -112,10 +112,6 @@ class Beam:
     def deflection_m(self, nodal: Array) -> Array:
         """Deflection at the integration points from nodal values (nodes, 2), shape (elements, points)."""
         return deflect(nodal, self.mechanics[0])
-
-    def axial_N(self, nodal: Array) -> float:
-        """Axial force of the bent beam."""
-        return self.tension_N + self.stretching_N_m * elongation(nodal, self.mechanics[2], self.rest_nodal)
 
     def step(self, nodal: Array, load: Load, inertia: float = 0.0, other: Array | None = None) -> tuple[Array, Array]:
         """One Newton step towards balance, and the answer to another load on top, both of shape (nodes, 2).

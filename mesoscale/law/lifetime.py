@@ -44,7 +44,10 @@ def cycle_row(seed: int, held: HeldCycle) -> dict[str, Any]:
         "contact_area_nm2": float(cycle.closing.contact_area_nm2[-1]),
         "dissipated_nN_nm": dissipated_energy(cycle)[0],
         "pull_off_nN": -float(cycle.opening.net_nN.min()),
-        **{f"opening_{name}": _number(getattr(opening, name)) for name in PARAMETERS},
+        **{
+            f"opening_{name}": value if np.isfinite(value := float(getattr(opening, name))) else ""
+            for name in PARAMETERS
+        },
         "opening_status": opening.status,
         "converged": bool(cycle.converged and held.missed == 0),
     }
@@ -66,7 +69,3 @@ def dwell_rows(seed: int, held: HeldCycle, contact: ContactSettings, settings: H
         }
         for time, factor, row in zip(held.held_s, factors, held.hold, strict=True)
     ]
-
-
-def _number(value: float) -> float | str:
-    return float(value) if np.isfinite(value) else ""

@@ -6,12 +6,13 @@ from fnmatch import fnmatchcase
 from pathlib import PurePath
 from typing import Any
 
-
-def _boolean(text: str) -> bool:
-    return {"True": True, "False": False}[text]
-
-
-PARSERS: dict[str, Callable[[str], Any]] = {"number": float, "integer": int, "boolean": _boolean, "text": str}
+BOOLEANS = {"True": True, "False": False}
+PARSERS: dict[str, Callable[[str], Any]] = {
+    "number": float,
+    "integer": int,
+    "boolean": BOOLEANS.__getitem__,
+    "text": str,
+}
 """Types of columns, and what reads a cell of each. A number may be nan or inf."""
 
 

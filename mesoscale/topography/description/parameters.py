@@ -123,7 +123,7 @@ def _estimates(
     centre = np.array([np.log(fitted.plateau), np.log(fitted.q0), fitted.slope])
     slope_error = min(float(np.sqrt(fitted.covariance[2, 2])), 10.0)
     q0_interval = likelihood.q0_interval(spectra, fitted, REACH)
-    slope_interval = _around(fitted.slope, REACH * slope_error)
+    slope_interval = (float(fitted.slope - REACH * slope_error), float(fitted.slope + REACH * slope_error))
 
     def log_rms(at: np.ndarray) -> float:
         return 0.5 * float(np.log(mean_square(np.exp(at[0]), np.exp(at[1]), at[2], cutoff)))
@@ -142,10 +142,6 @@ def _estimates(
         "hurst": _hurst(slope, settings.convention),
         "rms": Estimate(rms, (float(low), float(high)), union([low, high], fitted.scan_rms(cutoff))),
     }
-
-
-def _around(value: float, reach: float) -> tuple[float, float]:
-    return float(value - reach), float(value + reach)
 
 
 def _hurst(slope: Estimate, convention: Convention) -> Estimate:

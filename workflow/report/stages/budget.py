@@ -73,17 +73,14 @@ def _by_accuracy(results: Results) -> CsvRow:
     rows = results.csv("accuracy/pad.csv") if results.has("accuracy/pad.csv") else []
     errors = []
     for knob, in_use in IN_USE.items():
-        tried = {number(row["value"]): number(row["error"]) for row in rows if _is_release(row, knob)}
+        of_knob = (row for row in rows if (row["knob"], row["case"]) == (knob, "release"))
+        tried = {number(row["value"]): number(row["error"]) for row in of_knob}
         errors += [tried[value] for value in [in_use(tried)] if value in tried] if tried else []
     if not errors:
         return {}
     about = "steps, depths, sites and elements in use against finer ones"
     volts = str(float(np.sqrt(np.nansum(np.square(errors)))))
     return {"volts": volts, "about": about, "how": "computed", "source": "accuracy/pad.csv"}
-
-
-def _is_release(row: CsvRow, knob: str) -> bool:
-    return row["knob"] == knob and row["case"] == "release"
 
 
 def _effect(row: dict[str, Any]) -> str:
