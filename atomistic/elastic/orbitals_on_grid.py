@@ -20,6 +20,9 @@ P0 = 0.488602511902919921  # sqrt(3/4π)
 D0 = 1.092548430592079070  # sqrt(15/4π)
 D1 = 0.315391565252520002  # sqrt(5/16π)
 D2 = 0.546274215296039535  # sqrt(15/16π)
+# sums in any order; what compiled loops call is put into them (forceinline): each library has a copy of its own, and
+# which of them runs, and so the last digits, would depend on what was compiled and what was loaded
+FAST = {"contract", "reassoc"}
 
 
 @dataclass(frozen=True)
@@ -200,7 +203,7 @@ def _take_line(line, row, begin, count):
         at = 0
 
 
-@numba.njit(cache=True, fastmath={"contract", "reassoc"}, error_model="numpy")
+@numba.njit(cache=True, fastmath=FAST, error_model="numpy")
 def _collocate_atom(values, lattice, mesh, centre, exponents, angular, contraction, first, radius, low, high):
     n_radial, n_primitives = contraction.shape
     longest = high[2] - low[2] + 2
@@ -230,7 +233,7 @@ def _collocate_atom(values, lattice, mesh, centre, exponents, angular, contracti
                     _add_line(values[first[s] + m, row : row + mesh[2]], line, begin, n)
 
 
-@numba.njit(cache=True, fastmath={"contract", "reassoc"}, error_model="numpy")
+@numba.njit(cache=True, fastmath=FAST, error_model="numpy", forceinline=True)
 def _harmonic_times(out, degree, m, x, y, z, f, n):
     """out = S_lm(x, y, z) f, the real solid harmonic in PySCF's order (x, y, z; xy, yz, z², xz, x²-y²)."""
     if degree == 0:
@@ -257,7 +260,7 @@ def _harmonic_times(out, degree, m, x, y, z, f, n):
             out[k] = D2 * (x[k] * x[k] - y[k] * y[k]) * f[k]
 
 
-@numba.njit(cache=True, fastmath={"contract", "reassoc"}, error_model="numpy")
+@numba.njit(cache=True, fastmath=FAST, error_model="numpy")
 def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contraction, first, radius, low, high):
     n_radial, n_primitives = contraction.shape
     longest = high[2] - low[2] + 2
@@ -330,7 +333,7 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
     return total
 
 
-@numba.njit(cache=True, fastmath={"contract", "reassoc"}, error_model="numpy")
+@numba.njit(cache=True, fastmath=FAST, error_model="numpy", forceinline=True)
 def _sum(values, n):
     """Sum of the first n values; in a loop of its own it is fast, and rounds as it always did."""
     s = 0.0

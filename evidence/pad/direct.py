@@ -31,7 +31,6 @@ from mesoscale.settings import ContactSettings
 OTHER_CELLS = 64
 OTHERS = 500_000
 """Number of the first surfaces that no answer has."""
-QUANTILES = (0.05, 0.5, 0.95)
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -121,7 +120,7 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
         for kind in ("answer", "fresh"):
             release = np.array([value for value in by[kind].values() if np.isfinite(value)])
             if release.size:
-                low, middle, high = np.quantile(release, QUANTILES)
+                low, middle, high = np.quantile(release, (0.05, 0.5, 0.95))
                 said = f"{middle:.2f} [{low:.2f}, {high:.2f}] V, {np.mean(release == 0.0):.1%} stick"
                 shown[f"{scene}_{kind}"] = f"{said}, {release.size} points"
     return shown

@@ -15,7 +15,9 @@ from numba import njit
 NEWTON_STEPS = 40
 FACE_STEPS = 1000
 FACE_SHARE = 1e-3
-FAST = {"contract", "reassoc", "nsz"}  # sums in any order, so that they run in parallel lanes
+# sums in any order, so that they run in parallel lanes; what compiled loops call is put into them (forceinline): each
+# library has a copy of its own, and which of them runs, and so the last digits, would depend on what was loaded first
+FAST = {"contract", "reassoc", "nsz"}
 
 
 @njit(cache=True)
@@ -39,7 +41,7 @@ def block(table, scale, sites, pixels):
     return matrix
 
 
-@njit(cache=True, fastmath=FAST)
+@njit(cache=True, fastmath=FAST, forceinline=True)
 def multiply(matrix, n, x, y):
     """y = matrix[:n, :n] x for a symmetric matrix; its cost is that of the values of x that are not 0."""
     y[:n] = 0.0
@@ -51,7 +53,7 @@ def multiply(matrix, n, x, y):
                 y[j] += factor * row[j]
 
 
-@njit(cache=True, fastmath=FAST)
+@njit(cache=True, fastmath=FAST, forceinline=True)
 def _multiply_block(block, x, y):
     for k in range(x.size):
         row = block[k]
@@ -137,7 +139,7 @@ def neighbours(sites, place, pixels, places, number):
     return around
 
 
-@njit(cache=True, fastmath=FAST)
+@njit(cache=True, fastmath=FAST, forceinline=True)
 def stiffen(around, stencil, gap, pressure):
     """Pressures from the gaps of some sites (`neighbours`) by `half_space.stiffness_between_neighbours`, flat."""
     for m in range(around.shape[0]):
