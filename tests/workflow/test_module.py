@@ -1,5 +1,6 @@
 """Asperity as a module of another workflow, which has a folder of its own and its own rules and handlers."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -43,7 +44,8 @@ def host(tmp_path):
         (tmp_path / "config.yaml").write_text(f"asperity: {{scene: {scene}}}")
         snakemake = str(Path(sys.executable).with_name("snakemake"))
         command = [snakemake, *options, "--cores", "1", "--configfile", "config.yaml"]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache")}  # Snakemake's own, where the home is read-only
+        done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout + done.stderr
 
