@@ -341,8 +341,8 @@ class _Moving:
 
         # an opening is elastic, so the state at a lower voltage is reached from any higher one
         closed: list[tuple[float, Array, Array]] = [(hold_V, self.nodal.copy(), self.deepest.copy())]
-        while closed[-1][0] > 0.0 and self.creep(lower(closed[-1][0]), CLOSING_NM):
-            closed.append((lower(closed[-1][0]), self.nodal.copy(), self.deepest.copy()))
+        while (voltage := lower(closed[-1][0])) < closed[-1][0] and self.creep(voltage, CLOSING_NM):
+            closed.append((voltage, self.nodal.copy(), self.deepest.copy()))
         high, *held = closed[-2:][0]
         self.nodal, self.deepest = (state.copy() for state in held)
         share, low = self.landed_share(), None

@@ -62,7 +62,6 @@ class CoupledContact(Contact):
         self.hamaker, self.settings = float(inputs.hamaker), settings
         self.bodies = settings.bodies
         self.table = half_space.influence(self.n, self.length, self.bodies)
-        self.stencil = half_space.stiffness_between_neighbours(self.table)
         self.scale = self.length / self.e_star
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
         # how far 1 nN raises the surface at most, anywhere: it does, because the mean of the displacement is 0
@@ -332,6 +331,11 @@ class CoupledContact(Contact):
             if self.matrix.size == 0:  # memory is touched only as sites come in; the odd length keeps cache lines apart
                 self.matrix = np.empty((self.dense, self.dense + 8))
             dense.extend(self.matrix, self.table, self.scale, self.sites, old, count, self.n)
+
+    @cached_property
+    def stencil(self) -> np.ndarray:
+        """`half_space.stiffness_between_neighbours` of this half-space."""
+        return half_space.stiffness_between_neighbours(self.table)
 
     @cached_property
     def whole(self) -> grid.Grid:

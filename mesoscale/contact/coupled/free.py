@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from scipy import fft
 
-from mesoscale.contact.coupled import grid, half_space
+from mesoscale.contact.coupled import grid
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
@@ -30,7 +30,6 @@ class FreeContact(CoupledContact):
         super().__init__(padded, inputs, settings.model_copy(update={"pixels": pixels, "length_nm": pixels * spacing}))
         self.map_shape, self.rms = surface.shape, float(surface.std())
         self.table = free_influence(pixels)
-        self.stencil = half_space.stiffness_between_neighbours(self.table)
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
         self.rise = 0.0  # pressures only lower a free surface
 
