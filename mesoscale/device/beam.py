@@ -26,7 +26,8 @@ Array = NDArray[np.float64]
 Load = Callable[[Array], tuple[Array, Array]]
 """Pressure (Pa, positive: apart) and its derivative (Pa/m) at separations (m), all of shape (elements, points)."""
 
-GAUSS = np.polynomial.legendre.leggauss(4)
+GAUSS = np.polynomial.legendre.leggauss(6)
+"""Of an element. Contact ends within elements: with four points releases err three times as much."""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -12,7 +11,6 @@ from scipy.constants import elementary_charge
 from asperity.guards.settings import Settings, key
 from mesoscale.device.by_key import OF_A_PLATE, value_of
 from mesoscale.device.electrode import solve_deepened
-from mesoscale.device.numerics import SWITCH
 from mesoscale.device.plate import NM, VACUUM_PERMITTIVITY
 from mesoscale.device.points import Solved
 from mesoscale.device.spread import departed
@@ -149,19 +147,14 @@ class _Pressed:
         """The stated one."""
         return self.central.point.device
 
-    @cached_property
-    def stated_V(self) -> float:
-        """Release of the stated device, solved as coarsely as the others that it is compared with."""
-        return self.release_V(self.device)
-
     def release_V(self, device: DeviceSettings) -> float:
         """Release of a device."""
-        return solve_deepened(device, self.central.pressed.law, SWITCH.coarse_elements)["release_V"]
+        return solve_deepened(device, self.central.pressed.law)["release_V"]
 
     def reach_V(self, *devices: DeviceSettings) -> tuple[float | None, str]:
         """From the least to the largest release of devices and the stated one, and a remark."""
         try:
-            releases = [self.stated_V, *map(self.release_V, devices)]
+            releases = [self.central.states["release_V"], *map(self.release_V, devices)]
         except InputError as error:
             return None, f"; no answer: {str(error).partition(';')[0]}"
         return max(releases) - min(releases), "; it may stick" * (min(releases) == 0.0)

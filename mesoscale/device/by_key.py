@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mesoscale.device.electrode import solve_deepened
-from mesoscale.device.numerics import SWITCH
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
@@ -49,7 +48,7 @@ def _outwards(device: DeviceSettings, law: PadLaw, key: str, values: Sequence[fl
 
 
 def _voltages(device: DeviceSettings, law: PadLaw) -> dict[str, Any]:
-    states = solve_deepened(device, law, SWITCH.coarse_elements)
+    states = solve_deepened(device, law)
     return {
         "pull_in_V": states["pull_in_V"],
         "release_V": states["release_V"],

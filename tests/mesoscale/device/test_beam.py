@@ -218,6 +218,12 @@ def test_release_from_the_snap_is_that_of_finite_differences(settings):
     assert release > 1.0
 
 
+def test_a_beam_that_peels_from_few_elements_lets_go_as_one_of_four_times_as_many():
+    law = made_up_law(160.0)
+    release = solve_beam(DeviceSettings(), law).release_V
+    assert release == pytest.approx(solve_beam(DeviceSettings(), law, 512).release_V, rel=1e-3)
+
+
 def test_local_pressure_is_that_of_the_pad_with_its_memory():
     law = made_up_law(5.0)
     local = LocalPad(law)

@@ -8,7 +8,6 @@ import pytest
 from asperity.guards.foreign_yaml import load_mapping
 from mesoscale.device.budget import budget, effects_of
 from mesoscale.device.electrode import solve_deepened
-from mesoscale.device.numerics import SWITCH
 from mesoscale.device.points import Point, Solved
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
@@ -25,7 +24,7 @@ class KnownPad:
 
 
 def central(device):
-    states = solve_deepened(device, KnownPad.law, SWITCH.coarse_elements)
+    states = solve_deepened(device, KnownPad.law)
     return Solved(Point({}, 0.2, device), KnownPad, states, (0.0, 0.0))
 
 

@@ -296,7 +296,7 @@ def test_release_by_key_is_that_of_the_changed_device_and_ends_with_a_reason(set
         assert sum(row["own"] for row in of_key) == 1
         assert not any(row["reason"] for row in of_key[1:-1]), "nothing is solved beyond an end"
         for row in (row for row in (of_key[0], of_key[-1]) if not row["reason"]):
-            state = solve_deepened(settings.model_copy(update={key: row["value"]}), law, SWITCH.coarse_elements)
+            state = solve_deepened(settings.model_copy(update={key: row["value"]}), law)
             assert (row["pull_in_V"], row["release_V"]) == (state["pull_in_V"], state["release_V"])
     (low,) = [row for row in rows if row["key"] == "hold_voltage_V" and row["reason"]]
     assert "never closes" in low["reason"]
