@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from mesoscale.calibration.observables import Cycles, enter_by_logarithm
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.uncertainty.surrogate import basis_matrix
+from mesoscale.uncertainty.surrogate import basis_matrix, scaled
 
 Array = NDArray[np.float64]
 
@@ -65,20 +65,13 @@ class Responses:
 
     def __call__(self, x: Array) -> Prediction:
         """Predict at inputs x of shape (m, n)."""
-        u = scaled(x, self.ranges)
+        u = np.clip(scaled(x, self.ranges), -1.0, 1.0)
         basis = basis_matrix(u, self.degrees)
         shift, unit = _units(self.names, x[:, self.rms_column])
         deviation = unit * np.exp(0.5 * u @ self.slopes)
         scatter = deviation[:, :, None] * self.covariance * deviation[:, None, :]
         error = np.einsum("mt,ts,ms->m", basis, self.inverse, basis, optimize=True)
         return Prediction(basis @ self.coefficients * unit + shift, scatter, error)
-
-
-def scaled(x: Array, ranges: Array) -> Array:
-    """Inputs (m, n) in -1 .. 1; an input of no width gives 0, one beyond its range that of the end."""
-    width = ranges[:, 1] - ranges[:, 0]
-    u = np.where(width > 0, 2 * (x - ranges[:, 0]) / np.where(width > 0, width, 1.0) - 1, 0.0)
-    return np.clip(u, -1.0, 1.0)
 
 
 def _units(names: Sequence[str], rms: Array) -> tuple[Array, Array]:
@@ -111,7 +104,7 @@ def fit_responses(names: Sequence[str], cycles: Cycles, table: InputTable) -> Re
     shift, unit = _units(names, cycles.x[:, rms_column])
     target = (cycles.of(names) - shift) / unit
     usable = np.isfinite(target).all(axis=1)
-    u, target = scaled(cycles.x[usable], ranges), target[usable]
+    u, target = np.clip(scaled(cycles.x[usable], ranges), -1.0, 1.0), target[usable]
     degrees = _terms(np.ptp(ranges, axis=1) > 0, len(u) // FEWEST_PER_TERM)
     if FEWEST_PER_TERM * len(degrees) > len(u):
         words = ", ".join(names) if len(names) < 4 else "the observables"

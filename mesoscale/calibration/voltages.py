@@ -17,7 +17,7 @@ from mesoscale.device.points import PadModel
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.uncertainty.regression import refit, sparse_chaos
-from mesoscale.uncertainty.surrogate import Surrogate
+from mesoscale.uncertainty.surrogate import Surrogate, scaled
 
 Array = NDArray[np.float64]
 
@@ -74,7 +74,7 @@ def _regressed(x: Array, volts: Array, ranges: Array, of_device: NDArray[np.bool
         if step % 50 == 0:
             fit = sparse_chaos(x, values, ranges, degree=2)
         else:
-            fit = refit(fit.scaled(x), values, ranges, fit.degrees, "identity")
+            fit = refit(scaled(x, ranges), values, ranges, fit.degrees, "identity")
         off = values - fit(x)
         missed_V = np.sqrt((off**2).sum() / max(len(x) - len(fit.degrees), 1))
         expected = fit(x)[stuck]

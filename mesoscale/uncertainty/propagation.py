@@ -13,16 +13,7 @@ from mesoscale.settings import UncertaintySettings
 from mesoscale.settings.definitions import BY_NAME
 from mesoscale.uncertainty.collocation import level1_response
 from mesoscale.uncertainty.designs import SAMPLE_SEED
-from mesoscale.uncertainty.surrogate import (
-    Below,
-    Response,
-    Scatter,
-    Surrogate,
-    evaluate,
-    joint_scatter,
-    to_json,
-    with_scatter,
-)
+from mesoscale.uncertainty.surrogate import Below, Response, Surrogate, evaluate, to_json, with_scatter
 
 Array = NDArray[np.float64]
 Direct = tuple[Array, Array]
@@ -132,7 +123,6 @@ class Propagation:
     outputs : closing and opening parameters of every sample through the exported responses, shape (m, len(FITTED)).
     cells : the same of single cells, with the scatter from one surface to the next; NaN without direct runs.
     responses : one per entry of FITTED; None where too few direct runs determine it.
-    scatter : joint scatter of single cells about the responses that exist; None with too few direct runs.
     by_seed : mean and deviation of the outputs of Table 2 of every seed's own response, shape (seeds, 2, len(OUTPUTS)).
     variances : var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses, shape (2,
         len(OUTPUTS)).
@@ -142,7 +132,6 @@ class Propagation:
     outputs: Array
     cells: Array
     responses: list[Response | None]
-    scatter: Scatter | None
     by_seed: Array
     variances: Array
 
@@ -178,11 +167,7 @@ def propagate(nodes: NodeOutputs, table: InputTable, settings: UncertaintySettin
     responses = exported_responses(direct, ranges, settings)
     outputs = evaluate(responses, samples)
     cells = with_scatter(outputs, responses, direct, SAMPLE_SEED)
-    existing = [k for k, response in enumerate(responses) if response is not None]
-    scatter = joint_scatter(
-        [response for response in responses if response is not None], (direct[0], direct[1][:, existing])
-    )
-    return Propagation(samples, outputs, cells, responses, scatter, by_seed, variances)
+    return Propagation(samples, outputs, cells, responses, by_seed, variances)
 
 
 def linear_outputs(values: Array, ranges: Array, x: Array) -> Array:
@@ -286,20 +271,4 @@ def surrogate_json(
         "inputs": inputs,
         "law": dict(law),
         "outputs": outputs,
-        "scatter": _scatter_json(result.scatter, [output["name"] for output in outputs]),
-    }
-
-
-def _scatter_json(scatter: Scatter | None, names: list[str]) -> dict[str, Any] | None:
-    if scatter is None:
-        return None
-    return {
-        "about": "one random surface about the mean over surfaces: log: value = output * exp(z), identity: value = "
-        "output + z; z of all outputs together is normal with this mean and covariance, estimated from direct runs, "
-        "each with its own inputs and its own surface, and taken as the same over the ranges of the inputs",
-        "outputs": names,
-        "transforms": list(scatter.transforms),
-        "mean": scatter.mean,
-        "covariance": scatter.covariance,
-        "runs": scatter.runs,
     }

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.extras import needs
-from mesoscale.uncertainty.surrogate import Surrogate, basis_matrix
+from mesoscale.uncertainty.surrogate import Surrogate, basis_matrix, scaled
 
 Array = NDArray[np.float64]
 
@@ -35,10 +35,9 @@ def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity",
     inputs = x.shape[1]
     if usable.sum() < 2 * inputs:
         raise ValueError(f"{int(usable.sum())} usable runs for {inputs} inputs; at least {2 * inputs} are needed")
-    blank = Surrogate(ranges, np.zeros((1, inputs), int), np.zeros(1))
-    u = np.clip(blank.scaled(x[usable]), -1.0, 1.0)
+    u = np.clip(scaled(x[usable], ranges), -1.0, 1.0)
     target = np.log(y[usable]) if transform == "log" else y[usable]
-    # scaled, because LARS stops at absolute tolerances
+    # in units of its deviation, because LARS stops at absolute tolerances
     centre, width = target.mean(), target.std() or 1.0
 
     # an input that does not vary has no terms, and would make the least squares singular

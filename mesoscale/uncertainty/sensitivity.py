@@ -20,7 +20,7 @@ from mesoscale.uncertainty.propagation import (
     to_paper_outputs,
 )
 from mesoscale.uncertainty.regression import refit
-from mesoscale.uncertainty.surrogate import Response, Surrogate, evaluate
+from mesoscale.uncertainty.surrogate import Response, Surrogate, evaluate, scaled
 
 Array = NDArray[np.float64]
 
@@ -156,7 +156,7 @@ def _refitted(responses: Sequence[Response | None], x: Array, y: Array) -> list[
             again.append(None)
             continue
         usable = np.isfinite(y[:, k]) & ((y[:, k] > 0) | (response.transform == "identity"))
-        u = np.clip(response.scaled(x[usable]), -1, 1)
+        u = np.clip(scaled(x[usable], response.ranges), -1, 1)
         target = np.log(y[usable, k]) if response.transform == "log" else y[usable, k]
         again.append(refit(u, target, response.ranges, response.degrees, response.transform))
     return again

@@ -1,4 +1,4 @@
-"""Responses in Legendre polynomials: evaluate, moments, Sobol' indices, scatter, plain JSON."""
+"""Responses in Legendre polynomials: their values, those of single cells, and plain JSON."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -37,6 +37,13 @@ def basis_matrix(u: Array, degrees: NDArray[np.int_]) -> Array:
     return matrix
 
 
+def scaled(x: Array, ranges: Array) -> Array:
+    """Inputs (m, n), of ranges (n, 2), in -1 .. 1, and beyond where they leave them; an input of no width gives 0."""
+    low, high = ranges[:, 0], ranges[:, 1]
+    width = high - low
+    return np.where(width > 0, 2 * (x - low) / np.where(width > 0, width, 1.0) - 1, 0.0)
+
+
 @dataclass(frozen=True)
 class Surrogate:
     """y = transform( sum_t coefficient_t prod_k P_{degree_tk}(u_k) ), u = 2 (x - low)/(high - low) - 1.
@@ -53,12 +60,6 @@ class Surrogate:
     degrees: NDArray[np.int_]
     coefficients: Array
     transform: str = "identity"
-
-    def scaled(self, x: Array) -> Array:
-        """Inputs (m, n) scaled to [-1, 1]; an input of zero width maps to 0."""
-        low, high = self.ranges[:, 0], self.ranges[:, 1]
-        width = high - low
-        return np.where(width > 0, 2 * (x - low) / np.where(width > 0, width, 1.0) - 1, 0.0)
 
     def __call__(self, x: "Array | SharedBasis") -> Array:
         """Output at inputs x of shape (m, n)."""
@@ -78,7 +79,7 @@ class SharedBasis:
         """Terms of a response at the points, shape (m, terms)."""
         key = response.ranges.tobytes(), response.degrees.tobytes()
         if key not in self._bases:
-            self._bases[key] = basis_matrix(response.scaled(self.x), response.degrees)
+            self._bases[key] = basis_matrix(scaled(self.x, response.ranges), response.degrees)
         return self._bases[key]
 
 
@@ -127,66 +128,6 @@ def to_json(response: Response) -> dict[str, Any]:
     }
 
 
-FEWEST_RUNS = 20
-"""Complete runs below which there is no scatter of single cells."""
-
-
-@dataclass(frozen=True)
-class Scatter:
-    """Scatter of single cells about their responses, joint in all outputs.
-
-    transform(cell) = transform(response) + z, z normal. The transforms are not those of the responses: d_c has an
-    identity response and a scatter in proportion to it (all lengths scale with RMS).
-
-    Attributes
-    ----------
-    transforms : log (cell = response exp(z)) or identity (cell = response + z), one per output.
-    mean : mean of z, shape (n,); below zero for log, as the response is the mean of the cells, not of their logarithm.
-    covariance : of z, shape (n, n).
-    runs : direct runs behind it.
-    """
-
-    transforms: tuple[str, ...]
-    mean: Array
-    covariance: Array
-    runs: int
-
-
-def joint_scatter(responses: Sequence[Response], direct: tuple[Array, Array]) -> Scatter | None:
-    """Residuals of direct runs in the transformed space as a joint normal distribution.
-
-    Parameters
-    ----------
-    responses : n of them.
-    direct : inputs (r, m) and outputs (r, n) of the direct runs that the responses were fitted to, each on a surface
-        of its own; deviations are widened by the terms' number.
-
-    Returns
-    -------
-    None with fewer than 20 complete runs.
-    """
-    x, y = direct
-    complete = np.isfinite(y).all(axis=1)
-    if complete.sum() < FEWEST_RUNS or not responses:
-        return None
-    truth, smooth = y[complete], evaluate(responses, x[complete])
-    positive = np.asarray(((truth > 0) & (smooth > 0)).all(axis=0))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        residuals = np.where(positive, np.log(truth / smooth), truth - smooth)
-    widening = np.array([_widening(response, len(truth)) for response in responses])
-    return Scatter(
-        tuple(np.where(positive, "log", "identity").tolist()),
-        residuals.mean(axis=0),
-        np.cov(residuals, rowvar=False).reshape(len(responses), -1) * np.outer(widening, widening),
-        len(truth),
-    )
-
-
-def _widening(response: Response, runs: int) -> float:
-    """How much smaller the residuals of a least-squares fit are than those of runs that it has not seen."""
-    return float(np.sqrt(runs / max(runs - len(response.degrees), 1)))
-
-
 def with_scatter(outputs: Array, responses: Sequence[Response | None], direct: tuple[Array, Array], seed: int) -> Array:
     """Outputs of single cells: those of the responses times residuals drawn from direct runs.
 
@@ -208,13 +149,14 @@ def with_scatter(outputs: Array, responses: Sequence[Response | None], direct: t
     has_response = np.array([response is not None for response in responses])
     complete = np.isfinite(y[:, has_response]).all(axis=1)
     cells = np.full_like(outputs, np.nan)
-    if complete.sum() < FEWEST_RUNS:
+    runs = int(complete.sum())
+    if runs < 20:
         return cells
-    picks = np.random.default_rng(np.random.SeedSequence([seed, 0x5C])).integers(complete.sum(), size=len(outputs))
+    picks = np.random.default_rng(np.random.SeedSequence([seed, 0x5C])).integers(runs, size=len(outputs))
     for k, response in enumerate(responses):
         if response is None:
             continue
-        widening = _widening(response, int(complete.sum()))
+        widening = float(np.sqrt(runs / max(runs - len(response.degrees), 1)))  # residuals of a fit are too small
         truth, smooth = y[complete, k], predicted[complete, k]
         if (smooth > 0).all() and (outputs[:, k] > 0).all():
             ratio = truth / smooth

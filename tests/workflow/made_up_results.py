@@ -179,13 +179,6 @@ def _uncertainty(root: Path) -> None:
         "inputs": inputs,
         "outputs": responses,
         "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0, "most_GPa": 0.007},
-        "scatter": {
-            "outputs": [response["name"] for response in responses],
-            "transforms": ["log"] * 8,
-            "mean": [0.0] * 8,
-            "covariance": np.diag([0.01] * 8),
-            "runs": 50,
-        },
     }
     write_json(root / "uq/surrogate.json", content, PROVENANCE)
 

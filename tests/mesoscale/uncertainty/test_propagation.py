@@ -27,7 +27,6 @@ from mesoscale.uncertainty.propagation import (
     surrogate_json,
 )
 from mesoscale.uncertainty.sensitivity import pick_freeze, sensitivity_rows, sobol_indices
-from mesoscale.uncertainty.surrogate import Surrogate, joint_scatter
 from mesoscale.uncertainty.validation import validation_rows
 from tests.mesoscale.uncertainty.surrogate_reader import from_json
 
@@ -317,41 +316,6 @@ def test_too_few_runs_give_no_regression_response():
     result = propagate(linear_nodes(table, [1, 2, 3]), table, SETTINGS, (x, np.ones((5, 8))))
     assert result.responses == [None] * 8
     assert np.isnan(result.outputs).all()
-
-
-def test_joint_scatter_recovers_the_distribution_behind_the_runs():
-    # as measured on scene paper: a length and the logarithm of a prefactor, scattered together
-    rng = np.random.default_rng(5)
-    ranges = np.array([[2.0, 15.0]])
-    length = Surrogate(ranges, np.array([[0], [1]]), np.array([31.0, 24.0]))
-    prefactor = Surrogate(ranges, np.array([[0], [1]]), np.array([-7.0, 0.5]), "log")
-    change = Surrogate(ranges, np.array([[0], [1]]), np.array([0.0, 1.0]))
-    mean = np.array([-0.005, -0.3, 0.0])
-    covariance = np.array([[0.01, -0.05, 0.0], [-0.05, 0.5, 0.1], [0.0, 0.1, 0.2]])
-    runs = 20000
-    x = rng.uniform(2.0, 15.0, (runs, 1))
-    z = rng.multivariate_normal(mean, covariance, runs)
-    y = np.stack([length(x) * np.exp(z[:, 0]), prefactor(x) * np.exp(z[:, 1]), change(x) + z[:, 2]], axis=1)
-    y[::100, 1] = np.nan  # runs without a law are left out
-    found = joint_scatter([length, prefactor, change], (x, y))  # six terms widen nothing of 19,800 runs
-    assert found is not None
-    assert found.transforms == ("log", "log", "identity")
-    assert found.runs == runs - runs // 100
-    deviation = np.sqrt(np.diag(covariance))
-    # four standard errors of means and covariances of normal samples
-    np.testing.assert_array_less(np.abs(found.mean - mean), 4 * deviation / np.sqrt(runs))
-    error = np.sqrt((covariance**2 + np.outer(deviation, deviation) ** 2) / runs)
-    np.testing.assert_array_less(np.abs(found.covariance - covariance), 4.1 * error)
-
-
-def test_joint_scatter_needs_runs_and_allows_for_the_terms_that_were_fitted():
-    rng = np.random.default_rng(6)
-    response = Surrogate(np.array([[0.0, 1.0]]), np.arange(5)[:, None], np.array([10.0, 0, 0, 0, 0]))
-    x, y = rng.uniform(size=(25, 1)), rng.normal(10, 1, (25, 1))
-    assert joint_scatter([response], (x[:19], y[:19])) is None
-    fitted = joint_scatter([response], (x, y))
-    assert fitted is not None
-    assert fitted.covariance[0, 0] == pytest.approx(np.log(y / 10).var(ddof=1) * 25 / 20)
 
 
 def falling_contacts(inputs: int, runs: int = 300):
