@@ -11,35 +11,20 @@ from mesoscale.law.parameters import PARAMETERS
 from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import number, show
-from workflow.report.page import Block, Figure, PageTable, stage
+from workflow.report.page import Block, Figure, stage
 
 MODELS = {
     "elastic": ("elastic", ":"),
     "nonlinear": ("non-linear elastic", "--"),
     "plastic": ("asperity plasticity", "-"),
 }
-CHOICES = {
-    "mechanics": "mechanics",
-    "attraction": "law of the attraction",
-    "gap_cutoff_nm": "D₀ of the attraction (nm)",
-    "touching_attracts": "sites in contact attract",
-    "convention": "slope convention",
-    "q1_per_nm": "short-wave cut-off (1/nm)",
-}
-OF_SINGLE_ASPERITIES = {
-    "prefactor": "Hertz prefactor",
-    "radius": "asperity radius",
-    "area": "contact area",
-    "flow_pair": "pair of Gaussians",
-}
-"""Asperities that feel each other have neither a radius nor a shape of flow."""
 
 
 @stage("Curves of one cell at central inputs", "curves/nominal.h5", also=("law/nominal.csv",))
 def describe(results: Results) -> Iterator[Block]:
-    """The picture of the contact, figures 4 and 11, and the choices in use."""
-    reading, coupled = results.contact, results.coupled
-    yield f"Closing and opening of one surface of {reading['length_nm']:g} nm with {reading['pixels']}² grid points."
+    """The picture of the contact, and figures 4 and 11."""
+    contact, coupled = results.contact, results.coupled
+    yield f"Closing and opening of one surface of {contact['length_nm']:g} nm with {contact['pixels']}² grid points."
     yield Figure(
         spots(results),
         "One cell, a square of rough surface, seen from the flat: high is light. Coloured is where the flat has "
@@ -59,12 +44,6 @@ def describe(results: Results) -> Iterator[Block]:
         "Figure 11",
         wide=True,
     )
-    chosen = {**reading, **reading["reading"]}
-    words = CHOICES if coupled else CHOICES | OF_SINGLE_ASPERITIES
-    used = [(label, _in_words(value)) for key, label in words.items() if (value := chosen.get(key)) is not None]
-    if used:
-        caption = "Readings of the paper in use" if results.beside_paper else "Choices of the contact model"
-        yield PageTable(caption, ("choice", "value"), used)
 
 
 def spots(results: Results) -> str | None:
@@ -126,7 +105,6 @@ def nominal_loads(results: Results) -> str | None:
         return None
     area = float(attributes["cell_area_nm2"])
     fits = results.csv("law/nominal.csv") if results.has("law/nominal.csv") else []
-    constants = _constants(results)
 
     def plot(axis, zoom):
         for panel in (axis, zoom):
@@ -140,7 +118,7 @@ def nominal_loads(results: Results) -> str | None:
                     if row is not None:
                         h = np.linspace(separation.min(), separation.max(), 300)
                         hamaker = number(curve_attributes[load]["hamaker"])
-                        fitted = area * _pressure(h, row, hamaker, *constants) / 1e3
+                        fitted = area * _pressure(h, row, hamaker) / 1e3
                         panel.plot(h, fitted, "-", color=INK, linewidth=0.6)
             panel.axhline(0, color=SOFT, linewidth=0.8)
             panel.set(xlabel="mean separation (nm)", ylabel=_force_on(attributes))
@@ -161,12 +139,6 @@ def _force_on(attributes: Mapping[str, Any]) -> str:
     return f"force on {float(attributes['cell_area_nm2']) / 1e6:.3g} µm² (µN)"
 
 
-def _in_words(choice: object) -> str:
-    if isinstance(choice, bool):
-        return "yes" if choice else "no"
-    return show(choice) if isinstance(choice, float) else str(choice)
-
-
 def _total(curve: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Separation (nm) and total force (µN)."""
     return curve["separation_nm"], (curve["repulsive_nN"] + curve["attractive_nN"]) / 1e3
@@ -176,21 +148,13 @@ def _load(name: str) -> float:
     return float(name.removeprefix("load_"))
 
 
-def _pressure(h: np.ndarray, row: CsvRow, hamaker: float, rho_a: float, shield: float) -> np.ndarray:
+def _pressure(h: np.ndarray, row: CsvRow, hamaker: float) -> np.ndarray:
     """Total pressure of a fitted row (GPa), eqs 10 to 13."""
     parameters = {name: number(row[name]) for name in PARAMETERS}
-    attractive, repulsive = pressure(h, Law(**parameters, hamaker=hamaker, rho_a_nm=rho_a, shield_nm=shield))
+    attractive, repulsive = pressure(h, Law(**parameters, hamaker=hamaker))
     return attractive + repulsive
 
 
 def _fit_of(rows: list[CsvRow], curve: str, branch: str) -> CsvRow | None:
     """The fit of a curve; None where it gave no law."""
     return next((row for row in rows if row["curve"] == curve and row["branch"] == branch and row["C_r_GPa"]), None)
-
-
-def _constants(results: Results) -> tuple[float, float]:
-    """rho_a and the shield of eq. 12 as this scene's fits used them."""
-    if results.has("uq/surrogate.json"):
-        law = results.json("uq/surrogate.json")["law"]
-        return float(law["rho_a_nm"]), float(law["alpha_nm"])
-    return 2.0, 2.0
