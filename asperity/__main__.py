@@ -16,7 +16,6 @@ from asperity.guards.bundle import ROOT
 from asperity.guards.environment import UnsafeFolder, secure
 from asperity.guards.foreign_text import as_word, shown, wrapped
 
-SCHEMA = ROOT / "config" / "scene.schema.json"
 # Ctrl-C while Snakemake is still imported ends it without a traceback
 START = "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); import snakemake.cli; snakemake.cli.main()"
 
@@ -53,7 +52,7 @@ def main(arguments: list[str] | None = None) -> int:
     if given.command == "compare":
         _become("-m", "workflow.compare", given.first, given.second)
     if given.command == "schema":
-        print(SCHEMA.read_text(encoding="utf-8"), end="")
+        print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
     elif given.command == "scenes":
         for path in sorted((ROOT / "config" / "scenes").glob("*.yaml")):
             print(f"{path.stem:<10}  {path.read_text(encoding='utf-8').splitlines()[1].lstrip('# ')}")

@@ -21,8 +21,6 @@ NUMBERS_OF_DEVICE = [
     name for name, field in DeviceSettings.model_fields.items() if field.annotation in (float, float | None)
 ]
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
-GIVEN = "command line"
-UNITS = get_args(LengthUnit)
 
 
 def topography_of(given: Namespace) -> dict[str, Any]:
@@ -35,9 +33,9 @@ def topography_of(given: Namespace) -> dict[str, Any]:
     keys = {name: getattr(given, name) for name in ("channel", "detrend") if getattr(given, name)}
     added: dict[str, Any] = {}
     if given.unit:
-        units = given.unit.replace("\u00b5", "u").split(",")
-        if len(units) > 2 or not set(units) <= set(UNITS):
-            raise InputError(f"--unit {given.unit}: accepted are {', '.join(UNITS)}, or two of them such as um,nm")
+        units, known = given.unit.replace("\u00b5", "u").split(","), get_args(LengthUnit)
+        if len(units) > 2 or not set(units) <= set(known):
+            raise InputError(f"--unit {given.unit}: accepted are {', '.join(known)}, or two of them such as um,nm")
         added |= dict(zip(("unit", "height_unit"), units, strict=False))
     if given.size:
         sides = re.fullmatch(rf"({NUMBER})(?:x({NUMBER}))?", given.size)
@@ -93,7 +91,8 @@ def material_of(given: Sequence[str]) -> dict[str, InputRow]:
         first, sign, second = numbers.groups()
         kind = {None: "fixed", ":": "uniform", "+-": "normal"}[sign]
         values = tuple(float(number) for number in (first, second) if number)
-        rows[name] = InputRow(distribution=kind, values=values, source=GIVEN)  # pyright: ignore[reportArgumentType]
+        stated: Any = {"distribution": kind, "values": values, "source": "command line"}
+        rows[name] = InputRow(**stated)
     return rows
 
 

@@ -42,8 +42,6 @@ MaterialInputs = Mapping[str, float | InputRow | Any]
 
 PIXELS = {128: 4.0, 256: 4.0, 512: 1.0, 1024: 1.0, 2048: 1.0}
 """Grids, and how far beyond a film's cut-off they must resolve: small ones are for films of long waves."""
-GROWN_PIXELS = 512
-"""Grid of cells that grow to hold a film's long waves: as that of usual ones, so that they cost no more."""
 TABLE_1 = InputsSettings()
 MATERIAL = {
     "e_star": PAPER_ROWS["e_star"],
@@ -112,7 +110,8 @@ class Film(Shown):
                 attributes[name] = {**_origin(source), **described}
                 self.measurements.append(measured)
         records = in_order(arrays, attributes)
-        pooled = pool(records, attributes, self.settings, cell_nm=None, cut_off=True, pixels=GROWN_PIXELS)
+        # cells that grow to hold a film's long waves have the grid of usual ones, so that they cost no more
+        pooled = pool(records, attributes, self.settings, cell_nm=None, cut_off=True, pixels=512)
         self._spectra = pooled.spectra
         rows = scan_rows(pooled, attributes, None)
         self.description = parameters(pooled, rows, self.settings, None)

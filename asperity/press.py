@@ -21,8 +21,6 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 PressureOfGaps = Callable[[np.ndarray], Any]
-BY_LOAD = ("loads_nN", "nN", SMALLEST_FORCE_NN, LARGEST_FORCE_NN)
-BY_APPROACH = ("approach_nm", "nm", 1e-9, 1e9)
 
 
 @dataclass(frozen=True, repr=False)
@@ -125,7 +123,9 @@ def press(
     if (loads_nN is None) == (approach_nm is None):
         raise InputError("press: give either loads_nN or approach_nm, and None for the other")
     by_load = loads_nN is not None
-    name, unit, least, most = BY_LOAD if by_load else BY_APPROACH
+    name, unit, least, most = "approach_nm", "nm", 1e-9, 1e9
+    if by_load:
+        name, unit, least, most = "loads_nN", "nN", SMALLEST_FORCE_NN, LARGEST_FORCE_NN
     steps = checked_array(name, np.atleast_1d(np.asarray(loads_nN if by_load else approach_nm)), unit)
     for step in steps:
         check_number(name, float(step), least, most, unit)

@@ -29,7 +29,6 @@ TRIES = 3
 """Evaluations of one request, should its worker die."""
 LONGEST_S = 600.0
 """Of one evaluation."""
-SUPPORT = {"Evaluate": True, "Gradient": False, "ApplyJacobian": False, "ApplyHessian": False}
 
 
 class _Worker:
@@ -143,7 +142,8 @@ def application(workers: Workers, host: str) -> "web.Application":
         config = MODELS[name].checked_config(content.get("config", {}))
         match request.path:
             case "/ModelInfo":
-                result: dict[str, Any] = {"support": SUPPORT}
+                derivatives = dict.fromkeys(("Gradient", "ApplyJacobian", "ApplyHessian"), False)
+                result: dict[str, Any] = {"support": {"Evaluate": True, **derivatives}}
             case "/InputSizes":
                 result = {"inputSizes": [len(INPUTS)]}
             case "/OutputSizes":

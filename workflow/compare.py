@@ -25,9 +25,7 @@ from workflow.report.available import results_in
 from workflow.report.verdict import verdict
 from workflow.run.job import without_machine_times
 
-LEFT_OUT = ("logs", "work", "report.html")  # first part of a path below the folder
 PROVENANCE = {"provenance", "schema_version", "rule", "inputs_hash", "versions", "git_commit"}
-LINKS = {"DIMENSION_LIST", "REFERENCE_LIST"}  # addresses inside an HDF5 file
 
 
 def differences(first: Path, second: Path) -> Iterator[str]:
@@ -48,8 +46,8 @@ def differences(first: Path, second: Path) -> Iterator[str]:
 
 def _result_files(folder: Path) -> set[str]:
     files = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
-    # hidden: locks and files that are being written
-    return {str(path) for path in files if path.parts[0] not in LEFT_OUT and not path.name.startswith(".")}
+    left_out = ("logs", "work", "report.html")  # and what is hidden: locks and files that are being written
+    return {str(path) for path in files if path.parts[0] not in left_out and not path.name.startswith(".")}
 
 
 def content(path: Path) -> Any:
@@ -78,8 +76,9 @@ def _h5_content(path: Path) -> dict[str, Any]:
 
 
 def _attributes(item: Any) -> dict[str, Any]:
-    """Attributes, those that hold settings as mappings."""
-    known = {key: value for key, value in item.attrs.items() if key not in LINKS}
+    """Attributes, those that hold settings as mappings, without addresses inside the file."""
+    links = {"DIMENSION_LIST", "REFERENCE_LIST"}
+    known = {key: value for key, value in item.attrs.items() if key not in links}
     return {
         key: json.loads(value) if isinstance(value, str) and value.startswith("{") else value
         for key, value in known.items()

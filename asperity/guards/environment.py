@@ -11,8 +11,6 @@ from pathlib import Path
 
 from asperity.guards.bundle import ROOT
 
-EMPTY = Path(__file__).with_name("empty_settings")
-"""In place of `.pyscf_conf.py`, which PySCF would run."""
 READ = {
     ".numba_config.yaml": "numba would take settings from it",
     "ucx.conf": "MPI's network layer would take settings, and libraries to load, from it",
@@ -24,10 +22,6 @@ READ = {
     "minao": "PySCF would take it for a basis set and run what stands in it",
 }
 """What packages read of the working folder and cannot be told to leave: a folder that holds one is refused."""
-
-
-PACKAGES = {"conda", "conda-archive", "singularity", "apptainer"}
-"""Folders of `.snakemake` with packages of other workflows, which are full of links; no rule here uses them."""
 
 
 class UnsafeFolder(Exception):
@@ -49,7 +43,8 @@ def secure() -> None:
         locale.setlocale(locale.LC_CTYPE, "")
     except locale.Error:  # not installed: each shell of a job would warn of it
         os.environ["LC_ALL"] = "C.UTF-8"
-    os.environ.setdefault("PYSCF_CONFIG_FILE", str(EMPTY))
+    # in place of `.pyscf_conf.py`, which PySCF would run
+    os.environ.setdefault("PYSCF_CONFIG_FILE", str(Path(__file__).with_name("empty_settings")))
     os.environ.setdefault("NUMBA_CACHE_DIR", "")  # beside the code, as without this variable
     if not _writable(Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")):
         cache = _own_cache()
@@ -74,7 +69,8 @@ def _check_state(path: Path) -> None:
     is_folder = path.is_dir()
     if not os.access(path, os.R_OK | os.W_OK | (os.X_OK if is_folder else 0)):
         raise UnsafeFolder(f"{path}: may not be read and written; change its permissions, or remove it")
-    if is_folder and path.name not in PACKAGES:
+    # packages of other workflows are full of links; no rule here uses them
+    if is_folder and path.name not in {"conda", "conda-archive", "singularity", "apptainer"}:
         for entry in path.iterdir():
             _check_state(entry)
 

@@ -8,10 +8,6 @@ PLAIN = re.compile(r"[A-Za-z0-9_./-]*[A-Za-z][A-Za-z0-9_./-]*")
 ENCODED = "percent:"
 COLUMNS = 80
 
-SPREADSHEET_COMMANDS = "=+-@\t\r"
-"""With these a cell begins that a spreadsheet computes: `=HYPERLINK(...)` would send out what stands in others."""
-NEW_CELL = re.compile(r"([;\t\r\n])(?=[=+@-])")  # where a spreadsheet that separates by these begins a cell
-
 
 def shown(text: str) -> str:
     """Text on one line without control characters: they could colour, hide or overwrite what a terminal shows."""
@@ -24,9 +20,12 @@ def wrapped(text: str) -> str:
 
 
 def as_cell(text: str) -> str:
-    """Text that a spreadsheet shows as it stands: behind an apostrophe where it would compute it."""
-    text = NEW_CELL.sub(r"\1'", text)
-    if text[:1] not in SPREADSHEET_COMMANDS or not text:
+    """Text that a spreadsheet shows as it stands: behind an apostrophe where it would compute it.
+
+    `=HYPERLINK(...)` would send out what stands in other cells.
+    """
+    text = re.sub(r"([;\t\r\n])(?=[=+@-])", r"\1'", text)  # where a spreadsheet that separates by these begins a cell
+    if not text or text[0] not in "=+-@\t\r":
         return text
     try:
         float(text)

@@ -19,7 +19,6 @@ NUMBERS = {
     "int": r"^[-+]?(?:0|[1-9][0-9]*)$",
     "float": r"^[-+]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?$",  # 7e3 too
 }
-KEPT = ("bool", "null")  # as YAML 1.1 has them
 TUPLE = "tag:yaml.org,2002:python/tuple"  # as published containers write sizes
 
 
@@ -82,7 +81,7 @@ def _tuple(loader: _ContainerLoader, node: Any) -> tuple[Any, ...]:
 
 def _prepare() -> None:
     for first, pairs in yaml.SafeLoader.yaml_implicit_resolvers.items():
-        kept = [(tag, pattern) for tag, pattern in pairs if tag.rpartition(":")[2] in KEPT]
+        kept = [(tag, pattern) for tag, pattern in pairs if tag.endswith((":bool", ":null"))]
         _Loader.yaml_implicit_resolvers[first] = kept
     for kind, pattern in NUMBERS.items():
         _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{kind}", re.compile(pattern), list("-+0123456789."))

@@ -22,9 +22,6 @@ from atomistic.constants import EV_PER_A3_IN_GPA
 MIN_POINTS = 5
 B_PRIME_RANGE = (2.0, 7.0)  # outside it, a solid this side of melting is unlikely and the fit suspect
 FORMS_AGREE = 0.02  # Birch–Murnaghan and Vinet must give the same B within this
-MOST_ERROR = (
-    0.1  # of B by the misfit: beyond, it says less than the difference of the functionals, 8 % in silicon nitride
-)
 
 
 @dataclass(frozen=True)
@@ -118,7 +115,8 @@ def fit_equation_of_state(volumes_A3: Sequence[float], energies_eV: Sequence[flo
     ]
     error = float(np.linalg.norm(slopes) * np.linalg.norm(misfits) / np.sqrt(len(volume) - len(coefficients)))
     unit = EV_PER_A3_IN_GPA
-    if not error <= MOST_ERROR * B:
+    # beyond, it says less than the difference of the functionals, 8 % in silicon nitride
+    if not error <= 0.1 * B:
         flags.append(f"B {B * unit:.0f} +- {error * unit:.0f} GPa: the energies scatter about the fitted curve")
     return EquationOfState(V0, E0, B * unit, B_prime, B_vinet * unit, error * unit, residual, len(volume), tuple(flags))
 

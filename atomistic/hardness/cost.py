@@ -11,7 +11,6 @@ from atomistic.materials import Material
 from atomistic.settings import HardnessSettings
 
 ATOM_STEPS_PER_CORE_SECOND = 1.3e6  # tabulated pair potential: 12 runs of scene reduced took 31 core-minutes
-BASE_ATOM_STEPS_PER_CORE_SECOND = 0.6e6  # embedded atoms or a Tersoff potential, and pairs beside them
 
 
 def closing_seconds(settings: HardnessSettings, material: Material, base: Base | None = None) -> dict[str, float]:
@@ -35,7 +34,8 @@ def closing_seconds(settings: HardnessSettings, material: Material, base: Base |
         speed, of_base = ATOM_STEPS_PER_CORE_SECOND, 0.0
         if film is not None and base is not None:
             protocol = slowed(PROTOCOL, base.below_films.timestep_factor)
-            speed, of_base = BASE_ATOM_STEPS_PER_CORE_SECOND, base.atoms_per_nm3
+            # embedded atoms or a Tersoff potential, and pairs beside them
+            speed, of_base = 0.6e6, base.atoms_per_nm3
             if film:
                 check_film(film, RULES.max_area_fraction**0.5 * wavelength)
         atoms = wavelength**2 * (density * below if film is None else density * film + of_base * below)

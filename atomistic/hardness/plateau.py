@@ -17,7 +17,9 @@ Rows = Sequence[Mapping[str, float]]
 
 @dataclass(frozen=True)
 class Rules:
-    """What counts as yield, and when a run may end: fixed by the error rates of study `hardness.detection`.
+    """What counts as yield, when a run may end, and which film does not count: its gates are lengths of bonds.
+
+    The error rates of study `hardness.detection` fix all that is no gate of a film.
 
     Attributes
     ----------
@@ -31,6 +33,9 @@ class Rules:
     latest_start : of as many parts of the averages beyond the onset, the first is the last to hold the plateau's start.
     clearly_more : times the independent averages.
     same_shape : contact length over wavelength: runs of one shape are alike there, whatever their size.
+    least_covered : share of the base below a film.
+    largest_gap_A : between film and base, less in 95 % of the columns of atoms: twice a bond of metal and oxygen.
+    largest_slip_A : of a film over its base below the contact, at the end: one bond.
     """
 
     min_length_nm: float = 2.0
@@ -47,28 +52,12 @@ class Rules:
     latest_start: int = 3
     clearly_more: float = 1.5
     same_shape: tuple[float, float] = (0.5, 0.6)
-
-
-RULES = Rules()
-
-
-@dataclass(frozen=True)
-class FilmRules:
-    """What a film must be like: lengths of bonds, so that no film counts that came off its base.
-
-    Attributes
-    ----------
-    least_covered : share of the base below film.
-    largest_gap_A : 95 % of the columns of atoms have less: twice a bond of metal and oxygen.
-    largest_slip_A : of the film over its base below the contact, at the end: one bond.
-    """
-
     least_covered: float = 0.95
     largest_gap_A: float = 4.2
     largest_slip_A: float = 2.1
 
 
-FILM_RULES = FilmRules()
+RULES = Rules()
 
 
 @dataclass(frozen=True)
@@ -284,7 +273,7 @@ def point(curve: Rows, witness: Rows, run: Mapping[str, Any], potential: str) ->
     }
 
 
-def film_fault(summary: Mapping[str, Any], rules: FilmRules = FILM_RULES) -> str | None:
+def film_fault(summary: Mapping[str, Any], rules: Rules = RULES) -> str | None:
     """Why a run does not count; None where its film is as it must be.
 
     Parameters

@@ -33,16 +33,10 @@ from atomistic.hardness.size_effect import FIT_RULES, samples_of
 
 DENSE_CUTOFF_A = 1.65
 """D of flat dense solids, Å (Israelachvili, section 13.13)."""
-LAYERS = 400
-"""Of the flat stack; what lies deeper enters as a continuum."""
 STEP_A = 0.02
 """Between the gaps at which force and energy are looked at; their extremes are then refined."""
-FREE_ATOMS = 0.9
-"""D0, by work, of a top whose atoms follow the pull, over that of the rigid top (study `hardness.tops`)."""
 SCATTERS = np.geomspace(0.03, 10.0, 40)
 """Standard deviations that are weighed: of runs, over what all runs have; of glasses, over that of runs."""
-BULK_A = (6.0, 18.0)
-"""Heights above the frozen bottom's lowest atom between which the density is counted, Å: glass without a surface."""
 
 
 @dataclass(frozen=True)
@@ -67,8 +61,8 @@ def gap_cutoff(
     """The cut-off D0 of all tops of some runs: its distribution, and what each run says.
 
     It is that of the work; the one of the largest force stands beside it. The mean over all glasses is known as far as
-    runs and glasses scatter. It is multiplied by a uniform factor between tops whose atoms follow (`FREE_ATOMS`) and
-    rigid ones.
+    runs and glasses scatter. It is multiplied by a uniform factor between tops whose atoms follow the pull, which have
+    0.9 of the D0 of rigid ones (study `hardness.tops`), and these.
 
     Parameters
     ----------
@@ -94,7 +88,7 @@ def gap_cutoff(
     by_work = combined_cutoffs_nm(top for tops in runs.values() for top in tops)[1]
     logs, rng = np.log(by_run[:, 1]), np.random.default_rng(0)
     errors = mean_over_glasses(logs, [glasses[run] for run in runs], FIT_RULES.samples, rng) - logs.mean()
-    cutoffs = by_work * np.exp(errors) * rng.uniform(FREE_ATOMS, 1.0, FIT_RULES.samples)
+    cutoffs = by_work * np.exp(errors) * rng.uniform(0.9, 1.0, FIT_RULES.samples)
     return {
         **samples_of(cutoffs, "nm"),
         "runs": [
@@ -183,12 +177,12 @@ def attract_top(heights_A: np.ndarray, shares: np.ndarray, area_A2: float, densi
 @lru_cache
 def contact_distance_A(density_per_A3: float) -> float:
     """Distance r at which an atom rests above a half-space, Å; see the module's docstring."""
-    spacing = density_per_A3 ** (-1 / 3)
+    spacing, layers = density_per_A3 ** (-1 / 3), 400  # what lies deeper enters as a continuum
     work = 0.5 / (DENSE_CUTOFF_A**2 * spacing)  # of one atom of the uppermost layer, in units of C
 
     def excess(contact: float) -> float:
-        depths = spacing * np.arange(LAYERS)
-        deeper = 0.5 / (spacing * (spacing * (LAYERS - 0.5) + contact) ** 2)
+        depths = spacing * np.arange(layers)
+        deeper = 0.5 / (spacing * (spacing * (layers - 0.5) + contact) ** 2)
         gaps = np.arange(0.5 * contact, 1.5 * contact, STEP_A)
 
         def energy(gap: float) -> float:
@@ -203,7 +197,7 @@ def contact_distance_A(density_per_A3: float) -> float:
 def bulk_density_per_A3(positions_A: np.ndarray, area_A2: float) -> float:
     """Atoms a volume of the base, from positions of shape (atoms, 3) over a cell of the area `area_A2`."""
     heights = positions_A[:, 2] - positions_A[:, 2].min()
-    low, high = BULK_A
+    low, high = 6.0, 18.0  # above the frozen bottom's lowest atom: glass without a surface
     return float(np.sum((heights >= low) & (heights < high)) / (area_A2 * (high - low)))
 
 

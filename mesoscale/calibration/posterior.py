@@ -27,8 +27,6 @@ FIRST_SEED, FIRST_LOCAL_SEED = 1_500_000_000, 1_700_000_000
 """Surfaces of the cycles over the prior, and where the posterior lies, differ from those of all other designs."""
 RESPONSE_ERROR = 0.5
 """Error of the responses that is small enough, in standard deviations of the posterior prediction."""
-ROUNDS, LOCAL_SHARE = 3, 0.375
-"""How often cycles are added where the posterior lies, and how many over those of the whole prior."""
 
 
 @dataclass(frozen=True)
@@ -193,13 +191,13 @@ def calibrate(
     for data in tables:
         model.check_range(data)
     rng = np.random.default_rng(np.random.SeedSequence([Sampling.seed, 0xCB]))
-    turn, more = 0, round(LOCAL_SHARE * len(model.cycles.x))
+    turn, rounds, more = 0, 3, round(0.375 * len(model.cycles.x))
     while True:
         posterior = model.posterior(tables)
         chain = posterior.draw(progress=progress)
         shares = _error_shares(posterior, chain)
         exact = max(shares.values(), default=0.0) <= RESPONSE_ERROR and (turn > 0 or not shares)
-        if exact or not chain.converged or turn == ROUNDS:
+        if exact or not chain.converged or turn == rounds:
             return Calibration(tuple(tables), model, posterior, chain, posterior.inputs(chain.z), shares)
         picks, centre = rng.integers(len(chain.z), size=more), chain.z.mean(axis=0)
         x = posterior.inputs(centre + 1.3 * (chain.z[picks] - centre))  # wider, so that its tails are known, too

@@ -13,9 +13,6 @@ from mesoscale.calibration.sampling import Sampling
 
 Array = NDArray[np.float64]
 
-REPLICATES = 200
-"""Made-up data sets behind a probability; it is known to 0.015 at 0.05."""
-
 
 def _spread(states: dict[str, Array]) -> dict[str, float]:
     """Quantiles before and after."""
@@ -101,13 +98,14 @@ def predictive_probability(data: Posterior, x: Array, rng: np.random.Generator) 
 
     Box, J. R. Statist. Soc. A 143, 383 (1980): the predictive density at the data is compared with those of its draws.
     """
-    x = x[rng.integers(len(x), size=REPLICATES)]
+    replicates = 200  # a probability is known to 0.015 at 0.05
+    x = x[rng.integers(len(x), size=replicates)]
 
     def log_predictive(some: Posterior) -> float:
         return float(np.logaddexp.reduce(some.log_likelihood(x)))
 
     measured = log_predictive(data)
-    made_up = [log_predictive(data.simulated(x[k : k + 1], rng)) for k in range(REPLICATES)]
+    made_up = [log_predictive(data.simulated(x[k : k + 1], rng)) for k in range(replicates)]
     return float(np.mean(np.array(made_up) <= measured))
 
 

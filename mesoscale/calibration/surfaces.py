@@ -24,7 +24,6 @@ Part = tuple[Array, Array, Array, Array]
 
 KINDS = (*CURVES, *SCALARS)
 """Kinds that name, or may name, the specimen; the same name means the same surface."""
-GAUSS_NEWTON_STEPS = 30
 
 
 @dataclass(frozen=True)
@@ -251,7 +250,7 @@ def _linearised(
     mean, covariance = expected
     stiffness = np.linalg.inv(covariance)
     f = mean.copy()
-    for _ in range(GAUSS_NEWTON_STEPS):
+    for _ in range(30):  # steps of Gauss and Newton
         physical, slopes = _separations(names, f)
         linear = columns @ slopes
         pull = linear.T @ weights @ (values - columns @ physical) + stiffness @ (mean - f)

@@ -26,9 +26,6 @@ Array = NDArray[np.float64]
 Load = Callable[[Array], tuple[Array, Array]]
 """Pressure (Pa, positive: apart) and its derivative (Pa/m) at separations (m), all of shape (elements, points)."""
 
-GAUSS = np.polynomial.legendre.leggauss(6)
-"""Of an element. Contact ends within elements: with four points releases err three times as much."""
-
 
 @dataclass(frozen=True)
 class Beam:
@@ -138,7 +135,9 @@ def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
     ends = np.unique([0.0, *settings.electrode, *settings.contact, 1.0])
     parts = np.maximum(np.rint(np.diff(ends) * elements), 1).astype(int)
     sizes = np.repeat(settings.length_um * 1e-6 * np.diff(ends) / parts, parts)
-    return _beam(settings, sizes, 0.5 * (GAUSS[0] + 1.0), 0.5 * sizes[:, None] * GAUSS[1])
+    # contact ends within elements: with four points releases err three times as much
+    places, weights = np.polynomial.legendre.leggauss(6)
+    return _beam(settings, sizes, 0.5 * (places + 1.0), 0.5 * sizes[:, None] * weights)
 
 
 def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:

@@ -3,28 +3,16 @@
 import numpy as np
 from numba import njit
 
+from mesoscale.device.plate import GPA, NM
 from mesoscale.pad.local import pad_pressure
 
 BANDS = 3
 """Half bandwidth of the beam's matrix: two nodes of an element have a deflection and a slope."""
-NM = 1e-9
-GPA = 1e9
-MOST_STEPS = 60000
 STOPPER_GPa_nm = 1e-2
 """Stiffness of a stopper: it gives way by a tenth of a nanometre under 1 MPa."""
-LARGEST_STEP_NM = 100.0
-"""Step of a place of the creeping beam that is far from contact."""
 CLOSING_NM, OPENING_NM = 1.0, 0.25
-"""The same in contact. Where a pad of few cells tears off, longer steps overshoot: with 0.5 and 1 nm that of `ci` (16
-cells) lets go 0.9 and 1.8 % too early."""
-SHARE_OF_WAY = 0.25
-"""A place that is about to land moves by this share of its way."""
-PATIENCE = 10
-"""Turns after which the motion forgets half as fast that it was held back."""
-SETTLED_NM = 1e-3
-"""Last step of a beam in balance, a thousandth of the length over which the pressure of a pad changes."""
-SETTLED_Pa = 1.0
-"""Pressure that is then left over, a ten-thousandth of the spring's."""
+"""Largest step of a place in contact. Where a pad of few cells tears off, longer steps overshoot: with 0.5 and 1 nm
+that of `ci` (16 cells) lets go 0.9 and 1.8 % too early."""
 SETTLED, BEYOND, FREE, UNSETTLED = range(4)
 """How a motion ends: in balance, below the computed closing, off the pad, or not within the allowed steps."""
 
@@ -220,7 +208,7 @@ def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, of
     nothing = np.zeros_like(rest_m)
     _, lands, dimple_nm, stopper_nm = places
     s = (rest_m + deflect(nodal, beam[0])) / NM
-    for _ in range(MOST_STEPS):
+    for _ in range(60000):
         pad_pressure(s - dimple_nm, deepest_nm, pressure, slope, *pad)
         add_loads(s, pressure, slope, electric, places)
         change, _, work = newton_step(nodal, pressure * GPA, slope * (GPA / NM), nothing, inertia, *beam)
@@ -229,7 +217,7 @@ def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, of
         for e in range(s.shape[0]):
             for g in range(s.shape[1]):
                 way = s[e, g] - (dimple_nm + contact_nm if lands[e, g] > 0.0 else stopper_nm)
-                allowed = min(max(SHARE_OF_WAY * way, most_nm), LARGEST_STEP_NM)
+                allowed = min(max(0.25 * way, most_nm), 100.0)  # nm, of the way to landing
                 excess = max(excess, abs(moved[e, g]) / allowed)
                 most = max(most, abs(moved[e, g]))
         if excess > 1.0 or work < 0.0:
@@ -251,11 +239,12 @@ def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, of
         back = (change[:, 0] * last).sum() < 0.0
         last = change[:, 0].copy()
         # the curves are of straight pieces, between which plain steps may cycle: hold back more after each turn, and
-        # forget it the later the more turns there were
+        # forget it the later the more turns there were: after ten half as fast
         turns += back
-        least = max(10.0 * least, 1e9) if back else least * (1.0 - 0.3 * PATIENCE / (PATIENCE + turns))
+        least = max(10.0 * least, 1e9) if back else least * (1.0 - 3.0 / (10 + turns))
         if excess < 0.5 or back:
             inertia = max(0.3 * inertia, least)
-        if most < SETTLED_NM and most * NM * inertia < SETTLED_Pa:
+        # a thousandth of the length over which a pad's pressure changes (nm), a ten-thousandth of the spring's (Pa)
+        if most < 1e-3 and most * NM * inertia < 1.0:
             return SETTLED if lowest < off_nm else FREE
     return UNSETTLED

@@ -10,9 +10,6 @@ from mesoscale.settings import DeviceSettings
 
 OF_A_BEAM = ("thickness_um", "length_um", "gap_um", "residual_stress_MPa", "dielectric_nm", "hold_voltage_V")
 OF_A_PLATE = ("spring_N_per_m", "width_um", "gap_um", "dielectric_nm", "hold_voltage_V")
-FACTORS = (0.7, 0.85, 1.2, 1.4)
-STRESSES_MPA = (-20.0, -10.0, 10.0, 20.0)
-"""Steps of the stress, which may be 0; a hold voltage below pull-in never closes the switch, so that its row ends."""
 
 
 def release_by_key(device: DeviceSettings, law: PadLaw) -> list[dict[str, Any]]:
@@ -29,7 +26,9 @@ def release_by_key(device: DeviceSettings, law: PadLaw) -> list[dict[str, Any]]:
     rows = []
     for key in OF_A_BEAM if device.bends else OF_A_PLATE:
         value = value_of(device, key, here["pull_in_V"])
-        steps = STRESSES_MPA if key == "residual_stress_MPa" else tuple(value * (factor - 1.0) for factor in FACTORS)
+        steps = [value * (factor - 1.0) for factor in (0.7, 0.85, 1.2, 1.4)]
+        if key == "residual_stress_MPa":  # which may be 0
+            steps = [-20.0, -10.0, 10.0, 20.0]
         below, above = [step for step in steps[::-1] if step < 0], [step for step in steps if step > 0]
         outwards = [*_outwards(device, law, key, [value + step for step in below])][::-1]
         rows += [*outwards, {"key": key, "value": value, **here, "own": True}]

@@ -21,9 +21,7 @@ from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import AirSettings, Opening
 
 Array = NDArray[np.float64]
-LEVELS = 7  # evenly in the root: a few per cent of humidity change most
 HALVINGS = 3  # of the step of humidity in which the switch begins to stick
-CELLS = 2  # times those of a point
 
 
 def levels(table: InputTable, contact: ContactSettings) -> Array:
@@ -31,7 +29,7 @@ def levels(table: InputTable, contact: ContactSettings) -> Array:
     if "humidity" not in table.names:
         return np.array([contact.air.humidity if contact.air else 0.0])
     low, high = table.rows[table.names.index("humidity")].distribution.span()
-    return low + (high - low) * np.linspace(0.0, 1.0, LEVELS) ** 2
+    return low + (high - low) * np.linspace(0.0, 1.0, 7) ** 2  # a few per cent of humidity change most
 
 
 def humidity_rows(
@@ -59,7 +57,7 @@ def humidity_rows(
         point = replace(model.central.point, values={**model.central.point.values, "humidity": humidity})
         for opening in openings:
             chosen = contact.model_copy(update={"air": air.model_copy(update={"opening": opening})})
-            solved = solve_point(point, chosen, CELLS * point_cells, surfaces_of(0))
+            solved = solve_point(point, chosen, 2 * point_cells, surfaces_of(0))
             opened = adhesion_of(solved.pad.law)[0] if solved.pad else None
             rows.append(
                 {

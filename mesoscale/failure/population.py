@@ -25,8 +25,6 @@ from mesoscale.pad.memory import PadLaw, attracting, deepened
 from mesoscale.settings import DeviceSettings
 
 Array = NDArray[np.float64]
-FAR = 8.0
-"""Deviations beyond which a probability is 1 in double precision, so that a number would be endless."""
 
 
 class Pressed(Protocol):
@@ -63,6 +61,7 @@ class FailureNumerics:
         2 %.
     confidence : that no more fail than allowed, by what is common to all devices and not known.
     near : difference of logarithms to which attractions and springs are sought.
+    far : deviations beyond which a probability is 1 in double precision, so that a number would be endless.
     """
 
     first: int = 48
@@ -83,6 +82,7 @@ class FailureNumerics:
     spring_runs: int = 32
     confidence: float = 0.9
     near: float = 0.02
+    far: float = 8.0
 
 
 FAILURE = FailureNumerics()
@@ -184,12 +184,12 @@ class Population:
     @cached_property
     def positive(self) -> NDArray[np.bool_]:
         """Which of the numbers stand for what is above zero."""
-        ends = np.outer([-FAR, FAR], np.ones(self.dimension))
+        ends = np.outer([-FAILURE.far, FAILURE.far], np.ones(self.dimension))
         return values_at(ndtr(ends), self.table, self.settings, self.cutoffs_nm).min(axis=0) > 0.0
 
     def columns(self, z: Array, hold_V: Array) -> Array:
         """What the response depends on: logarithms of what is positive, as the reserve is a logarithm."""
-        values = values_at(ndtr(np.clip(z, -FAR, FAR)), self.table, self.settings, self.cutoffs_nm)
+        values = values_at(ndtr(np.clip(z, -FAILURE.far, FAILURE.far)), self.table, self.settings, self.cutoffs_nm)
         logs = np.log(np.maximum(values, np.finfo(float).tiny))
         return np.column_stack([np.where(self.positive, logs, values), hold_V])
 

@@ -15,9 +15,6 @@ from mesoscale.law.parameters import PARAMETERS
 
 Array = NDArray[np.float64]
 
-TOUCH = {"closing": "first_contact_nm", "opening": "last_contact_nm"}
-"""Attribute of a stored curve with the exact separation of first (last) contact, by branch."""
-
 
 @dataclass(frozen=True)
 class Outcome:
@@ -99,7 +96,7 @@ def stored_rows(
     curves : datasets by group `<name>/closing` and `<name>/opening`; a missing group gives no curve and no fit.
     attributes : the curve's: hamaker, first_contact_nm, last_contact_nm, status.
     """
-    for branch, touch in TOUCH.items():
+    for branch, touch in (("closing", "first_contact_nm"), ("opening", "last_contact_nm")):
         fit = NO_FIT
         if curve := curves.get(f"{name}/{branch}"):
             forces = curve["repulsive_nN"], curve["attractive_nN"]

@@ -12,8 +12,6 @@ from mesoscale.law.parameters import BRANCHES, PARAMETERS
 Array = NDArray[np.float64]
 
 QUANTILES = {"pressure_q05_GPa": 0.05, "pressure_q50_GPa": 0.5, "pressure_q95_GPa": 0.95}
-MOST_SAMPLES = 4000
-"""Quantiles are then known to 1 % in probability."""
 
 
 def band_rows(columns: Mapping[str, Array], points: int = 301) -> Iterator[dict[str, Any]]:
@@ -29,7 +27,7 @@ def band_rows(columns: Mapping[str, Array], points: int = 301) -> Iterator[dict[
         usable = np.isfinite(every).all(axis=0) & (C_r > 0) & (rho_r > 0)
         if not usable.any():
             continue
-        law = Law(*every[:, usable][:, :MOST_SAMPLES, None])
+        law = Law(*every[:, usable][:, :4000, None])  # quantiles are then known to 1 % in probability
         touch, decay = float(np.median(np.asarray(law.d_c_nm))), float(np.median(np.asarray(law.rho_r_nm)))
         for gap in np.linspace(max(touch - 8.0 * decay, 0.0), touch + law.rho_a_nm + 8.0 * decay, points):
             attractive, repulsive = pressure(np.array([gap]), law)

@@ -23,12 +23,8 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
 from mesoscale.topography.synthesis import synthesize_spectrum
 
 Array = np.ndarray
-SITES = 256  # a scan is thinned to at most so many sites a side, and so are the surfaces beside it
-TOUCHED, PRESSED = 40, 20  # surfaces that are brought to first contact, and of these the ones that are pressed
 MOST_CONTACT = 0.5  # share of the cell; beyond, contacts have merged and asperities one by one say nothing
 LOADS_NN = (1000.0, 7000.0)  # per cell of the contact settings: 1 and 7 uN
-FALSE_ALARMS = 0.05
-"""Share of films whose description is right that `disagreeing` names."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +116,8 @@ def disagreeing(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     from scipy.special import ndtri
 
     contacts = [row for row in rows if row["quantity"] == "first_contact"]
-    most = float(ndtri(1 - FALSE_ALARMS / (2 * max(len(contacts), 1)))) / REACH
+    # of films whose description is right, 5 % are named
+    most = float(ndtri(1 - 0.05 / (2 * max(len(contacts), 1)))) / REACH
 
     def away(row: Mapping[str, Any]) -> float:
         low, pressed, high = (math.log(float(row[key])) for key in ("low", "pressed", "high"))
@@ -157,14 +154,15 @@ def _judged(
     most_contact: float,
 ) -> Iterator[dict[str, Any]]:
     measured, side = contacting_heights(scan)
-    stride = -(-len(measured) // SITES)
+    stride = -(-len(measured) // 256)  # at most so many sites a side; the surfaces beside it are thinned, too
     measured = np.ascontiguousarray(measured[::stride, ::stride])
     sites = len(measured)
     chosen = contact.model_copy(update={"pixels": sites, "length_nm": side})
     truth, share = _press(measured, inputs, chosen, contact.length_nm)
     truth = {quantity: value for quantity, value in truth.items() if share.get(quantity, 0.0) <= most_contact}
     made: dict[str, list[float]] = {quantity: [] for quantity in truth}
-    for number, psd in enumerate(described.spectra(TOUCHED)):
+    touched, pressed = 40, 20  # surfaces that are brought to first contact, and of these the ones that are pressed
+    for number, psd in enumerate(described.spectra(touched)):
         height = _rms(psd, 2 * side, 2 * sites)
         seed = NOMINAL_SEED + number
         if described.heights:
@@ -173,7 +171,7 @@ def _judged(
         else:
             larger = synthesize_spectrum(2 * sites, 2 * side, psd, height, seed)
         surface, _ = contacting_heights(clean(Scan(larger[:sites, :sites], (side, side), scan.name), settings))
-        if number < PRESSED:
+        if number < pressed:
             values, _ = _press(surface, inputs, chosen, contact.length_nm)
         else:
             values = {"rms": float(np.std(surface)), "first_contact": -float(surface.min())}

@@ -18,8 +18,6 @@ TOLERANCE = 0.05
 """Relative violation of physics that is put down to the scatter of the fit."""
 SHARES = np.array([0.1, 0.25, 0.5, 1.0])
 """Of the largest pressure of the fits, at which curves are compared."""
-STIFFENING = {"e_star": "E*", "h_macro": "H_macro", "h_prime": "H′", "h_film": "H_film"}
-"""Inputs whose rise can only raise the pressure at equal separation."""
 
 
 def explained(first: Array, second: Array, predicted: Array, rng: np.random.Generator) -> dict[str, Any]:
@@ -65,7 +63,7 @@ def against_physics(responses: Sequence[Response | None], table: InputTable, mos
     low, high = (table.ranges()[:, k] for k in (0, 1))
     base = np.clip(base, low, high)
     reasons = {}
-    for name, symbol in STIFFENING.items():
+    for name, symbol in {"e_star": "E*", "h_macro": "H_macro", "h_prime": "H′", "h_film": "H_film"}.items():
         if name not in table.names:
             continue
         k = table.names.index(name)

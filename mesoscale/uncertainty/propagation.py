@@ -72,9 +72,6 @@ def nodes_of_rows(rows: Iterable[Mapping[str, str]]) -> NodeOutputs:
     return NodeOutputs(seeds, values)
 
 
-CLOSING_CONTACT, OPENING_CONTACT = (FITTED.index(f"{branch}_d_c_nm") for branch in ("closing", "opening"))
-
-
 def exported_responses(direct: Direct, ranges: Array, settings: UncertaintySettings) -> list[Response | None]:
     """The regressions behind samples, Sobol' indices and surrogate.json, one per entry of FITTED.
 
@@ -85,12 +82,13 @@ def exported_responses(direct: Direct, ranges: Array, settings: UncertaintySetti
     x, y = direct
     signs = [row.any_sign for row in LAW] * 2
     responses: list[Response | None] = [_regression(x, y[:, k], ranges, any_sign) for k, any_sign in enumerate(signs)]
-    above = responses[CLOSING_CONTACT]
+    first, last = FITTED.index("closing_d_c_nm"), FITTED.index("opening_d_c_nm")
+    above = responses[first]
     if settings.opening_contact == "below_closing" and isinstance(above, Surrogate):
         # at least 0.01 nm, so that there is a logarithm
-        fell = np.maximum(y[:, CLOSING_CONTACT] - y[:, OPENING_CONTACT], 0.01)
+        fell = np.maximum(y[:, first] - y[:, last], 0.01)
         drop = _regression(x, fell, ranges, any_sign=False)
-        responses[OPENING_CONTACT] = Below(FITTED[CLOSING_CONTACT], above, drop) if drop else None
+        responses[last] = Below(FITTED[first], above, drop) if drop else None
     return responses
 
 

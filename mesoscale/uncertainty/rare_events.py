@@ -30,8 +30,6 @@ SAMPLES, REPEATS = 2000, 8
 CONFIDENCE = 0.95
 LEAST = 1e-10
 """Smallest probability that is looked for."""
-FURTHEST = 6.5
-"""Standard deviations of the likeliest event, beyond which it is rarer than `LEAST`."""
 
 
 class Process:
@@ -218,7 +216,8 @@ def rates_given(
         slope = np.stack(slope, axis=-1)[:, None]
         steepness = np.maximum(np.linalg.norm(slope, axis=-1), 1e-9)
         distance = (level[:, None] - (slope * likeliest).sum(axis=-1)) / steepness  # of the plane from the middle
-        likeliest = -(np.clip(distance, 0.0, FURTHEST) / steepness)[..., None] * slope
+        # further than 6.5 deviations, an event is rarer than `LEAST`
+        likeliest = -(np.clip(distance, 0.0, 6.5) / steepness)[..., None] * slope
     x = likeliest + rng.normal(size=(draws, 4 * inner, likeliest.shape[2]))
     weight = np.exp(0.5 * (likeliest**2).sum(axis=-1) - (x * likeliest).sum(axis=-1))
     return np.minimum((weight * (reserve(x) <= 0.0)).mean(axis=1), 1.0)

@@ -22,10 +22,6 @@ from workflow.files.checksums import UNFINISHED, record
 from workflow.schemas import UnfitTable, schema_of
 
 SCHEMA_VERSION = 1
-MOST_BYTES = 2**30
-"""That the datasets of an HDF5 result may take; the largest that ships has 18 MB."""
-MOST_UNPACKED = 1100
-"""Times its file that datasets may take: deflate packs 1032 times at most, what is not written takes nothing."""
 
 
 @dataclass(frozen=True)
@@ -262,7 +258,8 @@ def checked_items(file: Any) -> dict[str, Any]:
     file.visititems(items.__setitem__)
     datasets = [item for item in items.values() if hasattr(item, "nbytes")]
     size = sum(dataset.nbytes for dataset in datasets)
-    if size > min(MOST_BYTES, MOST_UNPACKED * Path(file.filename).stat().st_size):
+    # the largest result that ships has 18 MB; deflate packs 1032 times at most, what is not written takes nothing
+    if size > min(2**30, 1100 * Path(file.filename).stat().st_size):
         raise ValueError(f"{file.filename}: datasets of {size} bytes, more than a result has; delete it and run again")
     if any(dataset.is_virtual or dataset.external for dataset in datasets):
         raise ValueError(f"{file.filename}: datasets that lie in other files; delete it and run again")

@@ -11,9 +11,7 @@ import numpy as np
 from asperity.guards.foreign_yaml import load_mapping
 from workflow.files.results import load_csv, load_h5, load_json
 
-COMPUTED, LITERATURE, SYNTHETIC = "computed", "literature", "synthetic"
-FEEDING = ("hardness", "elastic", "topography")
-"""Stages that a scene may compute without using them."""
+COMPUTED = "computed"
 CsvRow = dict[str, str]
 
 
@@ -94,9 +92,9 @@ class Results:
     def origin_of(self, stage: str) -> str:
         """Badge of a stage: computed or synthetic, and whether this scene uses it."""
         if stage == "topography" and self.json("topography/parameters.json").get("synthetic"):
-            return SYNTHETIC
-        unused = stage in FEEDING and not self.uses(stage)
-        return f"{COMPUTED}, not used: inputs are {LITERATURE}" if unused else COMPUTED
+            return "synthetic"
+        unused = stage in ("hardness", "elastic", "topography") and not self.uses(stage)
+        return f"{COMPUTED}, not used: inputs are literature" if unused else COMPUTED
 
 
 def results_in(folder: Path) -> Results:

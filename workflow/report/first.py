@@ -8,10 +8,8 @@ from workflow.report.available import Results
 from workflow.report.numbers import show
 from workflow.report.verdict import Verdict, does, in_words, verdict, volts
 
-MOST_CAUSES = 3
 KINDS = {"common": "To measure: one unknown value", "each": "To control: differs from device to device"}
 BANDS = {"unknown": "not known: the typical device", "between": "from device to device"}
-OTHER_LAW = {"clamped": "a third of", "offset": "three times"}
 LEFT, RIGHT = 70.0, 410.0
 """Ends of the bar's axis in its picture."""
 
@@ -36,7 +34,7 @@ def first_screen(results: Results, gates: Any) -> First | None:
     other = ""
     if said.other_law_V:
         by_this, by_other = map(does, said.other_law_V)
-        work = OTHER_LAW[results.contact["attraction"]]
+        work = {"clamped": "a third of", "offset": "three times"}[results.contact["attraction"]]
         other = (
             f"The law of attraction is a choice that nothing here decides. At central inputs the switch {by_this} by "
             f"this law; by the other one, with {work} the work of adhesion, it {by_other}."
@@ -51,7 +49,7 @@ def first_screen(results: Results, gates: Any) -> First | None:
 def _largest(answer: dict[str, Any], kind: str) -> list[tuple[str, int]]:
     """What makes the most of the variance, of one kind; shares in percent."""
     rows = [row for row in answer["sensitivity"] if row["varies"] == kind and row["share_of_variance"] > 0]
-    return [(in_words(row["name"]), round(100 * row["share_of_variance"])) for row in rows[:MOST_CAUSES]]
+    return [(in_words(row["name"]), round(100 * row["share_of_variance"])) for row in rows[:3]]
 
 
 def _known(answer: dict[str, Any]) -> str:

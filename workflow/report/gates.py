@@ -9,8 +9,6 @@ from workflow.report.available import Results
 from workflow.report.numbers import OUTPUTS, column, number, show
 from workflow.report.page import Gate
 
-MOST_MISSING = 0.05
-"""Share of curves without a law beyond which the rest is no fair sample."""
 OTHER_WORK = {"clamped": 1.0 / 3.0, "offset": 3.0}
 """Work of the other law of attraction over that of this one, at touch (docs/contact.md)."""
 
@@ -81,7 +79,8 @@ def _law(results: Results) -> Iterator[Gate]:
             reasons.append(
                 f"{len(missing)} of {len(rows)} curves gave no law, which favours those that could be fitted"
             )
-        yield Gate("law", len(missing) <= MOST_MISSING * len(rows), tuple(reasons), answer=False)
+        fair = len(missing) <= 0.05 * len(rows)  # of more, the rest is no fair sample
+        yield Gate("law", fair, tuple(reasons), answer=False)
 
 
 def _responses(results: Results) -> Iterator[Gate]:

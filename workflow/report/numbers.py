@@ -19,12 +19,12 @@ def _shown(row: LawParameter) -> tuple[str, str, float]:
 
 
 OUTPUTS = {row.name: _shown(row) for row in LAW_OUTPUTS}
-UNITS = {"1": "", "um": "µm", "um^2": "µm²", "1e-18 J": "10⁻¹⁸ J", "GPa nm^0.5": "GPa nm½"}
 
 
 def shown_unit(unit: str) -> str:
     """A unit of the result files as a person writes it; empty where there is none."""
-    return UNITS.get(unit, unit)
+    written = {"1": "", "um": "µm", "um^2": "µm²", "1e-18 J": "10⁻¹⁸ J", "GPa nm^0.5": "GPa nm½"}
+    return written.get(unit, unit)
 
 
 def number(text: Any) -> float:

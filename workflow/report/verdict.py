@@ -30,8 +30,6 @@ NAMES = {
 CELLS = "number of cells"
 DECIDED = 0.95
 """Probability from which on a switch is said to stick, or to let go."""
-EXPLAINED = 0.5
-"""Share of the variance that the fit behind the causes must explain of switches left out, or no cause is named."""
 
 
 @dataclass(frozen=True)
@@ -142,7 +140,7 @@ def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], st
     if not rows:
         return (), f"all {answer['points']} computed combinations of what is uncertain do the same"
     explained = answer["explained"]
-    if explained < EXPLAINED:
+    if explained < 0.5:  # of switches left out: less does not tell a cause
         many = f"the {answer['points']} computed switches"
         if explained <= 0:
             return (), f"{many} are too few to tell, as a fit to all but one does not predict that one"

@@ -15,8 +15,7 @@ TIMES = Path(".snakemake/asperity_seconds.json")
 """Seconds that jobs took, beside the typical ones, by scene and rule; delete it to start again from these."""
 LONGEST_RUN_H = 12.0  # of a run on one machine, unless it is said to be meant: what a night finishes
 
-# On one core of a server. A rule that is in neither table collects or fits, which is short
-OTHERS_S = 3.0
+# On one core of a server
 TYPICAL_S = {
     "make_glass": 20.0,
     "make_base": 2000.0,
@@ -44,13 +43,12 @@ CYCLES = {  # contacts that a job closes and opens, to the largest force of the 
     "humidity": 1000,
     "history": 100,
 }
-CYCLE_S = {"asperity": 0.06, "coupled": 2.5, "adhesive": 36.0}  # of a cycle on 1024² sites
-TRUST_S = 60.0  # jobs of so many typical seconds count as much as the tables
 
 
 def typical_cycle_s(contact: SceneContact) -> float:
     """Seconds of one closing and opening."""
-    return CYCLE_S[contact.mechanics] * (contact.pixels / 1024) ** 3
+    of_1024 = {"asperity": 0.06, "coupled": 2.5, "adhesive": 36.0}
+    return of_1024[contact.mechanics] * (contact.pixels / 1024) ** 3
 
 
 class Costs:
@@ -71,7 +69,8 @@ class Costs:
 
     def seconds(self, rule: str, wildcards: Mapping[str, str]) -> float:
         """Seconds of one core of this machine, by all that jobs took so far."""
-        every = zip((TRUST_S, TRUST_S), *self._learned.values(), strict=True)
+        # jobs of 60 typical seconds count as much as the tables
+        every = zip((60.0, 60.0), *self._learned.values(), strict=True)
         # a rule that has not run here is as slow as the others were
         took, typical = self._learned.get(rule) or map(sum, every)
         return took / typical * self._typical_s(rule, wildcards)
@@ -92,7 +91,7 @@ class Costs:
         if "closing" in rule and "run" in wildcards:
             return self._closing_s[wildcards["run"]]
         cycles_s = CYCLES.get(rule, 0) * typical_cycle_s(self._scene.contact)
-        return TYPICAL_S.get(rule, OTHERS_S) + cycles_s
+        return TYPICAL_S.get(rule, 3.0) + cycles_s  # a rule that is in neither table collects or fits
 
 
 def _read(times: Path) -> dict[str, dict[str, tuple[float, float]]]:

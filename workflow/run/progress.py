@@ -18,9 +18,6 @@ from asperity.guards.foreign_text import COLUMNS, shown, wrapped
 from workflow.run.cost import Costs, refusal, wall_seconds
 from workflow.run.job import last_line
 
-FULL_DISK = 100_000  # bytes left: less than a job and its log need
-LAST_PART = 0.1  # of the time of a job at work that takes longer than planned, still to come
-
 NO_SUCH_TARGET = re.compile(r"MissingRuleException:\nNo rule to produce (.*) \(if you use input functions")
 
 IN_OWN_WORDS = re.compile(  # the terminal names the target, the page comes before its job, and a failed job says why
@@ -117,7 +114,7 @@ class Terminal(logging.Handler):
         for number, (_, started) in self._running.items():
             if number in seconds:
                 spent = time.monotonic() - started
-                seconds[number] = max(seconds[number] - spent, LAST_PART * spent)
+                seconds[number] = max(seconds[number] - spent, 0.1 * spent)  # one that takes longer goes on
         needed = self._workflow.dag.job_dependencies
         needs = {number: [other.jobid for other in needed(job)] for number, job in self._left.items()}
         return wall_seconds(seconds, needs, self._cores)
@@ -162,7 +159,7 @@ def _say_if_silent(about: Mapping[str, Any]) -> None:
     log = Path(next(iter(about["log"]), ""))
     if log.is_file() and last_line(log).startswith("ERROR "):
         return
-    if disk_usage(Path.cwd()).free < FULL_DISK:
+    if disk_usage(Path.cwd()).free < 100_000:  # bytes: less than a job and its log need
         _say(f"ERROR {about['rule_name']}: no space left on the disk of {Path.cwd()}; make room, then run again")
         return
     if about["log"] and not log.is_file():

@@ -6,9 +6,6 @@ from mesoscale.settings.history import DWELL_STEPS, SURFACES
 from mesoscale.settings.uncertainty import RESAMPLES
 
 PROCESS_MB = 600.0  # a job is two processes with their packages
-RUN_MB = 6e-3  # a direct run in regressions: 4000 to 10,000 of them take 26 MB, their rows 1.5 kB each
-RESAMPLED_MB = 32e-6  # a direct run in each resampling; measured with 10,000 runs, 24e-6 with 30,000
-ROW_MB = 1.4e-3  # a row of a history's table, as it is made and written
 
 
 def contact_MB(contact: SceneContact, surfaces: int = 1) -> int:
@@ -19,10 +16,12 @@ def contact_MB(contact: SceneContact, surfaces: int = 1) -> int:
 def history_MB(history: HistorySettings, contact: SceneContact) -> int:
     """Memory of the process that closes and opens again and again, in MB."""
     held = DWELL_STEPS + 1 if history.dwell_s > 0 else 0
-    return round(contact_MB(contact) + ROW_MB * SURFACES * history.cycles * (3 + held))  # a cycle's row is long
+    row_MB = 1.4e-3  # as it is made and written; that of a cycle is as long as three
+    return round(contact_MB(contact) + row_MB * SURFACES * history.cycles * (3 + held))
 
 
 def propagation_MB(uncertainty: UncertaintySettings) -> int:
     """Memory of the process that fits the responses to all direct runs and resamples these, in MB."""
-    run_MB = RUN_MB + RESAMPLED_MB * RESAMPLES
+    # a direct run in regressions (4000 to 10,000 take 26 MB, a row 1.5 kB) and in each resampling (of 10,000 runs)
+    run_MB = 6e-3 + 32e-6 * RESAMPLES
     return round(PROCESS_MB + run_MB * uncertainty.direct_runs)

@@ -14,8 +14,6 @@ from workflow.files.results import write_csv, write_json
 from workflow.run.job import job, settings_from_job
 from workflow.run.pads import load_model, points_of_job
 
-FIRST_SURFACES = 100_000  # beyond those of the points of an answer
-
 with job(snakemake) as run:
     asked = settings_from_job(FailureSettings, snakemake.params.failure)
     if asked.probability is None:
@@ -24,7 +22,8 @@ with job(snakemake) as run:
     model = load_model([snakemake.input.model], points)
 
     def press(point, times, number):
-        return press_pad(point, points.on_grid, times * pad.point_cells, surfaces_of(FIRST_SURFACES + number))
+        surfaces = surfaces_of(100_000 + number)  # beyond those of the points of an answer
+        return press_pad(point, points.on_grid, times * pad.point_cells, surfaces)
 
     pads = {k: one.pad for k, one in enumerate(model.points) if one.pad}
     known = points.design.probability[np.array(list(pads), int)], list(pads.values())

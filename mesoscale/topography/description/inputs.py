@@ -23,8 +23,6 @@ from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.roughness_spectrum import SpectrumTable, hurst_from_slope, mean_square
 
 Row = dict[str, Any]
-HALF_NORMAL = 1.9599639845400545
-"""What 95 % of a half-normal distribution stay below, over the standard deviation of the whole one."""
 
 
 def surface_of(
@@ -195,4 +193,5 @@ def rms_scatter_row(topography: Topography, one: OneSpectrum | None) -> Row:
         return {"distribution": "fixed", "a": 0.0}
     if low > 0.1 * high:
         return _over(low, high)
-    return {"distribution": "truncated_normal", "a": 0.0, "b": high / HALF_NORMAL, "low": 0.0, "high": most}
+    deviation = high / 1.9599639845400545  # of the normal distribution, of whose half 95 % lie below `high`
+    return {"distribution": "truncated_normal", "a": 0.0, "b": deviation, "low": 0.0, "high": most}

@@ -23,8 +23,6 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
 # on the plateau only levelling is left, and the trusted range leaves its waves out
 DISCREPANCY, PLATEAU_DISCREPANCY = 0.04, 0.01
 MAX_SLOPE = 10.0
-BINS_PER_DECADE = 12
-"""The discrepancy is shared within a bin of this width."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +70,7 @@ class LikelihoodFit:
 class _Data:
     """Trusted shells of all scans and bins of all lines, flat arrays with the scan and bin each belongs to."""
 
-    def __init__(self, spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = BINS_PER_DECADE):
+    def __init__(self, spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = 12):
         parts = []
         for number, item in enumerate(spectra):
             s, ok = item.spectrum, item.trusted
@@ -137,7 +135,7 @@ def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[T
 
 
 def fit(
-    spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = BINS_PER_DECADE
+    spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = 12
 ) -> LikelihoodFit | None:
     """Fit plateau, q0 and slope to the trusted ranges; None where there are too few shells to fit.
 

@@ -14,8 +14,6 @@ from workflow.report.numbers import number, show, shown_unit
 from workflow.report.page import Block, PageTable, stage, table
 from workflow.report.verdict import in_words
 
-STAGE_FILES = ("hardness/fit.json", "elastic/e_star.json", "topography/parameters.json")
-
 
 @stage("Inputs", "inputs.csv")
 def describe(results: Results) -> Iterator[Block]:
@@ -48,7 +46,7 @@ def describe(results: Results) -> Iterator[Block]:
 def stated_beside_computed(results: Results) -> Iterator[tuple[str, str, str, str]]:
     """Inputs that the scene states and one of its stages computes, with what the choice does to the answer."""
     for row, given in zip(results.csv("inputs.csv"), from_rows(results.csv("inputs.csv")).rows, strict=True):
-        for file in STAGE_FILES:
+        for file in ("hardness/fit.json", "elastic/e_star.json", "topography/parameters.json"):
             entry = results.json(file).get("inputs", {}).get(given.name) if results.has(file) else None
             if given.origin == "literature" and BY_NAME[given.name].stage != "literature" and entry:
                 computed = distribution_of(entry, file)
