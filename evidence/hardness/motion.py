@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from scipy.constants import atomic_mass, k
 
 from atomistic.hardness.glass import write_forcefield
 from atomistic.lammps import Atoms, LammpsFolder, load_averages, load_data, run_lammps, write_data
@@ -36,7 +37,7 @@ def heated(atoms: Atoms, potential: ForceField, temperature_K: float) -> Atoms:
     """The same atoms with Maxwell velocities."""
     rng = np.random.default_rng(np.random.SeedSequence([17]))
     masses = np.array([potential.masses_u[ion] for ion in atoms.elements])[atoms.types - 1]
-    speeds = np.sqrt(8.617333e-5 * temperature_K / (1.0364269e-4 * masses))  # eV/K, and 1 u (Å/ps)² in eV
+    speeds = np.sqrt(k * temperature_K / (atomic_mass * masses)) / 100  # from m/s to Å/ps
     velocities = rng.normal(size=(len(atoms), 3)) * speeds[:, None]
     momentum = np.sum(velocities * masses[:, None], axis=0) / np.sum(masses)
     return replace(atoms, velocities_A_ps=velocities - momentum)

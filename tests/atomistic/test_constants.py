@@ -11,8 +11,6 @@ from atomistic import constants
     [
         ("EV_PER_A3_IN_GPA", codata.e * 1e21),
         ("COULOMB_EV_A", codata.e * 1e10 / (4 * codata.pi * codata.epsilon_0)),
-        ("KE_EV", codata.atomic_mass * 1e4 / codata.e),
-        ("BOLTZMANN_EV_PER_K", codata.k / codata.e),
         ("AVOGADRO", codata.N_A),
         ("AMU_PER_A3_IN_G_CM3", codata.atomic_mass * 1e27),
     ],
