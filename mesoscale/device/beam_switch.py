@@ -42,23 +42,17 @@ class BeamStates:
 
     Attributes
     ----------
-    rest_nm : separation at rest of the place that comes down farthest.
     pull_in_V, hold_V, release_V : voltages; release 0 where it sticks.
-    stuck : whether it stays closed without voltage.
     landed_share : share of the contact part in contact while held.
     landed_at_release : share in contact just before it lets go (at 0 V where it sticks).
-    largest_MPa : largest contact pressure of any place while held.
     capacitance_fF : while held, of the bent beam as a plate over the pad, place by place.
     """
 
-    rest_nm: float
     pull_in_V: float
     hold_V: float
     release_V: float
-    stuck: bool
     landed_share: float
     landed_at_release: float
-    largest_MPa: float
     capacitance_fF: float
 
 
@@ -76,7 +70,6 @@ def solve_beam(settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.ele
 def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw) -> BeamStates:
     """As `solve_beam`, of any beam."""
     moving = _Moving(beam, LocalPad(law), settings)
-    rest = moving.flat_nm + float(beam.rest_nodal[moving.leading(), 0]) / NM
     pull_in = moving.snap_V()
     hold = settings.hold_voltage_V or pull_in
     if line := never_closes(settings, pull_in):
@@ -88,20 +81,9 @@ def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw) -> BeamStates:
             f"device: at {hold:.4g} V the beam does not land on the pad (pull-in is at {pull_in:.4g} V); raise "
             "hold_voltage_V or dimple_nm, or lower stopper_nm, gap_um, bow_nm or tilt_nm"
         )
-    pressure = moving.pressure_GPa()
     capacitance = moving.capacitance_F()
     release, at_release = moving.open(hold)
-    return BeamStates(
-        rest,
-        pull_in,
-        hold,
-        release,
-        release == 0.0,
-        share,
-        at_release,
-        float(pressure.max()) * 1e3,
-        capacitance * 1e15,
-    )
+    return BeamStates(pull_in, hold, release, share, at_release, capacitance * 1e15)
 
 
 def free_pull_in_V(settings: DeviceSettings, elements: int = 64) -> float:

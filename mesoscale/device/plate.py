@@ -103,18 +103,12 @@ class PadStates:
     ----------
     pull_in_V : voltage at which the open switch snaps shut.
     hold_nm : separation while held closed (nm).
-    hold_MPa : contact pressure while held closed (MPa).
     release_V : voltage at which the closed switch lets go; 0 where it sticks.
-    stuck : whether it stays closed without voltage.
-    deepest_net_kPa : largest net adhesive pressure of the pad on opening from the held state (kPa).
     """
 
     pull_in_V: float
     hold_nm: float
-    hold_MPa: float
     release_V: float
-    stuck: bool
-    deepest_net_kPa: float
 
 
 def solve_on_pad(plate: Plate, law: "PadLaw", hold_voltage_V: float | None) -> PadStates:
@@ -155,19 +149,12 @@ def solve_on_pad(plate: Plate, law: "PadLaw", hold_voltage_V: float | None) -> P
     held = brentq(lambda s: _voltage_squared(plate, s, law.closing_GPa(s)) - hold, grid[inner], grid[inner + 1])
     hold_nm = float(np.asarray(held))
     way_up = np.concatenate([[hold_nm], grid[grid > hold_nm]])
-    net = law.opening_GPa(way_up, hold_nm)
-    up = _voltage_squared(plate, way_up, net)
+    up = _voltage_squared(plate, way_up, law.opening_GPa(way_up, hold_nm))
     # release is the lowest point before the barrier, the fold that the way down met, too
     barrier = int(np.argmax(np.where(way_up > law.separation_nm[-1], up, -np.inf)))
     release = float(up[: barrier + 1].min())
-    return PadStates(
-        float(np.sqrt(max(pull_in, 0.0))),  # 0: the pad pulls it shut by itself
-        hold_nm,
-        float(law.closing_GPa(hold_nm)) * 1e3,
-        float(np.sqrt(max(release, 0.0))),
-        release <= 0.0,
-        -float(net.min()) * 1e6,
-    )
+    # a pull-in of 0: the pad pulls it shut by itself
+    return PadStates(float(np.sqrt(max(pull_in, 0.0))), hold_nm, float(np.sqrt(max(release, 0.0))))
 
 
 def _voltage_squared(plate: Plate, separation_nm: Array, pressure_GPa: Array) -> Array:

@@ -115,7 +115,7 @@ class Attracted:
                 if not self.settings.bends:
                     law = attracting(self.laws[-1], times)
                     plate = solve_on_pad(plate_from_settings(self.settings), law, self.settings.hold_voltage_V)
-                    return plate.stuck or plate.release_V < self.release_V
+                    return plate.release_V == 0.0 or plate.release_V < self.release_V
                 self.closed = self.closed or closed_beam(self.settings, self.laws[-1], self.elements)
                 return self.closed(self.release_V, times)
             except NotComputed:

@@ -254,7 +254,6 @@ def test_the_landed_area_is_a_result_that_grows_with_the_voltage_and_shrinks_bef
     assert 0.1 < landed.landed_share < harder.landed_share < 1.0
     assert landed.landed_at_release < 0.3 * landed.landed_share
     assert 0 < landed.release_V < landed.hold_V
-    assert not landed.stuck
 
 
 def test_a_bow_away_from_the_dielectric_raises_pull_in_and_release(landed):
