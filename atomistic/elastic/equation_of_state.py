@@ -30,7 +30,7 @@ class EquationOfState:
 
     Attributes
     ----------
-    V0_A3, E0_eV, B_GPa, B_prime : equilibrium volume, energy, bulk modulus and its pressure derivative
+    V0_A3, B_GPa, B_prime : equilibrium volume, bulk modulus and its pressure derivative
     B_vinet_GPa : bulk modulus by Vinet's form
     B_error_GPa : standard error of B by the misfit
     residual_meV : root mean square misfit of the Birch–Murnaghan fit, per cell
@@ -39,7 +39,6 @@ class EquationOfState:
     """
 
     V0_A3: float
-    E0_eV: float
     B_GPa: float
     B_prime: float
     B_vinet_GPa: float
@@ -89,7 +88,7 @@ def fit_equation_of_state(volumes_A3: Sequence[float], energies_eV: Sequence[flo
     if not np.isfinite(V0):
         flags.append("E(V) has no minimum")
         nan = float("nan")
-        return EquationOfState(nan, nan, nan, nan, nan, nan, residual, len(volume), tuple(flags))
+        return EquationOfState(nan, nan, nan, nan, nan, residual, len(volume), tuple(flags))
     if not volume.min() < V0 < volume.max():
         flags.append(f"V0 {V0:.1f} Å3 outside the scanned {volume.min():.1f} to {volume.max():.1f} Å3")
     if not B_PRIME_RANGE[0] <= B_prime <= B_PRIME_RANGE[1]:
@@ -118,7 +117,7 @@ def fit_equation_of_state(volumes_A3: Sequence[float], energies_eV: Sequence[flo
     # beyond, it says less than the difference of the functionals, 8 % in silicon nitride
     if not error <= 0.1 * B:
         flags.append(f"B {B * unit:.0f} +- {error * unit:.0f} GPa: the energies scatter about the fitted curve")
-    return EquationOfState(V0, E0, B * unit, B_prime, B_vinet * unit, error * unit, residual, len(volume), tuple(flags))
+    return EquationOfState(V0, B * unit, B_prime, B_vinet * unit, error * unit, residual, len(volume), tuple(flags))
 
 
 def _minimum(coefficients: np.ndarray, centre: float, volume: np.ndarray) -> tuple[float, float, float, float]:

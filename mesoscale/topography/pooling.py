@@ -19,7 +19,7 @@ from mesoscale.topography.description.cell import (
 )
 from mesoscale.topography.description.choice import Choice, choose, description_doubts
 from mesoscale.topography.description.doubts import Doubt
-from mesoscale.topography.description.heights import HeightTest, compare_heights, not_gaussian
+from mesoscale.topography.description.heights import compare_heights, not_gaussian
 from mesoscale.topography.description.inputs import cutoff_row, middle, rms_before, rms_scatter_row, rows_of, surface_of
 from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
 from mesoscale.topography.description.overlaps import Overlap, overlaps, refuse_different_films
@@ -45,7 +45,6 @@ class Pooled:
     ----------
     spectra : of each measurement, without what tips added to grainy maps.
     one : the spectrum over all scales; None where there is not enough for one.
-    tests : of the heights of each scan.
     pairs : measurements that see common bands.
     surface, rows : entries of `contact.surface`, distributions of q0, hurst, rms and q1.
     film : distributions of q0, hurst and rms of the typical place, and of the scatter of ln RMS between places.
@@ -56,7 +55,6 @@ class Pooled:
     spectra: list[TrustedSpectrum]
     topography: Topography
     one: OneSpectrum | None
-    tests: list[HeightTest]
     pairs: list[Overlap]
     choice: Choice
     surface: dict[str, Any]
@@ -151,7 +149,7 @@ def pool(
     if alike:
         text = f"{', '.join(f'{name} is a copy of {other}' for name, other in alike.items())}: it counts once"
         doubts.append(Doubt("copies", text, "measure other places of the surface", "rms"))
-    return Pooled(spectra, topography, one, tests, pairs, choice, surface, rows, film, doubts, cell_nm)
+    return Pooled(spectra, topography, one, pairs, choice, surface, rows, film, doubts, cell_nm)
 
 
 def _levelled(arrays: Mapping[str, np.ndarray], attributes: Mapping[str, Any]) -> tuple[np.ndarray, tuple[float, ...]]:
