@@ -1,1 +1,1 @@
-"""Accuracy and stability of the stages at the inputs and settings of a scene (targets `accuracy`, `stability`)."""
+"""Accuracy of a scene's pad, stability of its contact (targets `accuracy` and `stability`)."""
