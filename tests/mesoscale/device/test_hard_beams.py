@@ -69,7 +69,6 @@ def test_hard_beams_are_solved(name):
         assert 0.0 <= states.release_V < states.hold_V
         assert 0.0 < states.landed_share <= 1.0
         assert states.pull_in_V <= states.hold_V * 1.002
-        assert states.largest_MPa > 0.0
     assert coarse.pull_in_V == pytest.approx(fine.pull_in_V, rel=5e-3)
     # the mesh moves a release by some per cent of the hold voltage where the beam tears off in jerks
     assert coarse.release_V == pytest.approx(fine.release_V, abs=0.02 * fine.hold_V)
