@@ -134,9 +134,7 @@ def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[T
     ]
 
 
-def fit(
-    spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = 12
-) -> LikelihoodFit | None:
+def fit(spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = 12) -> LikelihoodFit | None:
     """Fit plateau, q0 and slope to the trusted ranges; None where there are too few shells to fit.
 
     Below `knee` (1/nm), where it is known roughly, the corrections that the discrepancy stands for do not act. A decade
