@@ -107,7 +107,8 @@ def device_of(given: Sequence[str]) -> dict[str, float]:
     for word in given:
         name, _, value = word.partition("=")
         if name not in NUMBERS_OF_DEVICE or not re.fullmatch(NUMBER, value):
-            raise InputError(f"{word}: accepted is KEY=NUMBER with a key of {', '.join(NUMBERS_OF_DEVICE)}")
+            listed = ", ".join(NUMBERS_OF_DEVICE)
+            raise InputError(f"{word}: accepted is KEY=NUMBER with a key of {listed}; state other keys in the scene")
         keys[name] = float(value)
     DeviceSettings(**keys)
     return keys

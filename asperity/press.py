@@ -55,7 +55,7 @@ class PressedMap(Shown):
     def lines(self) -> Iterator[str]:
         """One line a load."""
         nx, ny = self.pressure_GPa.shape[1:]
-        yield f"Map of {nx} x {ny} sites at {len(self.loads_nN)} loads{'' if self.converged else '; NOT CONVERGED'}"
+        yield f"Map of {nx} x {ny} sites; loads: {len(self.loads_nN)}{'' if self.converged else '; NOT CONVERGED'}"
         for k, (load, share) in enumerate(zip(self.loads_nN, self.area_share, strict=True)):
             yield (
                 f"{load:.4g} nN: {share:.2%} in contact, up to {self.pressure_GPa[k].max():.3g} GPa, "

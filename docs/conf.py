@@ -60,9 +60,14 @@ suppress_warnings = [
 
 
 def collapse_navigation(app, pagename, templatename, context, doctree):
-    """List beside a page its own branch, not all 200 pages of the API: most of the build's time went there."""
+    """List beside a page its own branch, not all 200 pages of the API: most of the build's time went there.
+
+    Its captions are headings for screen readers, which need a level.
+    """
     if whole := context.get("toctree"):
-        context["toctree"] = lambda **options: whole(**{**options, "collapse": True})
+        context["toctree"] = lambda **options: (whole(**{**options, "collapse": True}) or "").replace(
+            'role="heading"', 'role="heading" aria-level="2"'
+        )
 
 
 def setup(app):

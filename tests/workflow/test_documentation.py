@@ -23,6 +23,7 @@ from mesoscale.law.parameters import FITTED
 from mesoscale.settings import UncertaintySettings
 from mesoscale.topography.measurements.loading import load_measurements, write_gwy
 from mesoscale.uncertainty.propagation import NodeOutputs, propagate, surrogate_json
+from tests.workflow.browser import probed
 from workflow.files.results import write_json
 from workflow.scene import load_scene
 
@@ -95,6 +96,23 @@ def test_extras_are_named_one_way():
         text = page.read_text(encoding="utf-8")
         assert set(re.findall(r"asperity-contact\[(\w+)\]", text)) <= set(known)
         assert not re.search(r"\.whl\[|REPOSITORY", text), page
+
+
+def test_a_search_lists_pages_for_users_first(tmp_path):
+    """ "tip radius" found functions of the code before the page on scans; Sphinx gives results as such lists."""
+    pages = "api/mesoscale", "evidence/tip", "topography"
+    script = (
+        (ROOT / "docs/search_order.js").read_text(encoding="utf-8")
+        + f"""
+        const rows = {json.dumps([[page, "", "", None, 15] for page in pages])};
+        const text = document.createElement("pre");
+        text.id = "probe";
+        rows.sort((one, other) => Scorer.score(other) - Scorer.score(one));
+        text.textContent = JSON.stringify({{order: rows.map((row) => row[0])}});
+        parent.document.body.append(text);"""
+    )
+    found, _ = probed("<html><style></style><body></body></html>", tmp_path, 800, script)
+    assert found["order"] == list(reversed(pages))
 
 
 def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):

@@ -11,7 +11,8 @@ import yaml
 
 import asperity as asp
 from asperity.__main__ import main
-from mesoscale.topography.measurements.loading import write_gwy
+from asperity.door import NUMBERS_OF_DEVICE
+from mesoscale.topography.measurements.loading import load_measurements, write_gwy
 from workflow.scene import load_scene
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -60,6 +61,22 @@ def test_a_folder_becomes_a_scene_and_a_run(scans, started, tmp_path, monkeypatc
     main([str(scans), *words])  # the same scene again: it goes on
     assert len(started) == 2
     assert main([str(scans), "--device", "gap_um=3"]) == 1  # another scene would overwrite this one
+
+
+def test_options_on_a_file_reach_its_scene(scans, started, tmp_path, monkeypatch):
+    """A map of nm without size and unit; the scene has all numbers of the device with their meaning."""
+    monkeypatch.chdir(tmp_path)
+    np.savetxt("bare.txt", load_measurements(scans / "place_1.gwy")[0].data.heights_nm)
+    words = ["--size", "2.5x2.5", "--unit", "um,nm", "--detrend", "none", "--tip-nm", "0", "--channel", "Default"]
+    assert main(["bare.txt", *words]) is None
+    scene = load_scene("bare.yaml")
+    (instrument,) = scene.topography.instruments
+    assert (instrument.size, instrument.unit, instrument.height_unit) == ((2.5, 2.5), "um", "nm")
+    assert (scene.topography.detrend, scene.topography.channel) == ("none", "Default")
+    text = Path("bare.yaml").read_text(encoding="utf-8")
+    for name in NUMBERS_OF_DEVICE:
+        assert f"\n  {name}: " in text
+    assert main(["bare.txt", *words[:-2]]) == 1  # the scene of other words stays
 
 
 @pytest.mark.parametrize(

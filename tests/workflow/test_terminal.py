@@ -111,8 +111,8 @@ def test_the_release_is_told_as_switches_are_solved(capsys, tmp_path):
         send(terminal, "job_info", jobid=number, rule_name="press_pads", rule_msg="press")
         send(terminal, "job_finished", job_id=number)
     first, second = (line for line in capsys.readouterr().err.splitlines() if "so far" in line)
-    assert first == "  release of 2 switches so far: 2 V (5 to 95 %: 0.2 V to 3.8 V); 50% stick"
-    assert second == "  release of 5 switches so far: 5 V (5 to 95 %: 0.8 V to 6.8 V); 20% stick"
+    assert first == "  release of 2 switches so far: 2 V (5 %: 0.2 V; 95 %: 3.8 V); 50% stick"
+    assert second == "  release of 5 switches so far: 5 V (5 %: 0.8 V; 95 %: 6.8 V); 20% stick"
 
 
 def test_the_page_before_the_end_brings_no_warning():

@@ -60,7 +60,7 @@ def _known(answer: dict[str, Any]) -> str:
     return (
         f"Not known: where the typical device lets go, {typical[0]} to {typical[1]} V. From device to device: "
         f"{device[0]} to {device[1]} V, all else known. With 95 % confidence, less than {_rate(most['value'], answer)} "
-        f"of one batch stick. By its own error this limit may be {_rate(most['high'], answer)}."
+        f"of one batch stick. The error of this limit allows up to {_rate(most['high'], answer)}."
     )
 
 

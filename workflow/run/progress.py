@@ -151,7 +151,7 @@ def release_so_far(files: Iterable[str]) -> Iterator[str]:
     if solved:
         low, middle, high = (f"{of:.3g} V" if of else "sticks" for of in np.quantile(solved, (0.05, 0.5, 0.95)))
         stuck = np.mean(np.equal(solved, 0.0))
-        yield f"  release of {len(solved)} switches so far: {middle} (5 to 95 %: {low} to {high}); {stuck:.0%} stick"
+        yield f"  release of {len(solved)} switches so far: {middle} (5 %: {low}; 95 %: {high}); {stuck:.0%} stick"
 
 
 def _say_if_silent(about: Mapping[str, Any]) -> None:

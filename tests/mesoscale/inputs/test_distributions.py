@@ -21,6 +21,7 @@ def table(*distributions, correlation=None):
     ("distribution", "mean", "deviation"),
     [
         (Distribution("uniform", 2, 15), 8.5, 13 / np.sqrt(12)),
+        (Distribution("log_uniform", 2, 8), 6 / np.log(4), np.sqrt(30 / np.log(4) - (6 / np.log(4)) ** 2)),
         (Distribution("normal", 91, 3.8), 91, 3.8),
         (Distribution("truncated_normal", 0, 1, -1, 1), 0, 0.539560),  # 1 - 2 phi(1)/(2 Phi(1) - 1)
         (Distribution("fixed", 3), 3, 0),
@@ -32,6 +33,11 @@ def test_moments(distribution, mean, deviation):
     values = distribution.quantile((np.arange(200000) + 0.5) / 200000)
     assert values.mean() == pytest.approx(mean, abs=1e-3)
     assert values.std() == pytest.approx(deviation, rel=1e-3, abs=1e-9)
+
+
+def test_the_median_of_a_range_over_orders_is_no_midpoint():
+    """A line gave an RMS height of 576 nm as the middle of a skewed range; its truth was 4 nm."""
+    assert Distribution("log_uniform", 0.01, 1600).quantile(np.array([0.5])) == pytest.approx([4.0])
 
 
 def test_nodes_span_the_central_share_of_a_normal_and_all_of_the_others():

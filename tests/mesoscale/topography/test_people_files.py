@@ -41,6 +41,11 @@ def test_cells_get_the_rms_height_that_was_measured_to_a_factor_of_two(name, rms
     assert film.description["gate"]["passed"]
     assert ("form" in codes(film)) == (name == "curved_map.gwy")
     assert ("unseen_waves" in codes(film)) == (name == "complete.gwy")
+    (knee,) = (doubt for doubt in film.description["doubts"] if doubt["code"] == "no_power_law")
+    assert knee["text"].startswith("the knee q0 of eq. 9 cannot be told")  # not: does not describe this surface
+    low, high = film.description["estimates"]["rms"]["interval"]
+    assert high < 10 * low
+    assert film.description["estimates_of"].startswith("eq. 9, for comparison")
 
 
 @needs_cases

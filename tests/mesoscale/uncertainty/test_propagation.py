@@ -126,6 +126,7 @@ def test_sobol_indices_of_a_linear_function():
         assert row["sobol_first"] == pytest.approx(exact, abs=0.02)
         assert row["sobol_total"] == pytest.approx(exact, abs=0.02)
         assert row["sobol_total_low"] <= row["sobol_total"] <= row["sobol_total_high"]
+    assert sum(row["sobol_first"] for row in rows[:3]) == pytest.approx(1.0, abs=0.02)  # docs/uncertainty.md
 
 
 def test_sobol_estimators_on_ishigami():

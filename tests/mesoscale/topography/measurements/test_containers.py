@@ -50,6 +50,13 @@ def test_the_diamond_film_is_read_with_each_instrument():
     assert tem.data.resampled
 
 
+def test_a_tip_radius_of_the_list_is_taken_as_stated(tmp_path):
+    tip = "instrument: {parameters: {tip_radius: {value: 0.012, unit: um}}}"
+    stated = ENTRY.replace("size:", f"{tip}, size:")
+    (measured,) = load_measurements(container(tmp_path / "stated.zip", META.replace(ENTRY, stated)))
+    assert (measured.tip_radius_nm, measured.radius_stated) == (pytest.approx(12.0), True)
+
+
 def test_both_kinds_of_lists_are_read(tmp_path):
     (old,) = load_measurements(container(tmp_path / "old.zip"))
     listed = {
