@@ -60,6 +60,9 @@ def finished(make_workflow, tmp_path_factory):
     workflow = make_workflow(tmp_path_factory.mktemp("finished"))
     done = workflow.run("ci")
     assert done.returncode == 0, done.stdout + done.stderr
+    last = done.stdout.rpartition("\n\n")[2]  # the answer, after what the scans said
+    assert last.startswith(("The switch ", "Whether the switch "))
+    assert last.endswith("\nresults are in results/ci; the report is results/ci/report.html\n")
     return workflow
 
 
