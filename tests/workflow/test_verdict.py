@@ -59,8 +59,8 @@ def said(pad, gates=SOUND, **about):
 
 def test_verdict_says_outcome_and_next_step():
     assert said(_pad()).sentence == (
-        "The switch lets go at 6.60 V (5\u00a0%: 3.10 V; 95\u00a0%: 9.40 V); 2% stick. Control next the bow of "
-        "the electrode at rest: known exactly, it shrinks the interval by 25%."
+        "The switch lets go at 6.60 V (5\u00a0%:\u00a03.10 V; 95\u00a0%:\u00a09.40 V); 2% stick. Control next the bow "
+        "of the electrode at rest: known exactly, it shrinks the interval by 25%."
     )
     assert said(_pad()).causes == (("bow", 0.5), ("RMS roughness", 0.25), ("D₀", 0.1), (CELLS, 0.1))
 

@@ -67,7 +67,7 @@ class Verdict:
         probability = self.stuck[1]
         if probability >= DECIDED:
             return f"The switch sticks, with a probability of {probability:.0%}."
-        interval = f"(5\u00a0%: {volts(low)}; 95\u00a0%: {volts(high)})"
+        interval = f"(5\u00a0%:\u00a0{volts(low)}; 95\u00a0%:\u00a0{volts(high)})"
         if probability <= 1 - DECIDED:
             return f"The switch lets go at {volts(middle)} {interval}; {probability:.0%} stick."
         median = f"is {volts(middle)}" if middle else "sticks"

@@ -71,7 +71,7 @@ use rule press_pads as press_prior_pads with:
     log:
         f"{RESULTS}/logs/press_prior_pads_{{chunk}}.log",
     message:
-        f"press pads over the prior, chunk {{wildcards.chunk}} of {len(POINT_CHUNKS) - 1} and central"
+        f"press pads {{wildcards.chunk}} over the prior (central, 000 to {len(POINT_CHUNKS) - 2:03})"
 
 
 rule calibrate:

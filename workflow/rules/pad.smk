@@ -30,7 +30,7 @@ rule press_pads:
         pad=settings("pad"),
         bounds=lambda wildcards: POINT_CHUNKS[wildcards.chunk],
     message:
-        f"press pads, {{wildcards.chunk}} of chunks 000 to {len(POINT_CHUNKS) - 2:03} and central"
+        f"press pads {{wildcards.chunk}} (central, 000 to {len(POINT_CHUNKS) - 2:03})"
     script:
         "../scripts/press_pads.py"
 
