@@ -183,8 +183,7 @@ def _write(file: Path, text: str) -> int:
         with file.open("x", encoding="utf-8") as stream:
             stream.write(text)
     except OSError as error:
-        there = isinstance(error, FileExistsError)
-        way = "remove it, run it as it is, or choose another name" if there else "choose another name or folder"
+        way = "remove it, or run it as it is" if isinstance(error, FileExistsError) else "choose another name or folder"
         return _refuse(f"{file}: cannot be written ({error.strerror}); {way}")
     return 0
 

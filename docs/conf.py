@@ -60,14 +60,10 @@ suppress_warnings = [
 
 
 def collapse_navigation(app, pagename, templatename, context, doctree):
-    """List beside a page its own branch, not all 200 pages of the API: most of the build's time went there.
-
-    Its captions are headings for screen readers, which need a level.
-    """
+    """List beside a page its own branch, not all 200 pages of the API: most of the build's time went there."""
     if whole := context.get("toctree"):
-        context["toctree"] = lambda **options: (whole(**{**options, "collapse": True}) or "").replace(
-            'role="heading"', 'role="heading" aria-level="2"'
-        )
+        level = 'role="heading"', 'role="heading" aria-level="2"'  # which screen readers need
+        context["toctree"] = lambda **options: (whole(**{**options, "collapse": True}) or "").replace(*level)
 
 
 def setup(app):

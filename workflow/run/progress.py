@@ -88,7 +88,7 @@ class Terminal(logging.Handler):
             counts = Counter(job.rule.name for job in self._left.values())
             rows = [
                 ("job", "count", "one core"),
-                *((rule, str(counts[rule]), duration(seconds[rule])) for rule in seconds),
+                *((rule, str(counts[rule]), duration(of)) for rule, of in seconds.items()),
             ]
             width = max(len(row[0]) for row in rows)
             _say("\n".join(f"{rule:<{width}}  {count:>5}  {cost:>9}" for rule, count, cost in rows) + "\n")
