@@ -1,7 +1,6 @@
 """The command `asperity`, thin over Snakemake and the library."""
 
 import argparse
-import difflib
 import importlib.metadata
 import importlib.util
 import os
@@ -14,7 +13,7 @@ from typing import NoReturn
 
 from asperity.guards.bundle import ROOT
 from asperity.guards.environment import UnsafeFolder, secure
-from asperity.guards.foreign_text import as_word, shown, wrapped
+from asperity.guards.foreign_text import as_word, did_you_mean, shown, wrapped
 
 # Ctrl-C while Snakemake is still imported ends it without a traceback
 START = "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); import snakemake.cli; snakemake.cli.main()"
@@ -142,9 +141,8 @@ def _new(given: argparse.Namespace) -> int:
 def _film(given: argparse.Namespace) -> int:
     """What the files show and what to doubt; then the scene and its run."""
     if missing := [name for name in given.files if not os.path.exists(name)]:
-        close = difflib.get_close_matches(missing[0], COMMANDS, n=1)
-        hint = f"; did you mean {close[0]}?" if close else ""
-        return _refuse(f"{missing[0]}: neither a file nor a command{hint} (asperity --help)")
+        meant = did_you_mean(missing[0], COMMANDS)
+        return _refuse(f"{missing[0]}: neither a file nor a command{meant} (asperity --help)")
     from asperity.door import device_of, material_of, readable, scene_lines, topography_of
     from asperity.film import Film
     from mesoscale.errors import InputError

@@ -9,6 +9,7 @@ from typing import Any, get_args
 
 from asperity.film import MATERIAL, Film, pixels_for
 from asperity.guards.bundle import ROOT
+from asperity.guards.foreign_text import did_you_mean
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import PAPER_ROWS
 from mesoscale.settings import DeviceSettings, InputRow, InstrumentSettings, TopographySettings
@@ -107,8 +108,8 @@ def device_of(given: Sequence[str]) -> dict[str, float]:
     for word in given:
         name, _, value = word.partition("=")
         if name not in NUMBERS_OF_DEVICE or not re.fullmatch(NUMBER, value):
-            listed = ", ".join(NUMBERS_OF_DEVICE)
-            raise InputError(f"{word}: accepted is KEY=NUMBER with a key of {listed}; state other keys in the scene")
+            listed, meant = ", ".join(NUMBERS_OF_DEVICE), did_you_mean(name, NUMBERS_OF_DEVICE)
+            raise InputError(f"{word}: accepted is KEY=NUMBER with a key of {listed} (others: in the scene){meant}")
         keys[name] = float(value)
     DeviceSettings(**keys)
     return keys

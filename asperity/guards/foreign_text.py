@@ -1,7 +1,9 @@
 """Text of a stranger: shown on the terminal, in tables that a spreadsheet opens, and handed to Snakemake."""
 
+import difflib
 import re
 import textwrap
+from collections.abc import Iterable
 from urllib.parse import quote, unquote
 
 PLAIN = re.compile(r"[A-Za-z0-9_./-]*[A-Za-z][A-Za-z0-9_./-]*")
@@ -17,6 +19,12 @@ def shown(text: str) -> str:
 def wrapped(text: str) -> str:
     """A line broken at the 80 columns of a terminal, its rest indented; one that fits stays as it is."""
     return textwrap.fill(text, COLUMNS, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """End of a line on an unknown word: the nearest of the known ones; empty where it is known or none is near."""
+    close = difflib.get_close_matches(word, list(known), n=1)
+    return f"; did you mean {close[0]}?" if close and close[0] != word else ""
 
 
 def as_cell(text: str) -> str:

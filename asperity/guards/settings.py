@@ -1,6 +1,5 @@
 """Settings: keys with default, meaning, accepted range and unit in one line each, and the base of their classes."""
 
-import difflib
 import inspect
 import re
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from asperity.guards.errors import InputError
+from asperity.guards.foreign_text import did_you_mean
 from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
 
 _INTERVAL = re.compile(r"([\[(])(\S+), (\S+)([\])])(?: (.+))?")
@@ -58,8 +58,8 @@ def _suggestion(kind: type[BaseModel], error: Any) -> str:
     """What an unknown key of the settings themselves may have meant; empty for other mistakes."""
     if error["type"] != "extra_forbidden" or len(error["loc"]) > 1:
         return ""
-    close = difflib.get_close_matches(str(error["loc"][0]), kind.model_fields, n=1)
-    return f"unknown key{f'; did you mean {close[0]}?' if close else ''} (accepted: {', '.join(kind.model_fields)})"
+    known = kind.model_fields
+    return f"unknown key{did_you_mean(str(error['loc'][0]), known)} (accepted: {', '.join(known)})"
 
 
 def _shown(value: Any) -> str:

@@ -108,7 +108,7 @@ def learn(population: Population, tell: Callable[[float, str], None], seed: int 
     number = 0
     while True:
         for part, hold_V in batches:
-            tell(0.6 * number / FAILURE.rounds, f"{len(reserves)} switches")
+            tell(0.2 * number / FAILURE.rounds, f"{len(reserves)} switches")
             columns = np.concatenate([columns, population.columns(part, np.full(len(part), hold_V))])
             reserves = np.concatenate([reserves, population.reserves(part, hold_V)])
         # a switch that fails with the least attraction says nothing of where others begin to
@@ -248,20 +248,24 @@ def failure_rate(
     laws = []
     likely = response.sample(just_allowed(response, hold, allowed), hold, 0)
     for number, times in enumerate(WORKS):
-        tell(0.6 + 0.4 * number / len(WORKS), f"{times:.2g} times the attraction")
-        curve = [row for row in rows if row["attraction"] == times]
-        volts, share = (np.array([row[key] for row in curve]) for key in ("hold_V", "failing_sure"))
+        law, step = f"{times:.2g} times the attraction", 0.8 / len(WORKS)
+        tell(0.2 + number * step, law)
+        share = np.array([row["failing_sure"] for row in rows if row["attraction"] == times])
+        allowed_V = furthest_allowed(voltages(population), share, allowed)
         rates = response.rates(times, hold)
-        allowed_V = furthest_allowed(volts, share, allowed)
+        failing = asdict(corrected(response, times, hold))
+        tell(0.2 + (number + 0.2) * step, f"{law}, least spring")
+        spring = least_spring(response, likely, times, hold, allowed)
+        tell(0.2 + (number + 0.8) * step, f"{law}, largest hold voltage")
         laws.append(
             {
                 "attraction": times,
-                "failing": asdict(corrected(response, times, hold)),
+                "failing": failing,
                 "given_common": quantiles_of(rates),
                 "sure": float(np.mean(rates <= allowed)),
                 "largest_hold_V": allowed_V,
                 "least_rms_nm": least_rms_nm(response, times, hold, allowed),
-                "least_spring": least_spring(response, likely, times, hold, allowed),
+                "least_spring": spring,
                 "there": None if allowed_V is None else asdict(corrected(response, times, allowed_V)),
             }
         )

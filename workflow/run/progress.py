@@ -1,6 +1,5 @@
 """What a run says in the terminal: its plan, and a line for each finished job with the clock and the time left."""
 
-import difflib
 import logging
 import re
 import sys
@@ -14,7 +13,7 @@ from typing import Any
 
 from snakemake.exceptions import WorkflowError
 
-from asperity.guards.foreign_text import COLUMNS, shown, wrapped
+from asperity.guards.foreign_text import COLUMNS, did_you_mean, shown, wrapped
 from workflow.run.cost import Costs, refusal, wall_seconds
 from workflow.run.job import last_line
 
@@ -71,9 +70,7 @@ class Terminal(logging.Handler):
     def _refuse_target(self, target: str) -> None:
         rules = self._workflow.rules
         names = [rule.name for rule in rules] + [str(path) for rule in rules for path in rule.output]
-        close = difflib.get_close_matches(target, names, n=1)
-        hint = f"; did you mean {close[0]}?" if close else ""
-        _say(f"ERROR {shown(target)}: no such target{hint} (asperity targets lists the stages)")
+        _say(f"ERROR {shown(target)}: no such target{did_you_mean(target, names)} (asperity targets lists the stages)")
 
     def _plan(self) -> None:
         self._left = {job.jobid: job for job in self._workflow.dag.needrun_jobs() if not job.rule.norun}
@@ -160,15 +157,12 @@ def _say_if_silent(about: Mapping[str, Any]) -> None:
     if log.is_file() and last_line(log).startswith("ERROR "):
         return
     if disk_usage(Path.cwd()).free < 100_000:  # bytes: less than a job and its log need
-        _say(f"ERROR {about['rule_name']}: no space left on the disk of {Path.cwd()}; make room, then run again")
-        return
-    if about["log"] and not log.is_file():
-        _say(f"ERROR {about['rule_name']}: ended before it began, its script has a mistake: see the lines above")
-        return
-    _say(
-        f"ERROR {about['rule_name']}: ended by the system without a word, probably out of memory: run again with "
-        "fewer --cores, or lower contact.pixels"
-    )
+        why = f"no space left on the disk of {Path.cwd()}; make room, then run again"
+    elif about["log"] and not log.is_file():
+        why = "ended before it began, its script has a mistake: see the lines above"
+    else:
+        why = "ended by the system without a word, probably out of memory: take fewer --cores or contact.pixels"
+    _say(f"ERROR {about['rule_name']}: {why}")
 
 
 def duration(seconds: float) -> str:

@@ -1,6 +1,5 @@
 """Scenes and the files that they name, found, read and checked; each mistake is one line."""
 
-import difflib
 import json
 import os
 import time
@@ -11,7 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from asperity.guards.bundle import ROOT
-from asperity.guards.foreign_text import shown
+from asperity.guards.foreign_text import did_you_mean, shown
 from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
 from mesoscale.topography.measurements import files_in
 from workflow.files.checksums import CLOCK_S
@@ -192,9 +191,7 @@ def _explain(path: Path, error: Any) -> str:
     if error["type"] == "extra_forbidden":
         owner = model_at(location[:-1])
         known = list(owner.model_fields) if owner else []
-        close = difflib.get_close_matches(str(location[-1]), known, n=1)
-        hint = f"; did you mean {close[0]}?" if close else ""
-        return f"{path}: {key}: unknown key{hint} (accepted: {', '.join(known)})"
+        return f"{path}: {key}: unknown key{did_you_mean(str(location[-1]), known)} (accepted: {', '.join(known)})"
     field = field_at(location)
     accepted = accepted_values(field) if field else error["msg"]
     value = _cut(json.dumps(error["input"], ensure_ascii=False, default=str))
