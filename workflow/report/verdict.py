@@ -92,14 +92,9 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
         causes, no_cause = causes_of(answer)
     else:
         release = (pad["central"]["release_V"],) if pad["central"] else None
-        no_interval = pad["answer_status"]
-        if release is None:
-            no_interval = "; ".join(pad["gate"]["reasons"]) or no_interval
-    failed = [
-        gate
-        for gate in (gates_of(results) if gates is None else gates)
-        if gate.used and gate.answer and not gate.passed
-    ]
+        no_interval = ("; ".join(pad["gate"]["reasons"]) if release is None else "") or pad["answer_status"]
+    every = gates_of(results) if gates is None else gates
+    failed = [gate for gate in every if gate.used and gate.answer and not gate.passed]
     return Verdict(
         "bending electrode" if pad.get("electrode", "bending") == "bending" else "flat electrode",
         release,
