@@ -29,7 +29,7 @@ TYPICAL_S = {
     "report": 8.0,
     "calibrate": 60.0,
     "circuit": 30.0,
-    "failure": 180.0,
+    "failure": 3000.0,
     "study": 120.0,
 }
 CYCLES = {  # contacts that a job closes and opens, to the largest force of the scene

@@ -18,7 +18,7 @@ def describe(results: Results) -> Iterator[Block]:
     rate = results.json("device/failure.json")
     event = f"is still closed at {volts(rate['release_V'])}" if rate["release_V"] else "sticks"
     yield (
-        f"A switch fails where it {event}. {show(rate['allowed'])} of all may. No statistics decides the law of "
+        f"A switch fails where it {event}. Allowed is a share of {rate['allowed']:g}. Nothing here decides the law of "
         "attraction, so each row has its own. Inputs, geometry and pads are drawn together."
     )
     yield Figure(
