@@ -364,7 +364,7 @@ def hold(gap, weight, separation, far, lowest, width, moments, volume, reach, le
     return sites, reach, cubes
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract", "reassoc", "nsz"}, error_model="numpy")  # in parallel lanes
 def inverse_cubes_around(heights, separation, displacement, sites, place, pressure, touching, least, offset, rate):
     """Sum of 1/s^3 over all sites of a cell, with the weights of `attracting` around `sites`, which have pressures."""
     pixels = int(np.sqrt(heights.size) + 0.5)

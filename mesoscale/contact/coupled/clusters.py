@@ -3,6 +3,8 @@
 import numpy as np
 from numba import njit
 
+from mesoscale.contact.coupled.dense import wrapped
+
 
 @njit(cache=True)
 def label(sites, place, pressure, pixels, number):
@@ -25,7 +27,7 @@ def label(sites, place, pressure, pixels, number):
             row, col = site // pixels, site % pixels
             for rows in range(-1, 2):
                 for cols in range(-1, 2):
-                    other = place[(row + rows) % pixels * pixels + (col + cols) % pixels]
+                    other = place[wrapped(row + rows, pixels) * pixels + wrapped(col + cols, pixels)]
                     if other >= 0 and number[other] < 0 and pressure[other] > 0.0:
                         number[other] = clusters
                         waiting[end] = other

@@ -20,14 +20,19 @@ FACE_SHARE = 1e-3
 FAST = {"contract", "reassoc", "nsz"}
 
 
+@njit(cache=True, inline="always")
+def wrapped(index, pixels):
+    """A row or column of the cell that lies beyond its edge by less than a side: many times faster than a remainder."""
+    return index + pixels if index < 0 else index - pixels if index >= pixels else index
+
+
 @njit(cache=True)
 def extend(matrix, table, scale, sites, old, new, pixels):
     """Fill the rows and columns of the sites old .. new - 1 into the matrix of influences."""
+    row, col = sites[:new] // pixels, sites[:new] % pixels
     for k in range(old, new):
-        row, col = sites[k] // pixels, sites[k] % pixels
         for j in range(k + 1):
-            rows = abs(row - sites[j] // pixels)
-            cols = abs(col - sites[j] % pixels)
+            rows, cols = abs(row[k] - row[j]), abs(col[k] - col[j])
             value = scale * table[min(rows, pixels - rows), min(cols, pixels - cols)]
             matrix[k, j] = value
             matrix[j, k] = value
@@ -131,9 +136,9 @@ def neighbours(sites, place, pixels, places, number):
     for m in range(places.size):
         row, col = sites[places[m]] // pixels, sites[places[m]] % pixels
         for i in range(3):
-            start = (row + i - 1) % pixels * pixels
+            start = wrapped(row + i - 1, pixels) * pixels
             for j in range(3):
-                other = place[start + (col + j - 1) % pixels]
+                other = place[start + wrapped(col + j - 1, pixels)]
                 if other >= 0:
                     around[m, 3 * i + j] = number[other]
     return around

@@ -76,6 +76,8 @@ class CoupledContact(Contact):
     def _forget(self) -> None:
         self.separation = math.inf
         self.bounded = False
+        self.ahead = (0.0, np.empty(0))  # how far the first guess goes on, and the field before
+        self.guessed = False  # whether the pressures are still the first guess on a grid
         self.known_height = -math.inf
         self.sorted_known = 0  # of `order`, how many are known
         self.grid: grid.Grid | None = None
@@ -126,7 +128,7 @@ class CoupledContact(Contact):
         elif kept.field is None:
             self.displacement = self.grid.displace(self.sites, self.pressure)
         else:
-            self.grid.field = kept.field
+            self.grid.field, self.grid.under = kept.field, (kept.sites, kept.pressure)
             self.displacement = kept.field[self.sites]
 
     def move_to(self, separation: float, with_flow: bool) -> State:
@@ -151,18 +153,28 @@ class CoupledContact(Contact):
 
     def _expect(self, separation: float) -> None:
         """Take the pressures for those at a separation if they go on as in the last step: a first guess."""
-        now, before = self.before, self.earlier
-        last = now.separation - before.separation
-        share = (separation - now.separation) / last if last and math.isfinite(last) else 0.0
-        guessed = 0.0 < share <= self.LONGEST_GUESS and (now.field is None) == (before.field is None)
-        if guessed:
-            change = now.pressure.copy()
+        before, share = self.earlier, self._share(separation)
+        if share:
+            change = self.before.pressure.copy()
             change[self.place[before.sites]] -= before.pressure
             self.pressure += share * change
         if self.grid is not None:
-            self.displacement = self.grid.field[self.sites]
-            if guessed and before.field is not None:
-                self.displacement += share * (self.displacement - before.field[self.sites])
+            self.guessed = True
+            self.ahead = (share, before.field) if share and before.field is not None else (0.0, self.grid.field)
+            self.displacement = self._expected_field(self.sites)
+
+    def _share(self, separation: float) -> float:
+        """How far a first guess goes on as in the last step, over that step; 0 where it does not."""
+        now, before = self.before, self.earlier
+        last = now.separation - before.separation
+        share = (separation - now.separation) / last if last and math.isfinite(last) else 0.0
+        same = (now.field is None) == (before.field is None)
+        return share if same and 0.0 < share <= self.LONGEST_GUESS else 0.0
+
+    def _expected_field(self, sites: np.ndarray) -> np.ndarray:
+        """Displacement (nm) of some sites by the first guess of the pressures."""
+        (share, before), field = self.ahead, self.whole.field[sites]
+        return field + share * (field - before[sites]) if share else field
 
     def remarks(self) -> dict[str, float]:
         """What says whether the model holds, for the flags of a cycle (`validity`); the contact as it is now."""
@@ -253,9 +265,8 @@ class CoupledContact(Contact):
 
     def _hardness_of(self, number: np.ndarray) -> np.ndarray:
         """Hardness (GPa) of the clusters, for each known site; for one apart that of a single site."""
-        sites = np.bincount(number[number >= 0], minlength=1)
-        area = self.site_area * np.where(number >= 0, sites[number], 1)
-        return self.hardness.pressure(area)
+        sites = np.append(np.bincount(number[number >= 0]), 1)  # the last for those apart, number -1
+        return np.broadcast_to(self.hardness.pressure(self.site_area * sites), sites.shape)[number]
 
     def _solve(self, coarser: float = 1.0) -> bool:
         """Find the pressures with the limits at hand, to so many tolerances; True if they settled."""
@@ -271,6 +282,7 @@ class CoupledContact(Contact):
                 _, settled = grid.solve(self.grid, self.sites, self.place, gap, limit, *solution)
             if not settled:
                 settled = self._project(gap, limit)
+            self.guessed = False
             if self._knows_enough(self._pressed):
                 return settled
 
@@ -317,13 +329,19 @@ class CoupledContact(Contact):
         if self.grid is None and count > self.dense:
             self.matrix = self.matrix[:0, :0].copy()  # frees its memory
             self.grid = self.whole
+            self.grid.split.forget()
             self.displacement = self.grid.displace(self.sites, self.pressure)
         sites, pressure = np.append(self.sites, new), np.append(self.pressure, np.zeros(new.size))
         limit, displacement = np.append(self.limit, np.full(new.size, self._fresh_limit)), np.zeros(count)
         displacement[:old] = self.displacement
         if self.grid is not None:
-            self._displace(new, displacement[old:])
-        order = slice(None) if self.grid is None else np.argsort(sites)
+            if self.guessed:
+                displacement[old:] = self._expected_field(new)
+            else:
+                self._displace(new, displacement[old:])
+        self.place[new] = np.arange(old, count, dtype=np.int32)
+        ordered = self.grid is None or self.grid.split.know(sites, self.place)
+        order = slice(None) if ordered else np.argsort(sites)
         known = (sites[order], pressure[order], limit[order], displacement[order])
         self.sites, self.pressure, self.limit, self.displacement = known
         self.place[self.sites] = np.arange(count, dtype=np.int32)

@@ -14,6 +14,7 @@ from numba import njit
 from scipy import fft
 
 from mesoscale.contact.coupled import clusters, dense, half_space
+from mesoscale.contact.coupled.split import Split
 from mesoscale.settings.contact import Body
 
 NEWTON_STEPS = 60
@@ -21,9 +22,12 @@ FACE_STEPS = 500
 GRADIENT_STEPS = 500
 SINGLE_SHARE = 1e-6  # single precision gets a linear system at least this far
 FACE_SHARE = 0.3  # each linear system is solved to this share of its first gap: the sets change before more pays
+SPLIT_ERROR = 2e-3  # of `Split`, roughly
+SMALL = 0.03  # of the pressures: larger changes while hardness still changes are followed without `Split`
+ROUNDED = 0.1  # of the pressures: so much may change in single precision, which errs by 2e-6 of what changes
 COARSE = 1e-5  # tolerances beyond it need no displacements in double precision
 DIRECT, DIRECT_PER_PIXEL = 256, 2  # free sites up to which a linear system has a matrix; the same over pixels a side
-TABLE_SHARE = 3.0  # of the grid's sites: so many pairs of sites cost less by the table than a transform
+TABLE_SHARE = 1.5  # of the grid's sites: so many pairs of sites cost less by the table than a transform
 
 Array = np.ndarray
 Apply = Callable[[Array], Array]
@@ -46,6 +50,13 @@ class Grid:
         self.single_compliance = self.compliance.astype(np.float32)
         self.field = np.zeros(pixels**2)
         self.table = half_space.influence(pixels, length, bodies)
+        self.drifted = False  # whether displacements at hand are by `split`
+        self.block, self.block_sites = np.empty((0, 0), np.float32), np.empty(0, np.int32)
+
+    @cached_property
+    def split(self) -> Split:
+        """The same for known sites, with an error."""
+        return Split(self.compliance, self.scale)
 
     @cached_property
     def stencil(self) -> Array:
@@ -74,10 +85,33 @@ class Grid:
         """Displacement (nm) of some sites by their pressures (GPa), in the precision of the pressures."""
         return self.gather(sites, self.displacement(self.spread(sites, pressure)))
 
+    def nearly(self, sites: Array, pressure: Array) -> Array:
+        """The same in single precision, by `split` where it pays."""
+        self.drifted = self.split.open
+        return self.split.displacement(pressure) if self.split.open else self.displacement_at(sites, pressure)
+
     def displace(self, sites: Array, pressure: Array) -> Array:
         """The same; that of all sites is kept in `field`, which nothing changes in place."""
         self.field = self.displacement(self.spread(sites, pressure))
+        self.under, self.rounded, self.drifted = (sites, pressure.copy()), 0.0, False
         return self.field[sites]
+
+    def follow(self, sites: Array, place: Array, pressure: Array, keep: bool) -> Array:
+        """The same from what `field` is under, by the change alone in single precision, where rounding allows it."""
+        before, pressed = self.under
+        change = pressure.copy()
+        change[place[before]] -= pressed
+        size = np.abs(change)
+        largest, rounded = float(size.max()), self.rounded + float(size.sum()) / max(float(pressure.sum()), 1e-300)
+        if largest == 0.0 or (keep and rounded > ROUNDED):
+            return self.displace(sites, pressure)
+        self.drifted = False
+        moved = self.displacement(self.spread(sites, (change / largest).astype(np.float32)))
+        displacement = self.field[sites] + largest * moved[sites]
+        if keep:
+            self.field, self.under = self.field + np.float32(largest) * moved, (sites, pressure.copy())
+            self.rounded = rounded
+        return displacement
 
 
 def solve(
@@ -90,7 +124,9 @@ def solve(
     pressure: Array,
     displacement: Array,
 ) -> tuple[int, bool]:
-    """Find the pressures of n sites of a grid; the arguments are those of `dense.solve`, sites in rising order.
+    """Find the pressures of n sites of a grid; the arguments are those of `dense.solve`.
+
+    Displacements are followed with an error until the sets are found, then corrected on the whole grid.
 
     Returns
     -------
@@ -98,51 +134,67 @@ def solve(
     """
     stiffness, stencil = 1.0 / (grid.scale * grid.table[0, 0]), grid.stencil
     state, numbers = np.full(gap.size, 1, np.int8), np.arange(gap.size)
-    coarse = tolerance > COARSE
-    change, block, around, exact = np.zeros(gap.size), None, np.empty((0, 9), np.int32), coarse
+    aim, coarse, error = tolerance, tolerance > COARSE, SPLIT_ERROR if grid.split.open else 0.0
+    direct = min(max(DIRECT, DIRECT_PER_PIXEL * grid.shape[0]), grid.field.size - 1)
+    change, around, exact, corrected, solved = np.zeros(gap.size), np.empty((0, 9), np.int32), coarse, True, False
+    if grid.drifted and not coarse:
+        displacement[:] = grid.follow(sites, place, pressure, False)
     for step in range(NEWTON_STEPS):
         moved = dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0 or step == 0
-        block = None if moved else block
-        settled = dense.residual(gap, pressure, displacement, limit, stiffness, gap.size) <= tolerance
+        worst = dense.residual(gap, pressure, displacement, limit, stiffness, gap.size)
+        if corrected and not coarse:
+            aim = max(tolerance, error * worst)
+        settled = worst <= (aim if grid.drifted else tolerance) or (solved and not moved)
         if settled and exact:
             return step, True
         bound = dense.bind(pressure, limit, state, change, gap.size)
         if settled:
-            displacement[:], exact = grid.displace(sites, pressure), True
+            exact = aim <= tolerance or solved or not grid.drifted
+            displacement[:] = grid.follow(sites, place, pressure, exact)
+            corrected, solved = True, False
             continue
-        free, exact = state == 1, coarse
-        count = int(np.count_nonzero(free))
-        if bound:
-            _follow(grid, sites, change, displacement)
-        if 0 < count <= min(max(DIRECT, DIRECT_PER_PIXEL * grid.shape[0]), gap.size - 1):
-            places = np.flatnonzero(free)
-            if block is None:
-                block = dense.block(grid.table, grid.scale, sites[places], grid.shape[0])
-                number = np.where(free, np.cumsum(free) - 1, -1)
-                around = dense.neighbours(sites, place, grid.shape[0], places, number)
-            change[:] = 0.0
+        places = np.flatnonzero(state == 1)
+        exact, corrected, solved = coarse, False, 0 < places.size <= direct
+        if solved:
+            if not np.array_equal(grid.block_sites, sites[places]):
+                grid.block_sites = sites[places]
+                grid.block = dense.block(grid.table, grid.scale, grid.block_sites, grid.shape[0])
+            number = np.full(gap.size, -1)
+            number[places] = np.arange(places.size)
+            around = dense.neighbours(sites, place, grid.shape[0], places, number)
             open_gap = gap[places] + displacement[places]
-            change[places] = dense.close_gaps(block, around, stencil, open_gap, 0.0, SINGLE_SHARE)
-            pressure += change
-            _follow(grid, sites, change, displacement)
-        elif count:
-            goal = 0.3 * tolerance * float(pressure.max()) / stiffness
-            around = dense.neighbours(sites, place, grid.shape[0], numbers[free], numbers)
+            _follow(grid, sites, (pressure, change), places, open_gap)
+            closed = dense.close_gaps(grid.block, around, stencil, open_gap, 0.0, SINGLE_SHARE)
+            change[places] += closed
+            pressure[places] += closed
+            _follow(grid, sites, (pressure, change), numbers, displacement)
+            continue
+        if bound:
+            _follow(grid, sites, (pressure, change), numbers, displacement)
+        if places.size:
+            goal = 0.3 * aim * float(pressure.max()) / stiffness
+            around = dense.neighbours(sites, place, grid.shape[0], places, numbers)
             share = FACE_SHARE if moved else 0.0
-            _close_gaps(grid, sites, free, (around, stencil), gap, (pressure, displacement), goal, share)
-            if count == grid.field.size:  # a uniform pressure moves nothing: take the least, so that the sets change
+            _close_gaps(grid, sites, state == 1, (around, stencil), gap, (pressure, displacement), goal, share)
+            if places.size == grid.field.size:  # a uniform pressure moves nothing: take the least, so that sets change
                 pressure -= pressure.min()
     displacement[:] = grid.displace(sites, pressure)
     return NEWTON_STEPS, False
 
 
-def _follow(grid: Grid, sites: Array, change: Array, displacement: Array) -> None:
-    """Add what a change of the pressures (GPa) displaces: of few sites by the table, of many in single precision."""
-    if np.count_nonzero(change) * sites.size <= TABLE_SHARE * grid.field.size:
-        clusters.displace(grid.table, grid.scale, grid.shape[0], sites, change, sites, displacement)
+def _follow(grid: Grid, sites: Array, pressed: tuple[Array, Array], places: Array, displacement: Array) -> None:
+    """Add to the displacements of some of the sites what a change of the pressures (GPa) of all makes.
+
+    Of few sites it is taken from the table, of many in single precision, by `Split` where the change is small.
+    """
+    pressure, change = pressed
+    size = np.abs(change)
+    if np.count_nonzero(size) * places.size <= TABLE_SHARE * grid.field.size:
+        clusters.displace(grid.table, grid.scale, grid.shape[0], sites, change, sites[places], displacement)
         return
-    largest = float(np.abs(change).max())
-    displacement += largest * grid.displacement_at(sites, (change / largest).astype(np.float32))
+    largest, small = float(size.max()), float(size.sum()) <= SMALL * float(pressure.sum())
+    unit = (change / largest).astype(np.float32)
+    displacement += largest * (grid.nearly if small else grid.displacement_at)(sites, unit)[places]
 
 
 def _close_gaps(
@@ -170,7 +222,7 @@ def _close_gaps(
         dense.stiffen(around, stencil, r, z)
         rz = _turn(z, r, free, last, d)
         last = rz
-        q = grid.displacement_at(sites, d)
+        q = grid.nearly(sites, d)
         dq = float(d @ q)
         if not dq > 1e-7 * rz > 0.0:  # rounding of what moves nothing
             break

@@ -369,3 +369,36 @@ def test_attraction_at_single_steps_is_that_of_the_whole_deformed_surface(model,
         moved = grid.Grid(contact.n, contact.length, contact.e_star).displacement(pressure)
         of_all = (contact.heights, separation, moved, contact.sites, contact.place, contact.pressure)
         assert contact.attraction(separation) == pytest.approx(contact.adhesion.around(*of_all), rel=0.015)
+
+
+@pytest.mark.parametrize("pixels", [90, 128])
+def test_split_influences_are_those_of_the_whole_grid(pixels):
+    rng = np.random.default_rng(3)
+    whole = grid.Grid(pixels, 1.5 * pixels, 90.0)
+    sites = rng.choice(pixels**2, 400, replace=False).astype(np.int32)
+    place = np.full(pixels**2, -1, np.int32)
+    for known in (150, 400):  # sites come in one after another
+        place[sites[:known]] = np.arange(known)
+        assert whole.split.know(sites[:known], place)
+        pressure = rng.standard_normal(known)
+        exact = whole.displacement_at(sites[:known], pressure)
+        near = whole.split.displacement(pressure.astype(np.float32))
+        np.testing.assert_allclose(near, exact, atol=4e-3 * np.abs(exact).max())
+    everywhere = np.arange(pixels**2, dtype=np.int32)
+    whole.split.forget()
+    assert not whole.split.know(everywhere, everywhere)  # all pairs cost more than a transform
+
+
+def test_changes_of_pressure_are_followed_to_their_rounding():
+    rng = np.random.default_rng(4)
+    whole, sites = grid.Grid(64, 100.0, 90.0), np.arange(0, 64**2, 3, dtype=np.int32)
+    place = np.full(64**2, -1, np.int32)
+    place[sites] = np.arange(sites.size)
+    pressure = rng.random(sites.size)
+    whole.displace(sites, pressure)
+    for _ in range(30):  # rounding must not add up
+        pressure += 0.02 * rng.standard_normal(sites.size)
+        followed = whole.follow(sites, place, pressure, True)
+        exact = whole.displacement_at(sites, pressure)
+        np.testing.assert_allclose(followed, exact, atol=2e-7 * np.abs(exact).max())
+        np.testing.assert_allclose(whole.field[sites], followed, atol=2e-7 * np.abs(exact).max())

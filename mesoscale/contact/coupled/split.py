@@ -1,0 +1,129 @@
+"""Influences of some sites of a half-space on each other, without a transform of the whole grid.
+
+The Green's function is split as in an Ewald sum. A table has its short range, 1/q times erf(q s), which falls off with
+the distance r as exp(-r^2 / 4 s^2). Transforms of a coarser grid have the rest, between cubic splines around the sites
+(the particle-mesh method of Essmann et al., doi:10.1063/1.470117).
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+from scipy import fft
+from scipy.special import erf
+
+from mesoscale.contact.coupled import dense, half_space
+
+COARSER = 3  # sites for each of the coarser grid
+WIDTH = 0.7  # s over the distance of coarse sites
+REACH = 7  # sites: farther ones have no short range; with these three displacements err by some 1e-3 of the largest
+PAIRS_PER_SITE = 2  # of the whole grid: more pairs of near sites cost more than its transform
+
+Array = np.ndarray
+
+
+class Split:
+    """Displacements of known sites by their pressures.
+
+    Attributes
+    ----------
+    open : whether there are few enough pairs of near sites.
+    """
+
+    def __init__(self, compliance: Array, scale: float):
+        """Take the compliance (nm/GPa) of the modes of a grid, shape (N, N // 2 + 1), and L / E* (nm/GPa)."""
+        self.pixels = pixels = len(compliance)
+        self.coarse: int = fft.next_fast_len(max(pixels // COARSER, 4), real=True)  # pyright: ignore[reportAttributeAccessIssue]
+        narrow = 2.0 * math.pi * WIDTH / self.coarse
+        short = compliance * erf(narrow * half_space.wave_numbers(pixels))
+        short[0, 0] = 2.0 * scale * narrow / math.pi**1.5  # the limit of small q
+        self.table = np.asarray(fft.irfft2(short, s=(pixels, pixels)))[: REACH + 1, : REACH + 1].astype(np.float32)
+        modes = np.fft.fftfreq(self.coarse, 1 / self.coarse).astype(int)
+        spline = ((2.0 + np.cos(2.0 * np.pi * modes / self.coarse)) / 3.0) ** 2 * (pixels / self.coarse)
+        kept = modes[: self.coarse // 2 + 1]
+        self.rest = ((compliance - short)[modes][:, np.abs(kept)] / spline[:, None] / spline[: kept.size]).astype(
+            np.float32
+        )
+        at = np.arange(pixels) * (self.coarse / pixels)
+        self.nodes = ((at.astype(int)[:, None] + np.arange(4)) % self.coarse).astype(np.int32)
+        x = (at % 1.0)[:, None]
+        weights = np.hstack([(1 - x) ** 3, 3 * x**3 - 6 * x**2 + 4, 3 * (x + x**2 - x**3) + 1, x**3]) / 6.0
+        self.weights = weights.astype(np.float32)
+        self.others = np.empty(PAIRS_PER_SITE * pixels**2, np.int32)
+        self.values = np.empty(self.others.size, np.float32)
+        self.forget()
+
+    def forget(self) -> None:
+        """Know no site."""
+        self.open, self.first = True, np.zeros(1, np.int64)
+        self.rows, self.cols = np.empty((2, 0), np.int32)
+
+    def know(self, sites: Array, place: Array) -> bool:
+        """Take in further sites at the end of the known ones; whether there are few enough pairs."""
+        old, new = self.rows.size, sites.size - self.rows.size
+        if self.open and new:
+            self.rows, self.cols = (index.astype(np.int32) for index in np.divmod(sites, self.pixels))
+            self.first = np.append(self.first, np.zeros(new, np.int64))
+            self.open = pair(
+                self.rows, self.cols, place, self.pixels, self.table, old, self.first, self.others, self.values
+            )
+        return self.open
+
+    def displacement(self, pressure: Array) -> Array:
+        """Displacement (nm) of the known sites by their pressures (GPa), in single precision."""
+        coarse, moved = np.zeros((self.coarse, self.coarse), np.float32), np.empty_like(pressure)
+        around = (self.rows, self.cols, self.nodes, self.weights)
+        spread(around, pressure, coarse)
+        spectrum = np.asarray(fft.rfft2(coarse))
+        spectrum *= self.rest
+        coarse = np.asarray(fft.irfft2(spectrum, s=coarse.shape, overwrite_x=True))
+        gather(around, coarse, (self.first, self.others, self.values, self.table[0, 0]), pressure, moved)
+        return moved
+
+
+@njit(cache=True)
+def pair(rows, cols, place, pixels, table, old, first, others, values):
+    """List the earlier sites near each of the sites from `old` on; False where there are too many."""
+    reach = table.shape[0] - 1
+    end = first[old]
+    for k in range(old, rows.size):
+        for i in range(-reach, reach + 1):
+            start = dense.wrapped(rows[k] + i, pixels) * pixels
+            for j in range(-reach, reach + 1):
+                other = place[start + dense.wrapped(cols[k] + j, pixels)]
+                if 0 <= other < k and i * i + j * j <= reach * reach:
+                    if end == others.size:
+                        return False
+                    others[end], values[end] = other, table[abs(i), abs(j)]
+                    end += 1
+        first[k + 1] = end
+    return True
+
+
+@njit(cache=True, fastmath=dense.FAST)
+def spread(around, pressure, coarse):
+    """Add the pressures of sites to the coarse sites around them."""
+    rows, cols, nodes, weights = around
+    for k in range(pressure.size):
+        if pressure[k] != 0.0:
+            for i in range(4):
+                value = pressure[k] * weights[rows[k], i]
+                for j in range(4):
+                    coarse[nodes[rows[k], i], nodes[cols[k], j]] += value * weights[cols[k], j]
+
+
+@njit(cache=True, fastmath=dense.FAST)
+def gather(around, coarse, pairs, pressure, moved):
+    """Displacements of sites from those of the coarse sites around them, and from the pairs of near sites."""
+    rows, cols, nodes, weights = around
+    first, others, values, own = pairs
+    for k in range(moved.size):
+        here = pressure[k]
+        total = own * here
+        for i in range(4):
+            for j in range(4):
+                total += coarse[nodes[rows[k], i], nodes[cols[k], j]] * weights[rows[k], i] * weights[cols[k], j]
+        for m in range(first[k], first[k + 1]):
+            total += values[m] * pressure[others[m]]
+            moved[others[m]] += values[m] * here
+        moved[k] = total
