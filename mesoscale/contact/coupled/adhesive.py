@@ -20,6 +20,7 @@ import numpy as np
 from numba import njit
 
 from mesoscale.contact.attraction import inverse_cube
+from mesoscale.contact.coupled import dense
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.pressed import Row, State
@@ -62,6 +63,7 @@ class AdhesiveContact(CoupledContact):
     DENSE_TIMES_PIXELS = 2**20  # each step of the iteration solves anew, and needs no other sites for it
     FORCE_TOLERANCE = 1e-4
     SMALLEST_STEP = 1e-4
+    LONGEST_GUESS = math.inf  # but one step is taken at most
     JUMP_STEP = 3e-3  # over the roughness: a step that jumps on the way to a separation is halved down to this
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
@@ -95,7 +97,7 @@ class AdhesiveContact(CoupledContact):
 
     def _forget(self) -> None:
         super()._forget()
-        nothing = np.zeros(self.heights.size)
+        nothing = np.zeros(self.heights.size, np.float32)
         self.now = self.last = Pulled(math.inf, nothing, nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.saved = (self.now, self.last)
         self.undone: Pulled | None = None  # the state of the last step back, where nothing touched
@@ -128,11 +130,9 @@ class AdhesiveContact(CoupledContact):
     def move_to(self, separation: float, with_flow: bool) -> State:
         """Bring the flat to a separation; it may be undone by `back` until the next move."""
         self.saved = (self.now, self.last)
-        guess = self._expected(separation)
         if not (with_flow or self.capped):
             self.limit = np.full(self.limit.size, math.inf)
             self.mean = float(self.heights.mean())
-        self.last, self.now = self.now, self.now._replace(separation=separation, pull=guess)
         state = super().move_to(separation, with_flow)
         if state.force < math.inf:
             self._balance(with_flow)
@@ -158,18 +158,28 @@ class AdhesiveContact(CoupledContact):
         loss = was.energy - now.energy - 0.5 * (was.net + now.net) * step
         return loss, 0.25 * abs((now.net - was.net) * step)
 
-    def _expected(self, separation: float) -> np.ndarray:
-        """Attraction of the sites if it goes on as in the last step, or towards an undone state without touch."""
-        step, last = separation - self.now.separation, self.now.separation - self.last.separation
-        if self.undone and not self.pressure.any():
-            whole = self.undone.separation - self.now.separation
-            if 0.0 < step / (whole or math.inf) <= 1.0:
-                return self.now.pull + step / whole * (self.undone.pull - self.now.pull)
-        if not (math.isfinite(last) and last * step > 0.0):
-            return self.now.pull
-        change = min(step / last, 1.0) * (self.now.pull - self.last.pull)
-        change[self.now.pull <= self.MIXED_PULL * self.strongest] = 0.0
-        return np.clip(self.now.pull + change, 0.0, self.strongest)
+    def _expect(self, separation: float) -> None:
+        """Take the attraction, too, and the displacement by all stresses, or those on the way to an undone state."""
+        super()._expect(separation)
+        now, other, share = self.now, self.last, self._share(separation)
+        if self.undone is not None and (towards := self._undone_share(separation)):
+            other, share = self.undone, -towards
+        pull, moved = now.pull - other.pull, now.moved - other.moved
+        for change, start in ((pull, now.pull), (moved, now.moved)):
+            change *= share
+            change += start
+        self.last, self.now = now, now._replace(separation=separation, pull=pull, moved=moved)
+
+    def _share(self, separation: float) -> float:
+        return 0.0 if self._undone_share(separation) else min(super()._share(separation), 1.0)
+
+    def _undone_share(self, separation: float) -> float:
+        """How far a separation is on the way to an undone state; 0 where there is none, or sites touch."""
+        if self.undone is None or self.before.pressure.any():
+            return 0.0
+        whole = self.undone.separation - self.now.separation
+        share = (separation - self.now.separation) / (whole or math.inf)
+        return share if 0.0 < share <= 1.0 else 0.0
 
     @property
     def lost(self) -> float:
@@ -228,9 +238,10 @@ class AdhesiveContact(CoupledContact):
         reach = self.adhesion.reach_nm if self.adhesion else 0.0
         return float(np.mean(np.maximum(self.heights + separation + self.now.moved, 0.0) < reach))
 
-    def _bent(self, stress: np.ndarray) -> np.ndarray:
-        """Displacement (nm) by stresses (GPa), (N^2,); none costs no transform, and single precision is enough."""
-        return self.whole.displacement(stress.astype(np.float32)) if stress.any() else np.zeros(stress.size, np.float32)
+    def _bent(self, stress: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """Displacement (nm) by stresses (GPa), changed in place by what is added to the known sites."""
+        stress[self.sites] += change
+        return self.whole.displacement(stress) if stress.any() else stress
 
     def _traction(self) -> np.ndarray:
         return self.pressure - self.now.pull[self.sites]
@@ -248,54 +259,77 @@ class AdhesiveContact(CoupledContact):
         return self._solve_rounds()[1]
 
     def _solve_rounds(self) -> tuple[int, bool]:
-        """Find the stresses; each step of the iteration is a round of hardness, too, until the clusters keep theirs."""
-        law, strongest, undeformed = self.adhesion, self.strongest, self.heights + self.separation
+        """Find the stresses; each step of the iteration is a round of hardness, too, until the clusters keep theirs.
+
+        The displacement follows from the pressures before and the attraction at hand. What the new pressures add is
+        known at the known sites; elsewhere a transform adds it while the attraction still changes much.
+        """
+        law, strongest = self.adhesion, self.strongest
+        changes = (self.CHANGE * strongest, self.MIXED_PULL * strongest)
         wanted = safe = self.now.pull
-        mixed = np.empty(0, int)
+        moved, before = self.now.moved, self._moved_by_pressure()
+        mixed, reached = np.empty(0, int), np.zeros(self.heights.size, np.float32)
         steps: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=self.MIXED)
-        lowest, settled, change, rounds = math.inf, False, math.inf, 1
+        lowest, settled, some, many, rounds = math.inf, False, 0, 1, 1
         for _ in range(self.STEPS):
-            self.now = self.now._replace(pull=wanted, shift=-self._bent(wanted))
+            pressure, sites = self.pressure.copy(), self.sites
+            shift = moved.copy()
+            shift[sites] -= before
+            self.now = self.now._replace(pull=wanted, shift=shift)
             settled = super()._solve()
-            moved = self.now.shift
-            if self.grid is not None:
-                moved = moved + self.grid.field
-            elif self.pressure.any():
-                moved = moved + self._bent(self.whole.spread(self.sites, self.pressure))
-            reached, change = np.zeros(moved.size), 0.0
-            energy = 0.5 * float(self.pressure @ moved[self.sites])
+            pressed = self.pressure.copy()
+            pressed[self.place[sites]] -= pressure
+            before = self.displacement.copy()
+            if self.sites.size > sites.size:  # more sites can touch: once more, with what moves them
+                moved = self._bent(np.negative(wanted, dtype=np.float32), self.pressure)
+                continue
+            if many and pressed.any():
+                moved += self._bent(np.zeros(moved.size, np.float32), pressed)
+            moved[self.sites] = shift[self.sites] + before
+            energy, total, some, many = 0.5 * float(self.pressure @ moved[self.sites]), 0.0, 0, 0
             if law is not None:
                 walls = (law.least, law.offset, law.rate, law.reach_nm)
-                gained, change = attract(undeformed, moved, wanted, self.hamaker, walls, self.liquid_law, reached)
+                reached, law_of = np.empty_like(reached), (self.hamaker, walls, self.liquid_law)
+                gained, total, some, many = attract(
+                    self.heights, self.separation, moved, wanted, *law_of, changes, reached
+                )
                 energy += gained
             yielding = self.pressure >= self._bounds()
-            overlap = -(undeformed[self.sites] + moved[self.sites])[yielding]
+            overlap = -(self.heights[self.sites] + self.separation + moved[self.sites])[yielding]
             flowing = float(self.limit[yielding] @ overlap)
             energy += flowing + strongest * float(overlap.sum())
             self.now = self.now._replace(
                 moved=moved,
                 energy=energy * self.site_area,
                 flowing=flowing * self.site_area,
-                total=float(reached.sum()) * self.site_area,
+                total=total * self.site_area,
             )
             if self.bounded and rounds < self.ROUNDS and self._hardens(rounds):
                 rounds, lowest = rounds + 1, math.inf
-            elif change <= self.CHANGE * strongest:
+            elif not some:
                 break
-            if wanted is not safe and energy > lowest and change > self.MIXED_PULL * strongest:
+            if wanted is not safe and energy > lowest and many:
                 steps.clear()  # a mix that leads astray
                 wanted = safe
-                continue
-            if not steps:
-                mixed = np.flatnonzero(reached > self.MIXED_PULL * strongest)
-            steps.append((wanted[mixed], reached[mixed]))
-            lowest, wanted = energy, reached
-            safe = reached
-            if len(steps) > 1:
-                wanted = reached.copy()
-                wanted[mixed] = np.clip(mix(steps), 0.0, strongest)
+            else:
+                if not steps:
+                    mixed = np.flatnonzero(reached > changes[1])
+                steps.append((wanted[mixed].astype(float), reached[mixed].astype(float)))
+                lowest, wanted = energy, reached
+                safe = reached
+                if len(steps) > 1:
+                    wanted = reached.copy()
+                    wanted[mixed] = np.clip(mix(steps), 0.0, strongest)
+            moved = self._bent(np.negative(wanted, dtype=np.float32), self.pressure)
         self.displacement = self.now.moved[self.sites].astype(float)
-        return rounds, settled and change <= self.CHANGE * strongest and rounds < self.ROUNDS
+        return rounds, settled and not some and rounds < self.ROUNDS
+
+    def _moved_by_pressure(self) -> np.ndarray:
+        """Displacement (nm) of the known sites by the first guess of the pressures."""
+        self._know(self._pressed)
+        if self.grid is None:
+            dense.multiply(self.matrix, self.sites.size, self.pressure, self.displacement)
+        return self.displacement.copy()
 
 
 def mix(steps: deque[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
@@ -306,8 +340,8 @@ def mix(steps: deque[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
     return end[-1] - shares @ np.diff(end, axis=0)
 
 
-@njit(cache=True)
-def attract(undeformed, moved, pull, hamaker, walls, liquid, reached):
+@njit(cache=True, fastmath=dense.FAST, error_model="numpy")
+def attract(heights, separation, moved, pull, hamaker, walls, liquid, changes, reached):
     """Attraction (GPa) of the sites of a deformed surface, into `reached`.
 
     The energy of flats s apart is -A_H / (12 pi s^2 (1 + c s)); within the least distance the attraction is constant.
@@ -315,22 +349,26 @@ def attract(undeformed, moved, pull, hamaker, walls, liquid, reached):
 
     Returns
     -------
-    Elastic and adhesive energy of the attraction, nN/nm, and the largest change of the attraction from `pull`, GPa.
+    Elastic and adhesive energy of the attraction, nN/nm, the sum of `reached`, GPa, and how many sites change by more
+    than each of two `changes` from `pull`.
     """
     strength, (least, offset, rate, reach) = hamaker / (6.0 * np.pi), walls
     (share, laplace), outer = liquid, max(reach, least) + offset
     edge = 0.5 * strength / (outer * outer * (1.0 + rate * outer))
     edge += strength * inverse_cube(outer, rate) * max(least - reach, 0.0)
-    energy = change = 0.0
-    for k in range(moved.size):
-        gap = undeformed[k] + moved[k]
+    energy, total, some, many = 0.0, 0.0, 0, 0
+    for k in range(moved.size):  # without branches, so that it runs in parallel lanes
+        gap = heights[k] + separation + moved[k]
         apart = max(gap, least) + offset
-        reached[k] = strength * inverse_cube(apart, rate)
+        late = 1.0 / (1.0 + rate * apart)
+        parting = 0.5 * strength * late / (apart * apart)
+        force = 2.0 * parting / apart * (1.0 + 1.5 * rate * apart) * late
+        parting += force * max(least - gap, 0.0)
+        wet = gap < reach
+        reached[k] = share * force + laplace if wet else force
+        energy -= share * parting + (1.0 - share) * edge + laplace * (reach - gap) if wet else parting
         energy -= 0.5 * pull[k] * moved[k]
-        parting = 0.5 * strength / (apart * apart * (1.0 + rate * apart)) + reached[k] * max(least - gap, 0.0)
-        if gap < reach:
-            reached[k] = share * reached[k] + laplace
-            parting = share * parting + (1.0 - share) * edge + laplace * (reach - gap)
-        energy -= parting
-        change = max(change, abs(reached[k] - pull[k]))
-    return energy, change
+        total += reached[k]
+        some += abs(reached[k] - pull[k]) > changes[0]
+        many += abs(reached[k] - pull[k]) > changes[1]
+    return energy, total, some, many
