@@ -23,8 +23,9 @@ GRADIENT_STEPS = 500
 SINGLE_SHARE = 1e-6  # single precision gets a linear system at least this far
 FACE_SHARE = 0.3  # each linear system is solved to this share of its first gap: the sets change before more pays
 SPLIT_ERROR = 2e-3  # of `Split`, roughly
-SMALL = 0.03  # of the pressures: larger changes while hardness still changes are followed without `Split`
-ROUNDED = 0.1  # of the pressures: so much may change in single precision, which errs by 2e-6 of what changes
+# of the pressures: larger changes are not followed by `Split` while hardness still changes, and more is not changed in
+# single precision, which errs by 2e-6 of what changes
+SMALL = 0.1
 COARSE = 1e-5  # tolerances beyond it need no displacements in double precision
 DIRECT, DIRECT_PER_PIXEL = 256, 2  # free sites up to which a linear system has a matrix; the same over pixels a side
 TABLE_SHARE = 1.5  # of the grid's sites: so many pairs of sites cost less by the table than a transform
@@ -103,7 +104,7 @@ class Grid:
         change[place[before]] -= pressed
         size = np.abs(change)
         largest, rounded = float(size.max()), self.rounded + float(size.sum()) / max(float(pressure.sum()), 1e-300)
-        if largest == 0.0 or (keep and rounded > ROUNDED):
+        if largest == 0.0 or (keep and rounded > SMALL):
             return self.displace(sites, pressure)
         self.drifted = False
         moved = self.displacement(self.spread(sites, (change / largest).astype(np.float32)))
