@@ -68,6 +68,9 @@ class AdhesiveContact(CoupledContact):
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
+    UNMOVED_NM = (
+        1e-4  # by new pressures: what displaces no site by more displaces only the known ones until the next step
+    )
     MIXED_PULL = 1e-3  # of the largest attraction: sites below are not mixed, energies of smaller steps not compared
 
     def __init__(
@@ -262,7 +265,7 @@ class AdhesiveContact(CoupledContact):
         """Find the stresses; each step of the iteration is a round of hardness, too, until the clusters keep theirs.
 
         The displacement follows from the pressures before and the attraction at hand. What the new pressures add is
-        known at the known sites; elsewhere a transform adds it while the attraction still changes much.
+        known at the known sites; elsewhere a transform adds it unless it is small.
         """
         law, strongest = self.adhesion, self.strongest
         changes = (self.CHANGE * strongest, self.MIXED_PULL * strongest)
@@ -270,22 +273,21 @@ class AdhesiveContact(CoupledContact):
         moved, before = self.now.moved, self._moved_by_pressure()
         mixed, reached = np.empty(0, int), np.zeros(self.heights.size, np.float32)
         steps: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=self.MIXED)
-        lowest, settled, some, many, rounds = math.inf, False, 0, 1, 1
+        lowest, settled, some, many, rounds = math.inf, False, 0, 0, 1
         for _ in range(self.STEPS):
             pressure, sites = self.pressure.copy(), self.sites
             shift = moved.copy()
             shift[sites] -= before
             self.now = self.now._replace(pull=wanted, shift=shift)
             settled = super()._solve()
-            pressed = self.pressure.copy()
-            pressed[self.place[sites]] -= pressure
-            before = self.displacement.copy()
-            if self.sites.size > sites.size:  # more sites can touch: once more, with what moves them
+            if self.sites is not sites:  # more can touch: once more, with what moves them
                 moved = self._bent(np.negative(wanted, dtype=np.float32), self.pressure)
+                before = self.displacement.copy()
                 continue
-            if many and pressed.any():
-                moved += self._bent(np.zeros(moved.size, np.float32), pressed)
-            moved[self.sites] = shift[self.sites] + before
+            if np.abs(self.displacement - before).max(initial=0.0) > self.UNMOVED_NM:
+                moved += self._bent(np.zeros(moved.size, np.float32), self.pressure - pressure)
+            before = self.displacement.copy()
+            moved[sites] = shift[sites] + before
             energy, total, some, many = 0.5 * float(self.pressure @ moved[self.sites]), 0.0, 0, 0
             if law is not None:
                 walls = (law.least, law.offset, law.rate, law.reach_nm)
