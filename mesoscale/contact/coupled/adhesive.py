@@ -103,6 +103,7 @@ class AdhesiveContact(CoupledContact):
         nothing = np.zeros(self.heights.size, np.float32)
         self.now = self.last = Pulled(math.inf, nothing, nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.saved = (self.now, self.last)
+        self.highest_shift = 0.0  # of the surface by its attraction, nm
         self.undone: Pulled | None = None  # the state of the last step back, where nothing touched
 
     @property
@@ -256,7 +257,7 @@ class AdhesiveContact(CoupledContact):
         return super()._open_gap() + self.now.shift[self.sites]
 
     def _highest(self, force: float) -> float:
-        return super()._highest(force) - float(self.now.shift.min())
+        return super()._highest(force) + self.highest_shift
 
     def _solve(self, coarser: float = 1.0) -> bool:
         return self._solve_rounds()[1]
@@ -278,7 +279,7 @@ class AdhesiveContact(CoupledContact):
             pressure, sites = self.pressure.copy(), self.sites
             shift = moved.copy()
             shift[sites] -= before
-            self.now = self.now._replace(pull=wanted, shift=shift)
+            self.now, self.highest_shift = self.now._replace(pull=wanted, shift=shift), -float(shift.min())
             settled = super()._solve()
             if self.sites is not sites:  # more can touch: once more, with what moves them
                 moved = self._bent(np.negative(wanted, dtype=np.float32), self.pressure)
