@@ -116,10 +116,10 @@ def spread(around, pressure, coarse):
 def gather(around, coarse, pairs, pressure, moved):
     """Displacements of sites from those of the coarse sites around them, and from the pairs of near sites."""
     rows, cols, nodes, weights = around
-    first, others, values, own = pairs
+    first, others, values, itself = pairs
     for k in range(moved.size):
         here = pressure[k]
-        total = own * here
+        total = itself * here
         for i in range(4):
             for j in range(4):
                 total += coarse[nodes[rows[k], i], nodes[cols[k], j]] * weights[rows[k], i] * weights[cols[k], j]
