@@ -71,18 +71,23 @@ def _pressed(
     """The row of a point on cells, or on 64 of the surfaces of a number."""
     started = process_time()
     inputs, settings = point.contact_of(contact)
-    if isinstance(cells, int):
-        pad_cells = point.device.pad_um2 * 1e6 / settings.length_nm**2
-        cells = sample_cells(inputs, OTHER_CELLS, surfaces_of(cells), pad_cells)
-    release = release_V(point, inputs, settings, cells)
+    pad_cells = point.device.pad_um2 * 1e6 / settings.length_nm**2
+    classes = sample_cells(inputs, OTHER_CELLS, surfaces_of(cells if isinstance(cells, int) else OTHERS), pad_cells)
+    cells = classes if isinstance(cells, int) else cells
+    release = release_V(point, inputs, settings, cells, classes)
     return _row(scene, kind, number, len(cells), release, np.nan, process_time() - started)
 
 
-def release_V(point: Point, inputs: ContactInputs, settings: ContactSettings, cells: Sequence[Cell]) -> float:
-    """Release on the mean curves of cells; NaN where they cannot carry the switch."""
+def release_V(
+    point: Point, inputs: ContactInputs, settings: ContactSettings, cells: Sequence[Cell], pilots: Sequence[Cell]
+) -> float:
+    """Release on the mean curves of cells; NaN where they cannot carry the switch.
+
+    Pilots tell how far they are closed: of cells drawn alike, the first have hardly a rough place.
+    """
     device = pressing(point.device)
     try:
-        grid = plan_grid(inputs, settings, cells, pressure_to_compute(device), presser(device))
+        grid = plan_grid(inputs, settings, pilots, pressure_to_compute(device), presser(device))
         pad, flats = press_cells(inputs, settings, grid, cells), flats_of(inputs, settings)
         closing, opening = pad.mean(pad.closing)[:, ::-1], pad.mean(pad.opening)[::-1, :, ::-1]
         law = PadLaw(grid.separation_nm[::-1], closing, grid.depth_nm[::-1], opening, flats)
