@@ -16,7 +16,6 @@ from mesoscale.topography.measurements import files_in
 from workflow.files.checksums import CLOCK_S
 from workflow.scene.accepted import accepted_values, field_at, model_at
 from workflow.scene.definition import Scene
-from workflow.scene.former_keys import FORMER_KEYS
 
 SCENES = ROOT / "config" / "scenes"
 SHOWN = 60  # characters of a value or key in a message
@@ -186,8 +185,6 @@ def _explain(path: Path, error: Any) -> str:
     """One line for one pydantic error."""
     location = tuple(part for part in error["loc"] if part != "__root__")
     key = ".".join(_cut(str(part)) for part in location)
-    if (former := ".".join(part for part in map(str, error["loc"]) if not part.isdigit())) in FORMER_KEYS:
-        return f"{path}: {key}: {FORMER_KEYS[former]}"
     if error["type"] == "extra_forbidden":
         owner = model_at(location[:-1])
         known = list(owner.model_fields) if owner else []
