@@ -216,7 +216,7 @@ def plan_grid(
 
     Raises
     ------
-    InputError : the pilot cells never reach the pressure.
+    InputError : the pilot cells never reach the pressure, or their asperities merge before.
     """
     step_nm = step_nm or min(PAD.step_rms * inputs.rms, PAD.longest_step_nm)
     every = -(-len(cells) // PILOTS)
@@ -270,8 +270,14 @@ def _close_pilots(
     way, load, wanted = [], [], 0.0
     for step in range(PAD.most_pilot_steps):
         way.append(start_nm - step_nm * step)
-        load.append(max(pilots.close_to(way[-1], attraction=pressed_GPa is not None), load[-1] if load else 0.0))
+        repulsion, largest = pilots.close_to(way[-1], attraction=pressed_GPa is not None), load[-1] if load else 0.0
+        load.append(max(repulsion, largest))
         wanted = float(wanted_GPa(np.array(way[-1:]))[0])
+        if largest > PAD.merged * wanted and repulsion < (1.0 - PAD.merged) * largest:
+            raise InputError(
+                f"contact.mechanics: cells that carry {largest * 1e3:.3g} MPa carry {repulsion * 1e3:.3g} closed to "
+                f"{way[-1]:.3g} nm, where asperities merge that are counted one by one; take mechanics: coupled"
+            )
         if load[-1] >= wanted:
             if pressed_GPa is None:
                 return np.array(way), np.array(load)

@@ -24,6 +24,8 @@ class PadNumerics:
     bridged : separations at which liquid bridges sites that do not touch.
     light : part of the largest load from which the pad is opened at least; a flat electrode presses with 0.3 to 0.4 of
         it.
+    merged : share of what is wanted from which on repulsion must not fall by this share: by chance it falls by 15 % at
+        most, where asperities of smooth films merge by 30 to 50 %.
     most_pilot_steps : of the cells that find the range of separations.
     margin : over what the switch presses with: the mean of the few pilot cells is off by 15 %.
     pilot_step : pilot cells are closed in coarser steps than the pad: where the grid ends need not be known to better
@@ -54,6 +56,7 @@ class PadNumerics:
     far_points: int = 24
     bridged: int = 20
     light: float = 0.02
+    merged: float = 0.25
     most_pilot_steps: int = 4000
     margin: float = 1.25
     pilot_step: float = 5.0

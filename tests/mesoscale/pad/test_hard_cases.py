@@ -7,6 +7,7 @@ import pytest
 
 from mesoscale.contact import ContactInputs
 from mesoscale.contact.coupled import dense
+from mesoscale.errors import InputError
 from mesoscale.inputs.contact import FilmInputs
 from mesoscale.pad.cells import Cell, PadGrid, close_cells, plan_grid, sample_cells
 from mesoscale.pad.curves import press_cells
@@ -91,3 +92,16 @@ def test_soft_cells_are_solved_with_the_blocks_of_their_own_sites(monkeypatch):
     plan_grid(inputs, contact, sample_cells(inputs, 64, 5_000_017_001_000, 6e4), lambda nm: np.full_like(nm, 0.04))
     assert sizes
     assert all(len(of) == 1 for of in sizes)
+
+
+def test_a_smooth_film_whose_asperities_merge_needs_coupled_mechanics():
+    inputs = replace(MIDDLE, q0=0.018, rms=2.2)
+    cells = sample_cells(inputs, 4)
+
+    def planned(mechanics):
+        contact = ContactSettings.model_validate({"mechanics": mechanics, "pixels": 64})
+        return plan_grid(inputs, contact, cells, lambda separation: np.full_like(separation, 0.2))
+
+    with pytest.raises(InputError, match=r"asperities merge .*; take mechanics: coupled"):
+        planned("asperity")
+    assert planned("coupled").depths.size > 0
