@@ -275,8 +275,8 @@ def _close_pilots(
         wanted = float(wanted_GPa(np.array(way[-1:]))[0])
         if largest > PAD.merged * wanted and repulsion < (1.0 - PAD.merged) * largest:
             raise InputError(
-                f"contact.mechanics: cells that carry {largest * 1e3:.3g} MPa carry {repulsion * 1e3:.3g} closed to "
-                f"{way[-1]:.3g} nm, where asperities merge that are counted one by one; take mechanics: coupled"
+                f"contact.mechanics: cells carry {largest * 1e3:.3g} MPa, but {repulsion * 1e3:.3g} MPa closed to "
+                f"{way[-1]:.2g} nm, as asperities merge that count one by one; take mechanics: coupled"
             )
         if load[-1] >= wanted:
             if pressed_GPa is None:

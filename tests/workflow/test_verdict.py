@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from workflow.report.first import release_bar
+from workflow.report.first import _unsolved, release_bar
 from workflow.report.gates import _attraction, trust
 from workflow.report.page import Gate
 from workflow.report.verdict import CELLS, verdict
@@ -163,3 +163,10 @@ def test_the_bar_has_the_zone_of_sticking_apart_from_the_axis_of_volts():
     assert " 2%" in bar
     assert 'class="other"' in bar
     assert 'class="interval"' not in release_bar(said({**_pad(), "answer": None}))
+
+
+def test_switches_without_answer_are_named_with_the_reason_of_the_first():
+    assert _unsolved({"points": 126, "refused": []}) == ""
+    words = _unsolved({"points": 126, "refused": ["asperities merge", "another"]})
+    assert words.startswith("2 of 128 switches have no answer.")
+    assert words.endswith("The reason of the first: asperities merge.")

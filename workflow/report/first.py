@@ -23,6 +23,7 @@ class First:
     bar: str
     causes: list[tuple[str, list[tuple[str, int]]]]
     known: str
+    unsolved: str
     other_law: str
 
 
@@ -43,7 +44,8 @@ def first_screen(results: Results, gates: Any) -> First | None:
     named = bool(said.causes)
     causes = [(head, _largest(answer, kind)) for kind, head in KINDS.items()] if named else []
     bands = {kind: answer["known"][f"{kind}_V"] for kind in BANDS} if named else {}
-    return First(said, _device(results), release_bar(said, bands), causes, _known(answer) if named else "", other)
+    known = _known(answer) if named else ""
+    return First(said, _device(results), release_bar(said, bands), causes, known, _unsolved(answer), other)
 
 
 def _largest(answer: dict[str, Any], kind: str) -> list[tuple[str, int]]:
@@ -61,6 +63,16 @@ def _known(answer: dict[str, Any]) -> str:
         f"Not known: where the typical device lets go, {typical[0]} to {typical[1]} V. From device to device: "
         f"{device[0]} to {device[1]} V, all else known. With 95 % confidence, less than {_rate(most['value'], answer)} "
         f"of one batch stick. The error of this limit allows up to {_rate(most['high'], answer)}."
+    )
+
+
+def _unsolved(answer: dict[str, Any]) -> str:
+    """That some switches have no answer, which are no random part of them; the reason of the first."""
+    if not (refused := answer.get("refused")):
+        return ""
+    return (
+        f"{len(refused)} of {answer['points'] + len(refused)} switches have no answer. They are left out, and may be "
+        f"those that stick. The reason of the first: {refused[0]}."
     )
 
 
