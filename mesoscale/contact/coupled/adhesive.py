@@ -68,9 +68,7 @@ class AdhesiveContact(CoupledContact):
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
-    UNMOVED_NM = (
-        1e-4  # by new pressures: what displaces no site by more displaces only the known ones until the next step
-    )
+    UNMOVED_NM = 1e-4  # new pressures that displace no site by more displace only the known ones until the next step
     MIXED_PULL = 1e-3  # of the largest attraction: sites below are not mixed, energies of smaller steps not compared
 
     def __init__(
