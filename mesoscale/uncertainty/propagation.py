@@ -13,7 +13,7 @@ from mesoscale.settings import UncertaintySettings
 from mesoscale.settings.definitions import BY_NAME
 from mesoscale.uncertainty.collocation import level1_response
 from mesoscale.uncertainty.designs import SAMPLE_SEED
-from mesoscale.uncertainty.surrogate import Below, Response, Surrogate, evaluate, to_json, with_scatter
+from mesoscale.uncertainty.surrogate import Below, Response, Surrogate, evaluate, to_json
 
 Array = NDArray[np.float64]
 Direct = tuple[Array, Array]
@@ -38,18 +38,6 @@ class NodeOutputs:
     def paper_outputs(self) -> Array:
         """The outputs of Table 2: closing, and opening minus closing; same shape."""
         return to_paper_outputs(self.values)
-
-    @property
-    def over_seeds(self) -> Array:
-        """Mean over the seeds that have an output at all nodes, shape (nodes, len(FITTED)); NaN where none has."""
-        complete = np.isfinite(self.values).all(axis=1)
-        return np.stack(
-            [
-                self.values[has, :, k].mean(axis=0) if has.any() else np.full(self.values.shape[1], np.nan)
-                for k, has in enumerate(np.asarray(complete).T)
-            ],
-            axis=1,
-        )
 
 
 def to_paper_outputs(parameters: Array) -> Array:
@@ -119,7 +107,6 @@ class Propagation:
     ----------
     samples : samples of the inputs, shape (m, n).
     outputs : closing and opening parameters of every sample through the exported responses, shape (m, len(FITTED)).
-    cells : the same of single cells, with the scatter from one surface to the next; NaN without direct runs.
     responses : one per entry of FITTED; None where too few direct runs determine it.
     by_seed : mean and deviation of the outputs of Table 2 of every seed's own response, shape (seeds, 2, len(OUTPUTS)).
     variances : var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses, shape (2,
@@ -128,7 +115,6 @@ class Propagation:
 
     samples: Array
     outputs: Array
-    cells: Array
     responses: list[Response | None]
     by_seed: Array
     variances: Array
@@ -163,9 +149,7 @@ def propagate(nodes: NodeOutputs, table: InputTable, settings: UncertaintySettin
         between = np.maximum(mean.var(axis=0) - within / used, 0)
         variances = np.where(used > 1, np.stack([between, within]), np.nan)
     responses = exported_responses(direct, ranges, settings)
-    outputs = evaluate(responses, samples)
-    cells = with_scatter(outputs, responses, direct, SAMPLE_SEED)
-    return Propagation(samples, outputs, cells, responses, by_seed, variances)
+    return Propagation(samples, evaluate(responses, samples), responses, by_seed, variances)
 
 
 def linear_outputs(values: Array, ranges: Array, x: Array) -> Array:
@@ -181,16 +165,17 @@ def linear_outputs(values: Array, ranges: Array, x: Array) -> Array:
 def output_rows(
     nodes: NodeOutputs,
     result: Propagation,
+    direct: Direct,
     paper: Mapping[str, tuple[float, float]],
     paper_exchanged: Mapping[str, tuple[float, float]],
 ) -> list[dict[str, Any]]:
     """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of seeds.
 
     mean and dev are the paper's method; response_* are those of the exported responses, averaged over random
-    surfaces; cell_* those of single cells.
+    surfaces; cell_* those of the direct runs, each a cell of its own.
     """
     y = nodes.paper_outputs
-    propagated, cells = to_paper_outputs(result.outputs), to_paper_outputs(result.cells)
+    propagated, cells = to_paper_outputs(result.outputs), to_paper_outputs(direct[1])
     rows = []
     for k, output in enumerate(LAW_OUTPUTS):
         complete = np.isfinite(result.by_seed[:, 0, k])
@@ -204,7 +189,8 @@ def output_rows(
             for name, (value, scatter), theirs in zip(("mean", "dev"), (mean, dev), known, strict=True):
                 row[f"paper_{name}{label}"] = theirs
                 row[f"{name}_difference_in_seed_sd{label}"] = (value - theirs) / scatter if scatter else np.nan
-        for name, values in (("response", propagated[:, k]), ("cell", cells[:, k])):
+        single = cells[np.isfinite(cells[:, k]), k]
+        for name, values in (("response", propagated[:, k]), ("cell", single if single.size else np.array([np.nan]))):
             row[f"{name}_dev"] = values.std()
             quantiles = np.quantile(values, [0.05, 0.5, 0.95])
             row |= {f"{name}_{q}": value for q, value in zip(("q05", "q50", "q95"), quantiles, strict=True)}

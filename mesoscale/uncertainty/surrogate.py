@@ -1,4 +1,4 @@
-"""Responses in Legendre polynomials: their values, those of single cells, and plain JSON."""
+"""Responses in Legendre polynomials: their values, and plain JSON."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -126,42 +126,3 @@ def to_json(response: Response) -> dict[str, Any]:
             for degrees, coefficient in zip(surrogate.degrees.tolist(), surrogate.coefficients.tolist(), strict=True)
         ],
     }
-
-
-def with_scatter(outputs: Array, responses: Sequence[Response | None], direct: tuple[Array, Array], seed: int) -> Array:
-    """Outputs of single cells: those of the responses times residuals drawn from direct runs.
-
-    Residuals of all outputs of a run are drawn together, which keeps their dependence. They are ratios where a
-    response is positive throughout (all lengths scale with RMS), else differences.
-
-    Parameters
-    ----------
-    outputs : closing and opening parameters by the responses, shape (m, k).
-    direct : inputs (r, n) and closing and opening parameters (r, k) of the direct runs that the responses were fitted
-        to; residuals are widened by the terms' number.
-
-    Returns
-    -------
-    shape (m, k); NaN without response or with fewer than 20 complete runs.
-    """
-    x, y = direct
-    predicted = evaluate(responses, x)
-    has_response = np.array([response is not None for response in responses])
-    complete = np.isfinite(y[:, has_response]).all(axis=1)
-    cells = np.full_like(outputs, np.nan)
-    runs = int(complete.sum())
-    if runs < 20:
-        return cells
-    picks = np.random.default_rng(np.random.SeedSequence([seed, 0x5C])).integers(runs, size=len(outputs))
-    for k, response in enumerate(responses):
-        if response is None:
-            continue
-        widening = float(np.sqrt(runs / max(runs - len(response.degrees), 1)))  # residuals of a fit are too small
-        truth, smooth = y[complete, k], predicted[complete, k]
-        if (smooth > 0).all() and (outputs[:, k] > 0).all():
-            ratio = truth / smooth
-            cells[:, k] = outputs[:, k] * (ratio.mean() + widening * (ratio - ratio.mean()))[picks]
-        else:
-            difference = truth - smooth
-            cells[:, k] = outputs[:, k] + (difference.mean() + widening * (difference - difference.mean()))[picks]
-    return cells

@@ -1,7 +1,6 @@
 """Responses against direct cycles: bias of mean and deviation, errors, Q², and what makes an output doubtful."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
@@ -16,23 +15,13 @@ from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.doubts import against_physics, explained
 from mesoscale.uncertainty.propagation import (
     Direct,
-    NodeOutputs,
     Propagation,
     exported_responses,
-    linear_outputs,
     to_paper_outputs,
 )
 from mesoscale.uncertainty.surrogate import evaluate
 
 Array = NDArray[np.float64]
-
-STATISTICS: dict[str, Callable[..., Any]] = {
-    "mean": np.mean,
-    "dev": partial(np.std, ddof=1),
-    "q05": partial(np.quantile, q=0.05),
-    "q50": partial(np.quantile, q=0.5),
-    "q95": partial(np.quantile, q=0.95),
-}
 
 
 def direct_runs_of_rows(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> Direct:
@@ -60,7 +49,6 @@ def held_out_predictions(direct: Direct, ranges: Array, settings: UncertaintySet
 
 def validation_rows(
     direct: Direct,
-    nodes: NodeOutputs,
     table: InputTable,
     result: Propagation,
     settings: UncertaintySettings,
@@ -77,19 +65,12 @@ def validation_rows(
 
     Notes
     -----
-    `*_direct` are the truth up to sampling, with bootstrap intervals (5 to 95 %) over the direct runs;
-    `*_linear` the paper's method; `*_response` the exported response with the scatter of single cells. Every
-    direct run has its own surface, so `q2` (1 - mean squared error / variance of the runs) includes the scatter
+    Every direct run has its own surface, so `q2` (1 - mean squared error / variance of the runs) includes the scatter
     between surfaces and cannot reach 1; `explained` leaves that part out.
     """
-    outputs = direct[1]
-    ranges = table.ranges()
-    cells = np.where(np.isfinite(result.cells), result.cells, result.outputs)
-    predicted = to_paper_outputs(held_out_predictions(direct, ranges, settings))
+    truth, predicted = map(to_paper_outputs, (direct[1], held_out_predictions(direct, table.ranges(), settings)))
     repeated = to_paper_outputs(again)
     physics = against_physics(result.responses, table, most_GPa)
-    linear = to_paper_outputs(linear_outputs(nodes.over_seeds, ranges, direct[0]))
-    truth, samples = to_paper_outputs(outputs), to_paper_outputs(cells)
     rng = np.random.default_rng(np.random.SeedSequence([SAMPLE_SEED, 0xB1]))
     rows = []
     for k, output in enumerate(LAW_OUTPUTS):
@@ -104,23 +85,13 @@ def validation_rows(
         rows.append(row)
         if len(y) < 3:
             continue
-        moments = result.by_seed[:, :, k]
-        known = np.isfinite(moments).any(axis=0).all()  # the mean of nothing would warn
-        row["mean_linear"], row["dev_linear"] = np.nanmean(moments, axis=0) if known else (np.nan, np.nan)
         picks = rng.integers(len(y), size=(RESAMPLES, len(y)))
-        resampled = y[picks]
-        for name, statistic in STATISTICS.items():
-            row[f"{name}_direct"] = statistic(y, axis=0)
-            draws = statistic(resampled, axis=1)
-            row[f"{name}_direct_low"], row[f"{name}_direct_high"] = np.quantile(draws, [0.05, 0.95])
-            row[f"{name}_response"] = statistic(samples[:, k], axis=0)
         errors = predicted[usable, k] - y
         variance = y.var()
         row["rmse"], row["bias"] = np.sqrt((errors**2).mean()), errors.mean()
         if variance > 0:
             row["q2"] = 1 - (errors**2).mean() / variance
-            row["q2_linear"] = 1 - ((linear[usable, k] - y) ** 2).mean() / variance
-            spread = np.maximum(resampled.var(axis=1), 1e-12 * variance)
+            spread = np.maximum(y[picks].var(axis=1), 1e-12 * variance)
             low, high = np.quantile(1 - (errors[picks] ** 2).mean(axis=1) / spread, [0.05, 0.95])
             row["q2_low"], row["q2_high"] = low, high
         paired = np.isfinite(repeated[:, k]) & usable[: len(repeated)] & np.isfinite(predicted[: len(repeated), k])

@@ -18,14 +18,13 @@ def _fitted(empty: bool, status: bool) -> tuple[Column, ...]:
     return tuple(columns)
 
 
-def _in_unit(name: str, meaning: str, ends: str = "", empty: bool = False) -> tuple[Column, ...]:
-    """A number in the output's unit, with the ends of its interval if there is one."""
-    return _with_ends(number(name, "`unit`", meaning, empty), ends)
+def _in_unit(name: str, meaning: str, empty: bool = False) -> Column:
+    """A number in the output's unit."""
+    return number(name, "`unit`", meaning, empty)
 
 
 def _with_ends(column: Column, ends: str) -> tuple[Column, ...]:
-    if not ends:
-        return (column,)
+    """A number with the ends of its interval."""
     low = number(f"{column.name}_low", column.unit, f"lower end of its {ends}", column.empty)
     return column, low, number(f"{column.name}_high", column.unit, f"upper end of its {ends}", column.empty)
 
@@ -39,28 +38,25 @@ _OUTPUTS = Table(
     (
         _OUTPUT,
         _UNIT,
-        *_in_unit("mean", "mean by the paper's method, averaged over seeds"),
-        *_in_unit("dev", "standard deviation by the paper's method, averaged over seeds"),
-        *_in_unit("mean_seed_sd", "standard deviation of the mean over seeds"),
-        *_in_unit("dev_seed_sd", "standard deviation of the deviation over seeds"),
-        *_in_unit("paper_mean", "the paper's mean"),
-        *_in_unit("paper_dev", "the paper's deviation"),
+        _in_unit("mean", "mean by the paper's method, averaged over seeds"),
+        _in_unit("dev", "standard deviation by the paper's method, averaged over seeds"),
+        _in_unit("mean_seed_sd", "standard deviation of the mean over seeds"),
+        _in_unit("dev_seed_sd", "standard deviation of the deviation over seeds"),
+        _in_unit("paper_mean", "the paper's mean"),
+        _in_unit("paper_dev", "the paper's deviation"),
         number("mean_difference_in_seed_sd", "1", "mean minus the paper's, over mean_seed_sd"),
         number("dev_difference_in_seed_sd", "1", "deviation minus the paper's, over dev_seed_sd"),
-        *_in_unit("paper_mean_exchanged", "the paper's mean with the labels of δC_a and δC_r exchanged"),
-        *_in_unit("paper_dev_exchanged", "the paper's deviation with these labels exchanged"),
+        _in_unit("paper_mean_exchanged", "the paper's mean with the labels of δC_a and δC_r exchanged"),
+        _in_unit("paper_dev_exchanged", "the paper's deviation with these labels exchanged"),
         number("mean_difference_in_seed_sd_exchanged", "1", "mean minus the paper's exchanged one"),
         number("dev_difference_in_seed_sd_exchanged", "1", "deviation minus the paper's exchanged one"),
-        *_in_unit("centre", "at the central inputs, averaged over seeds"),
-        *_in_unit("centre_seed_sd", "its standard deviation over seeds"),
-        *_in_unit("response_mean", "mean of the exported response, averaged over random surfaces"),
-        *_in_unit("response_dev", "standard deviation of the exported response"),
-        *(
-            number(f"response_{name}", "`unit`", f"{words} of the exported response")
-            for name, words in _QUANTILES.items()
-        ),
-        *_in_unit("cell_dev", "standard deviation of single cells"),
-        *(number(f"cell_{name}", "`unit`", f"{words} of single cells") for name, words in _QUANTILES.items()),
+        _in_unit("centre", "at the central inputs, averaged over seeds"),
+        _in_unit("centre_seed_sd", "its standard deviation over seeds"),
+        _in_unit("response_mean", "mean of the exported response, averaged over random surfaces"),
+        _in_unit("response_dev", "standard deviation of the exported response"),
+        *(_in_unit(f"response_{name}", f"{words} of the exported response") for name, words in _QUANTILES.items()),
+        _in_unit("cell_dev", "standard deviation of the direct runs, each a cell of its own"),
+        *(_in_unit(f"cell_{name}", f"{words} of the direct runs") for name, words in _QUANTILES.items()),
         number("seed_share", "1", "share of the variance that comes from the random surface"),
         integer("seeds_used", "seeds with all nodes"),
         integer("seeds", "seeds computed"),
@@ -77,20 +73,9 @@ _VALIDATION = Table(
         _UNIT,
         integer("runs", "direct runs"),
         _MISSING,
-        *(
-            column
-            for name, words in {"mean": "mean", "dev": "standard deviation", **_QUANTILES}.items()
-            for column in (
-                *_in_unit(f"{name}_direct", f"{words} of the direct runs", "90 % bootstrap interval", True),
-                *_in_unit(f"{name}_response", f"{words} of the response with the scatter of single cells", "", True),
-            )
-        ),
-        *_in_unit("mean_linear", "mean by the paper's method", empty=True),
-        *_in_unit("dev_linear", "standard deviation by the paper's method", empty=True),
-        *_in_unit("rmse", "root mean square error of held-out predictions", empty=True),
-        *_in_unit("bias", "mean error of held-out predictions", empty=True),
+        _in_unit("rmse", "root mean square error of held-out predictions", empty=True),
+        _in_unit("bias", "mean error of held-out predictions", empty=True),
         *_with_ends(number("q2", "1", "1 - rmse² / variance of the direct runs", True), "90 % bootstrap interval"),
-        number("q2_linear", "1", "the same of the paper's linear response", empty=True),
         number("surface_share", "1", "share of the variance between surfaces at equal inputs", empty=True),
         number("explained", "1", "share of the rest that the response explains of runs left out", empty=True),
         text("doubt", "why the output is not to be trusted; empty where it is", empty=True),
@@ -104,10 +89,10 @@ _SENSITIVITY = Table(
         _OUTPUT,
         _INPUT,
         _UNIT,
-        *_in_unit("mu_star", "elementary effect by the paper's method, averaged over seeds"),
-        *_in_unit("mu_star_seed_sd", "its standard deviation over seeds"),
-        *_in_unit("paper_mu_star", "the paper's, with the labels of C_a and C_r exchanged"),
-        *_in_unit("paper_mu_star_as_printed", "the paper's, as printed"),
+        _in_unit("mu_star", "elementary effect by the paper's method, averaged over seeds"),
+        _in_unit("mu_star_seed_sd", "its standard deviation over seeds"),
+        _in_unit("paper_mu_star", "the paper's, with the labels of C_a and C_r exchanged"),
+        _in_unit("paper_mu_star_as_printed", "the paper's, as printed"),
         number("difference_in_seed_sd", "1", "mu_star minus the paper's, over mu_star_seed_sd"),
         number("difference_in_seed_sd_as_printed", "1", "the same for the paper's as printed"),
         *_with_ends(number("sobol_first", "1", "first-order Sobol' index of the response"), "90 % interval"),

@@ -31,7 +31,7 @@ with job(snakemake) as run:
     )
 
     result = propagate(nodes, table, settings, direct)
-    outputs = output_rows(nodes, result, paper, table2(paper_rows, exchanged=True))
+    outputs = output_rows(nodes, result, direct, paper, table2(paper_rows, exchanged=True))
     write_csv(snakemake.output.outputs, outputs)
     most_GPa = snakemake.params.max_force_nN / snakemake.params.length_nm**2  # 1 GPa nm^2 = 1 nN
     constants = {"rho_a_nm": Law.rho_a_nm, "alpha_nm": Law.shield_nm, "most_GPa": most_GPa}
@@ -43,7 +43,7 @@ with job(snakemake) as run:
 
     repeated = (row for path in snakemake.input.again for row in load_csv(path))
     again = direct_runs_of_rows(repeated, table.names, settings.direct_runs)[1]
-    write_csv(snakemake.output.validation, validation_rows(direct, nodes, table, result, settings, again, most_GPa))
+    write_csv(snakemake.output.validation, validation_rows(direct, table, result, settings, again, most_GPa))
 
     run.progress(0.5, "validated; ranks the inputs")
     seeds_shares = np.array([row["seed_share"] for row in outputs], dtype=float)  # None is not a number
