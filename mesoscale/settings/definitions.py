@@ -13,7 +13,7 @@ class InputDefinition:
     ----------
     name : key in the settings and in result files.
     label : in words.
-    symbol : as the report and the exported responses show it.
+    symbol : as the report shows it.
     unit : unit of its values; 1 where there is none.
     low : smallest value that is accepted.
     high : largest value that is accepted.

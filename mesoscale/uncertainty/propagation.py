@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.parameters import CLOSING, FITTED, LAW, LAW_OUTPUTS, OPENING, OUTPUTS, PARAMETERS
 from mesoscale.settings import UncertaintySettings
-from mesoscale.settings.definitions import BY_NAME
 from mesoscale.uncertainty.collocation import level1_response
 from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.surrogate import Below, Response, Surrogate, evaluate, to_json
@@ -212,18 +211,11 @@ def _center_and_scatter(values: Array) -> tuple[float, float]:
     return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else np.nan
 
 
-def surrogate_json(
-    result: Propagation,
-    nodes: NodeOutputs,
-    table: InputTable,
-    law: Mapping[str, float],
-    paper: Mapping[str, tuple[float, float]],
-) -> dict[str, Any]:
+def surrogate_json(result: Propagation, table: InputTable, law: Mapping[str, float]) -> dict[str, Any]:
     """Content of uq/surrogate.json: usable without this code (docs/uncertainty.md)."""
     inputs = [
         {
             "name": row.name,
-            "symbol": BY_NAME[row.name].symbol if row.name in BY_NAME else row.name,
             "unit": row.unit,
             "distribution": row.distribution.kind,
             "a": row.distribution.a,
@@ -233,25 +225,15 @@ def surrogate_json(
         }
         for row, (low, high) in zip(table.rows, table.ranges().tolist(), strict=True)
     ]
-    outputs = []
-    for k, name in enumerate(FITTED):
-        response, parameter = result.responses[k], LAW[k % len(LAW)]
-        if response is None:
-            continue
-        outputs.append(
-            {
-                "name": name,
-                "unit": parameter.unit,
-                **to_json(response),
-                "paper_mean": paper.get(parameter.short, (np.nan,))[0] if k < len(LAW) else np.nan,
-            }
-        )
+    outputs = [
+        {"name": name, "unit": parameter.unit, **to_json(response)}
+        for name, parameter, response in zip(FITTED, (*LAW, *LAW), result.responses, strict=True)
+        if response is not None
+    ]
     return {
         "about": "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x - low) / "
         "(high - low) - 1; valid for low <= x <= high; the mean over random surfaces"
         + ("; with `below`: the output of that name less this" if any("below" in output for output in outputs) else ""),
-        "method": "regression",
-        "seeds": len(nodes.seeds),
         "inputs": inputs,
         "law": dict(law),
         "outputs": outputs,

@@ -175,7 +175,6 @@ def _uncertainty(root: Path) -> None:
         for name, (unit, kind, a, b, _) in INPUTS.items()
     ]
     content = {
-        "method": "regression",
         "inputs": inputs,
         "outputs": responses,
         "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0, "most_GPa": 0.007},

@@ -62,12 +62,6 @@ class Results:
         return load_h5(self.root / name)
 
     @property
-    def response(self) -> str:
-        """Name of the method behind the samples of the law."""
-        method = self.json("uq/surrogate.json")["method"] if self.has("uq/surrogate.json") else ""
-        return f"response ({method}; mean over random surfaces)" if method else "response"
-
-    @property
     def contact(self) -> dict[str, Any]:
         """The contact settings that the curves were made with; without curves those that are at hand."""
         if self.has("curves/nominal.h5"):

@@ -163,7 +163,7 @@ def test_surrogate_json_reproduces_the_propagated_values():
     table = uniform_table()
     given = linear_nodes(table, [1, 2, 3])
     result = propagate(given, table, SETTINGS, linear_runs(table, [1, 2, 3]))
-    content = surrogate_json(result, given, table, {"rho_a_nm": 2.0, "alpha_nm": 2.0}, {})
+    content = surrogate_json(result, table, {"rho_a_nm": 2.0, "alpha_nm": 2.0})
     assert [o["name"] for o in content["outputs"]][:2] == ["closing_d_c_nm", "closing_C_a_GPa_nm"]
     for k, output in enumerate(content["outputs"]):
         assert from_json(content)[output["name"]](result.samples[:5]) == pytest.approx(result.outputs[:5, k])
@@ -333,7 +333,7 @@ def test_opening_never_starts_above_closing():
     ordered = free.model_copy(update={"opening_contact": "below_closing"})
     changes, result = change(ordered, np.concatenate([corners, inside]))
     assert (changes < 0).all()
-    content = surrogate_json(result, given, table, {}, {})
+    content = surrogate_json(result, table, {})
     again = from_json(content)["opening_d_c_nm"]
     assert again(corners) == pytest.approx(result.responses[4](corners), rel=1e-12)
     assert "below" in content["outputs"][4]

@@ -22,8 +22,9 @@ def describe(results: Results) -> Iterator[Block]:
     """The law's band, and Table 2."""
     paper = results.beside_paper
     yield (
-        f"The distributions of the inputs sent through the {results.response}. Grey rows are not to be trusted: see "
-        "responses, below." + " Beside it the paper's method, a plane through 2n + 1 runs of each surface, and its "
+        "The distributions of the inputs sent through the response (regression; mean over random surfaces). Grey rows "
+        "are not to be trusted: see responses, below."
+        + " Beside it the paper's method, a plane through 2n + 1 runs of each surface, and its "
         "Table 2." * paper
     )
     if results.has("uq/law.csv", "uq/surrogate.json"):
