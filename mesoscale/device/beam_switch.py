@@ -44,7 +44,6 @@ class BeamStates:
     ----------
     pull_in_V, hold_V, release_V : voltages; release 0 where it sticks.
     landed_share : share of the contact part in contact while held.
-    landed_at_release : share in contact just before it lets go (at 0 V where it sticks).
     capacitance_fF : while held, of the bent beam as a plate over the pad, place by place.
     """
 
@@ -52,7 +51,6 @@ class BeamStates:
     hold_V: float
     release_V: float
     landed_share: float
-    landed_at_release: float
     capacitance_fF: float
 
 
@@ -82,8 +80,7 @@ def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw) -> BeamStates:
             "hold_voltage_V or dimple_nm, or lower stopper_nm, gap_um, bow_nm or tilt_nm"
         )
     capacitance = moving.capacitance_F()
-    release, at_release = moving.open(hold)
-    return BeamStates(pull_in, hold, release, share, at_release, capacitance * 1e15)
+    return BeamStates(pull_in, hold, moving.open(hold), share, capacitance * 1e15)
 
 
 def free_pull_in_V(settings: DeviceSettings, elements: int = 64) -> float:
@@ -310,8 +307,8 @@ class _Moving:
             raise InputError(f"device: the beam finds no balance at {voltage:.4g} V; this is a fault of the solver")
         return ended == SETTLED
 
-    def open(self, hold_V: float) -> tuple[float, float]:
-        """Lower the voltage until the beam lets go; the release voltage (0: stuck) and the share landed before.
+    def open(self, hold_V: float) -> float:
+        """Lower the voltage until the beam lets go; the release voltage (0: stuck).
 
         The voltage is halved in the longer steps of closing until it opens. These may tear off a little more than they
         should, so the way from the last voltage but one is gone again in short steps.
@@ -327,14 +324,14 @@ class _Moving:
             closed.append((voltage, self.nodal.copy(), self.deepest.copy()))
         high, *held = closed[-2:][0]
         self.nodal, self.deepest = (state.copy() for state in held)
-        share, low = self.landed_share(), None
+        low = None
         while low is None or high - low > SWITCH.release_tolerance * high:
             voltage = lower(high) if low is None else 0.5 * (low + high)
             if self.creep(voltage, OPENING_NM):
-                high, share, held = voltage, self.landed_share(), [self.nodal.copy(), self.deepest.copy()]
+                high, held = voltage, [self.nodal.copy(), self.deepest.copy()]
                 if voltage == 0.0:
-                    return 0.0, share
+                    return 0.0
             else:
                 low = voltage
                 self.nodal, self.deepest = (state.copy() for state in held)
-        return high, share
+        return high

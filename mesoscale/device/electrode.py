@@ -27,21 +27,11 @@ def solve_electrode(settings: DeviceSettings, law: PadLaw, elements: int = SWITC
     """
     if settings.bends:
         beam = solve_beam(settings, law, elements)
-        return {
-            "pull_in_V": beam.pull_in_V,
-            "release_V": beam.release_V,
-            "capacitance_fF": beam.capacitance_fF,
-            "landed_share": beam.landed_share,
-        }
+        return {"pull_in_V": beam.pull_in_V, "release_V": beam.release_V, "capacitance_fF": beam.capacitance_fF}
     switch = plate_from_settings(settings)
     plate = solve_on_pad(switch, law, settings.hold_voltage_V)
     capacitance = float(switch.capacitance_F(np.array(plate.hold_nm))) * 1e15
-    return {
-        "pull_in_V": plate.pull_in_V,
-        "release_V": plate.release_V,
-        "capacitance_fF": capacitance,
-        "landed_share": 1.0,
-    }
+    return {"pull_in_V": plate.pull_in_V, "release_V": plate.release_V, "capacitance_fF": capacitance}
 
 
 def solve_deepened(settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.elements) -> dict[str, float]:

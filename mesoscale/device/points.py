@@ -173,7 +173,7 @@ class Solved:
     Attributes
     ----------
     pad : None where it cannot be pressed.
-    states : pull_in_V, release_V (0: it sticks), capacitance_fF, landed_share, deepened; empty where it has no answer.
+    states : pull_in_V, release_V (0: it sticks), capacitance_fF, deepened; empty where it has no answer.
     halves_V : release on either half of the cells; NaN where it cannot carry the switch.
     refused : why it has no answer; empty where it has one.
     """

@@ -14,7 +14,6 @@ from mesoscale.device.by_key import release_by_key
 from mesoscale.device.electrode import release_or_nan_V
 from mesoscale.device.known import ENDS, fit_additive, known
 from mesoscale.device.numerics import SWITCH
-from mesoscale.device.plate import NM, plate_from_settings
 from mesoscale.device.points import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.pad.adhesion import adhesion_of
@@ -22,18 +21,8 @@ from mesoscale.pad.memory import attracting
 
 Array = NDArray[np.float64]
 
-QUANTILES = (0.05, 0.16, 0.25, 0.5, 0.75, 0.84, 0.95)
 WORKS = (1.0 / 3.0, 1.0, 3.0)
 """Both laws of attraction differ by a factor of 3 in their work at touch (docs/contact.md); no statistics decides."""
-
-
-@dataclass(frozen=True)
-class Cause:
-    """A part of the variance of the release: what is common to all devices, what is of each, or the number of cells."""
-
-    cause: str
-    share_of_variance: float
-    deviation_V: float
 
 
 @dataclass(frozen=True)
@@ -52,10 +41,11 @@ class Answer:
 
     Attributes
     ----------
-    release_V : 0 where it sticks; this and the others as `describe` gives them.
+    release_V : 0 where it sticks; this, pull-in and capacitance as `describe` gives them.
     quantile_error_V : standard errors of the 5, 50 and 95 % quantiles of the release, by the number of points.
     stuck : share that sticks, with its interval.
-    causes, sensitivity : by cause, and by what varies, the largest first.
+    causes : share of the variance by what is common to all devices, what is of each, and the number of cells.
+    sensitivity : by what varies, the largest first.
     points, refused : number of solved switches, and why the others are none.
     deepened : of the solved, those that press harder than their pads were computed.
     cells : of all pads together.
@@ -67,11 +57,10 @@ class Answer:
 
     release_V: dict[str, Any]
     quantile_error_V: dict[str, float]
-    stuck: dict[str, float | int]
+    stuck: dict[str, float]
     pull_in_V: dict[str, Any]
     capacitance_fF: dict[str, Any]
-    landed_share: dict[str, Any]
-    causes: tuple[Cause, ...]
+    causes: dict[str, float]
     sensitivity: tuple[Sensitivity, ...]
     points: int
     refused: tuple[str, ...]
@@ -108,8 +97,7 @@ def answer(model: PadModel) -> Answer:
         _probability(int(stuck.sum()), stuck.size, len(refused)),
         describe(model.states("pull_in_V")),
         describe(model.states("capacitance_fF")),
-        describe(model.states("landed_share")),
-        tuple(Cause(cause, share, float(np.sqrt(share) * release.std())) for cause, share in by_cause.items()),
+        by_cause,
         tuple(
             sorted(
                 (Sensitivity(*row, 1.0 - float(np.sqrt(max(1.0 - row[2], 0.0)))) for row in rows),
@@ -127,33 +115,21 @@ def answer(model: PadModel) -> Answer:
     )
 
 
-def describe(values: np.ndarray) -> dict[str, Any]:
-    """Mean, deviation and quantiles of the finite values."""
-    values = np.asarray(values, dtype=float)
-    finite = values[np.isfinite(values)]
-    if finite.size == 0:
-        return {"samples": 0, "mean": None, "std": None, "quantiles": {}}
-    quantiles = np.quantile(finite, QUANTILES)
+def describe(values: Array) -> dict[str, Any]:
+    """Deviation and quantiles."""
+    quantiles = np.quantile(values, ENDS)
     return {
-        "samples": int(finite.size),
-        "mean": float(finite.mean()),
-        "std": float(finite.std(ddof=1)) if finite.size > 1 else 0.0,
-        "quantiles": {f"{q:g}": float(value) for q, value in zip(QUANTILES, quantiles, strict=True)},
+        "std": float(values.std(ddof=1)) if values.size > 1 else 0.0,
+        "quantiles": {f"{q:g}": float(value) for q, value in zip(ENDS, quantiles, strict=True)},
     }
 
 
-def probability(count: int, total: int) -> dict[str, float | int]:
+def probability(count: int, total: int) -> dict[str, float]:
     """Share of `count` in `total` with its 95 % Wilson interval, which stays sensible at 0 and 1."""
     from scipy.stats import binomtest  # slow to import
 
     ends = binomtest(count, total).proportion_ci(0.95, method="wilson")
-    return {
-        "value": count / total,
-        "low": float(ends.low),
-        "high": float(ends.high),
-        "count": int(count),
-        "samples": int(total),
-    }
+    return {"value": count / total, "low": float(ends.low), "high": float(ends.high)}
 
 
 def _quantile_errors(release: Array) -> dict[str, float]:
@@ -164,18 +140,18 @@ def _quantile_errors(release: Array) -> dict[str, float]:
     return {f"{end:g}": float(error) for end, error in zip(ENDS, errors, strict=True)}
 
 
-def _probability(stuck: int, solved: int, refused: int) -> dict[str, float | int]:
+def _probability(stuck: int, solved: int, refused: int) -> dict[str, float]:
     """Share that sticks; the interval is that of all points, with those refused once as released and once as stuck."""
     total = solved + refused
     least, most = probability(stuck, total), probability(stuck + refused, total)
-    return {**probability(stuck, solved), "low": least["low"], "high": most["high"]}
+    return {"value": stuck / solved, "low": least["low"], "high": most["high"]}
 
 
 def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
     """Content of device/pad_switch.json; without points there is no answer."""
     central = model.central
     settings = central.point.device
-    switch, cells = plate_from_settings(settings), central.pad.cells if central.pad else None
+    cells = central.pad.cells if central.pad else None
     said, status = None, "the scene asks for no points (pad.points: 0)"
     if model.points:
         try:
@@ -186,8 +162,6 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         "electrode": "bending" if settings.bends else "flat",
         "cells_computed": cells.count if cells else 0,
         "cells_of_pad": settings.pad_um2 * 1e6 / cell_area_nm2,
-        "unsettled_cells": int((~cells.settled).sum()) if cells else 0,
-        "spring_pressure_kPa": switch.spring_N_per_m * switch.gap_nm * NM / switch.area_m2 * 1e-3,
         "central": {**central.states, "error_V": central.error_V} if central.states else None,
         "by_attraction": [{"times": times, "release_V": _release_V(central, times)} for times in WORKS],
         "adhesion": [asdict(opened) for opened in adhesion_of(central.pad.law)] if central.pad else [],

@@ -16,7 +16,7 @@ def test_the_switch_at_central_inputs_has_a_page(tmp_path):
     contact = ContactSettings(mechanics="coupled", attraction="offset")
     points = ScenePoints(TABLE, contact, DeviceSettings(), 2)
     pad = Pad(cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165))
-    states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "landed_share": 0.5, "deepened": 0.0}
+    states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "deepened": 0.0}
     central = PadModel(Solved(points.by_number[0], pad, states, (5.9, 6.1)), points.design, ())
     root = tmp_path / "results/mine"
     write_csv(root / "inputs.csv", to_rows(TABLE))

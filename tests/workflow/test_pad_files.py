@@ -13,7 +13,7 @@ def test_a_model_comes_back_from_its_file_and_from_its_parts(tmp_path):
     """With a point that could not be pressed, and one of whose halves one carries no switch."""
     points = ScenePoints(TABLE, ContactSettings(mechanics="asperity"), DeviceSettings(), 2)
     pad = Pad(cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165))
-    states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "landed_share": 0.5, "deepened": 0.0}
+    states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "deepened": 0.0}
     solved = {
         0: Solved(points.by_number[0], pad, states, (5.9, 6.1)),
         1: Solved(points.by_number[1], None, {}, (np.nan, np.nan), "the cells never reach the pressure"),

@@ -158,7 +158,7 @@ def test_the_pad_says_what_its_answer_is_made_of(made_up):
     answer = {
         **dict.fromkeys(("release_V", "pull_in_V", "capacitance_fF"), spread),
         "quantile_error_V": {"0.05": 0.3, "0.5": 0.1, "0.95": 0.2},
-        "causes": [{"cause": "cells", "share_of_variance": 0.3, "deviation_V": 0.3}],
+        "causes": {"cells": 0.3},
         "sensitivity": [{"name": "rms", "varies": "common", "share_of_variance": 0.7, "interval_shrinks_by": 0.4}],
         **{"points": 64, "refused": ["too soft"], "deepened": 0, "cells_error_V": 0.3, "explained": 0.9},
     }

@@ -129,9 +129,8 @@ def in_words(name: str) -> str:
 
 def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]:
     """Shares of the variance by cause, and why none is named."""
-    cells = next(row for row in answer["causes"] if row["cause"] == "cells")
-    rows = [*((in_words(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"])]
-    rows = [(name, share) for name, share in [*rows, (CELLS, cells["share_of_variance"])] if share > 0]
+    rows = [(in_words(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"]]
+    rows = [(name, share) for name, share in [*rows, (CELLS, answer["causes"]["cells"])] if share > 0]
     if not rows:
         return (), f"all {answer['points']} computed combinations of what is uncertain do the same"
     explained = answer["explained"]
@@ -156,8 +155,7 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
             else "No better measurement would free it; a stiffer or shorter beam might."
         )
     rows = answer["sensitivity"]
-    cells = next(row["share_of_variance"] for row in answer["causes"] if row["cause"] == "cells")
-    if not rows or cells > rows[0]["share_of_variance"]:
+    if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."
     if no_cause:
         return "Compute more switches next (pad.points)." if answer["explained"] <= 0 else ""

@@ -25,7 +25,7 @@ from workflow.files.results import Dataset, load_csv, load_h5, load_json, write_
 from workflow.run.contact_settings import contact_settings
 from workflow.run.job import settings_from_job
 
-STATES = ("pull_in_V", "release_V", "capacitance_fF", "landed_share", "deepened")
+STATES = ("pull_in_V", "release_V", "capacitance_fF", "deepened")
 CURVES = {
     "separation_nm": ("nm", "separation, falling", ("separation",)),
     "depth": ("1", "position in separation_nm from which the pad is opened", ("depth",)),

@@ -143,7 +143,7 @@ def test_a_point_that_cannot_be_pressed_leaves_its_reason(monkeypatch):
 def test_the_answer_keeps_its_causes_apart(known):
     """A plate on known pads: inputs make the spread, the cells hardly any of it."""
     said = answer(model_of(PLATE, 96, cells=32))
-    shares = {row.cause: row.share_of_variance for row in said.causes}
+    shares = said.causes
     assert shares["cells"] < 0.01
     assert shares["common"] > 5.0 * shares["each"] > 0.0
     assert shares["common"] + shares["each"] == pytest.approx(1.0, abs=0.15)

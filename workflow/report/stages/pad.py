@@ -67,7 +67,7 @@ def _answer(answer: dict[str, Any]) -> Iterator[Block]:
             spread(errors, "0.5", "0.05", "0.95", digits=2),
         ),
         ("error of one of them by the number of its cells (V)", show(answer["cells_error_V"], 2)),
-        *((f"share of {CAUSES[row['cause']]}", f"{row['share_of_variance']:.1%}") for row in answer["causes"]),
+        *((f"share of {CAUSES[cause]}", f"{share:.1%}") for cause, share in answer["causes"].items()),
     ]
     yield PageTable("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows)
     if no_cause := causes_of(answer)[1]:
