@@ -6,7 +6,7 @@ H / (1 + c ln(1 + t/t0)): the hardness of eq. 4 falls with the time under load, 
 sinks until it carries its force again. Closing and opening are fast: they meet the full hardness.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -52,7 +52,6 @@ def follow(
     contact: ContactSettings,
     settings: HistorySettings,
     seed: int,
-    progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[HeldCycle]:
     """Close and open one surface again and again; each cycle starts from the surface that the last one left.
 
@@ -76,8 +75,6 @@ def follow(
         )
         heights = cycle.heights
         yield HeldCycle(number, cycle, times[: len(hold.rows)], hold.rows, hold.missed)
-        if progress is not None:
-            progress(number / settings.cycles, f"cycle {number}")
 
 
 def check(contact: ContactSettings, settings: HistorySettings) -> None:

@@ -1,6 +1,6 @@
 """How hard a switch presses its pad, and so how far the pad is computed.  Imports nothing heavy: rules read it."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,26 +10,8 @@ from mesoscale.device.plate import GPA, NM, VACUUM_PERMITTIVITY, plate_from_sett
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.device import SPREAD, SpreadSettings
 
+Array = NDArray[np.float64]
 EXACT = SpreadSettings(**dict.fromkeys(SPREAD))
-
-
-@dataclass(frozen=True)
-class LargestPressure:
-    """Least pressure to which the pad of a switch is computed at a separation.
-
-    Attributes
-    ----------
-    voltage_V : with which the switch is held.
-    dielectric_nm : thickness of the dielectric over its permittivity.
-    """
-
-    voltage_V: float
-    dielectric_nm: float
-
-    def __call__(self, separation_nm: NDArray[np.float64]) -> NDArray[np.float64]:
-        """In GPa, of the shape of the separations."""
-        electric = np.maximum(separation_nm + self.dielectric_nm, 0.5 * self.dielectric_nm + 1.0) * NM
-        return SWITCH.edge * VACUUM_PERMITTIVITY * self.voltage_V**2 / (2.0 * electric**2) / GPA
 
 
 def pressing(settings: DeviceSettings) -> DeviceSettings:
@@ -37,14 +19,20 @@ def pressing(settings: DeviceSettings) -> DeviceSettings:
     return settings.model_copy(update={"tilt_nm": 0.0, "spread": EXACT})
 
 
-def pressure_to_compute(settings: DeviceSettings) -> LargestPressure:
-    """Least pressure to which the pad of a switch is computed.
+def pressure_to_compute(settings: DeviceSettings) -> Callable[[Array], Array]:
+    """Least pressure (GPa) to which the pad of a switch is computed, as a function of the separations (nm).
 
     Raises
     ------
     InputError : see `held_V`.
     """
-    return LargestPressure(held_V(settings), plate_from_settings(settings).dielectric_nm)
+    voltage_V, dielectric_nm = held_V(settings), plate_from_settings(settings).dielectric_nm
+
+    def least_GPa(separation_nm: Array) -> Array:
+        electric = np.maximum(separation_nm + dielectric_nm, 0.5 * dielectric_nm + 1.0) * NM
+        return SWITCH.edge * VACUUM_PERMITTIVITY * voltage_V**2 / (2.0 * electric**2) / GPA
+
+    return least_GPa
 
 
 def held_V(settings: DeviceSettings) -> float:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mesoscale.contact import Cycle
 from mesoscale.errors import InputError
 from mesoscale.law.compact import Law
-from mesoscale.law.fit import LawFit, contact_separation, fit_branch, row_of
+from mesoscale.law.fit import LawFit, fit_branch, row_of
 from mesoscale.law.parameters import PARAMETERS
 
 Array = NDArray[np.float64]
@@ -29,12 +29,6 @@ class Outcome:
     opening: LawFit
     status: str = "ok"
 
-    @property
-    def outputs(self) -> Array:
-        """The outputs in the order of OUTPUTS; NaN where a fit is missing."""
-        closing, opening = self.closing.parameters, self.opening.parameters
-        return np.concatenate([closing, opening - closing])
-
 
 NO_FIT = LawFit(np.nan, np.nan, np.nan, np.nan, status="no_curve")
 
@@ -42,7 +36,7 @@ NO_FIT = LawFit(np.nan, np.nan, np.nan, np.nan, status="no_curve")
 def fit_cycle(cycle: Cycle) -> Outcome:
     """The law fitted to both branches of a cycle."""
     fits = [
-        fit_curve(
+        fit_branch(
             branch.separation_nm,
             branch.repulsive_nN,
             branch.attractive_nN,
@@ -73,19 +67,6 @@ def laws_of(cycle: Cycle) -> tuple[Law, Law]:
     return closing, opening
 
 
-def fit_curve(
-    separation_nm: Array,
-    repulsive_nN: Array,
-    attractive_nN: Array,
-    cell_area_nm2: float,
-    hamaker: float,
-    touch_nm: float | None,
-) -> LawFit:
-    """The law fitted to one branch; d_c is the exact separation of first (last) contact where it is known."""
-    d_c = contact_separation(separation_nm, repulsive_nN, touch_nm)
-    return fit_branch(separation_nm, repulsive_nN, attractive_nN, cell_area_nm2, hamaker, d_c)
-
-
 def stored_rows(
     curves: Mapping[str, Mapping[str, Array]], name: str, attributes: Mapping[str, Any], cell_area_nm2: float
 ) -> Iterator[dict[str, Any]]:
@@ -101,5 +82,5 @@ def stored_rows(
         if curve := curves.get(f"{name}/{branch}"):
             forces = curve["repulsive_nN"], curve["attractive_nN"]
             hamaker, touched = float(attributes["hamaker"]), attributes.get(touch)
-            fit = fit_curve(curve["separation_nm"], *forces, cell_area_nm2, hamaker, touched)
+            fit = fit_branch(curve["separation_nm"], *forces, cell_area_nm2, hamaker, touched)
         yield {"branch": branch, **row_of(fit), "curve_status": attributes.get("status", "")}

@@ -111,7 +111,7 @@ def fit_branch(
     separation_nm, repulsive_nN, attractive_nN : the branch, shape (n,), any order; attraction negative.
     cell_area_nm2 : area of the cell.
     hamaker : Hamaker constant (1e-18 J).
-    d_c_nm : separation at contact; None takes it from the curve (`contact_separation`).
+    d_c_nm : exact separation at contact, where it is known; else it is taken from the curve (`contact_separation`).
 
     Returns
     -------
@@ -132,8 +132,7 @@ def fit_branch(
     order = np.argsort(h, kind="stable")
     h, repulsive, attractive = h[order], repulsive[order] / cell_area_nm2, attractive[order] / cell_area_nm2
 
-    if d_c_nm is None:
-        d_c_nm = contact_separation(h, repulsive)
+    d_c_nm = contact_separation(h, repulsive, d_c_nm)
     if not np.isfinite(d_c_nm) or repulsive.max(initial=0.0) <= 0:
         return LawFit(np.nan, np.nan, np.nan, np.nan, status="no_contact")
     inside = (h < d_c_nm) & (repulsive > 0)

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 SCALE_TABLE_2 = {"C_a": 1e-5, "C_r": 1e-4, "delta_C_a": 1e-5, "delta_C_r": 1e-4}
 SCALE_TABLE_3 = {"C_a": 1e-5, "C_r": 1e-5, "delta_C_a": 1e-5, "delta_C_r": 1e-4}
 """Units of the columns as printed; Table 3 prints 1e-5 over delta_C_r, but only 1e-4 fits Table 2."""
-EXCHANGED = {"C_a": "C_r", "C_r": "C_a", "delta_C_a": "delta_C_r", "delta_C_r": "delta_C_a"}
+EXCHANGED = {"C_a": "C_r", "C_r": "C_a"}
 
 
 def table2(rows: Iterable[Mapping[str, str]], exchanged: bool = False) -> dict[str, tuple[float, float]]:
@@ -24,13 +24,10 @@ def table2(rows: Iterable[Mapping[str, str]], exchanged: bool = False) -> dict[s
     return values
 
 
-def table3(
-    rows: Iterable[Mapping[str, str]], as_printed: bool = False, exchange_changes: bool = False
-) -> dict[str, dict[str, float]]:
+def table3(rows: Iterable[Mapping[str, str]], as_printed: bool = False) -> dict[str, dict[str, float]]:
     """mu* by output and input of config/paper/table3.csv (its row of units is skipped).
 
     By default the closing labels C_a and C_r are exchanged, as argued above; `as_printed` keeps them.
-    `exchange_changes` also exchanges those of delta_C_a and delta_C_r.
     """
     values: dict[str, dict[str, float]] = {}
     for row in rows:
@@ -39,8 +36,6 @@ def table3(
         for column, text in row.items():
             if column == "parameter":
                 continue
-            output = column if as_printed or column.startswith("delta") else EXCHANGED.get(column, column)
-            if exchange_changes and column.startswith("delta"):
-                output = EXCHANGED.get(column, column)
+            output = column if as_printed else EXCHANGED.get(column, column)
             values.setdefault(output, {})[row["parameter"]] = float(text) * SCALE_TABLE_3.get(column, 1.0)
     return values

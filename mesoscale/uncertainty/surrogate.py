@@ -61,26 +61,10 @@ class Surrogate:
     coefficients: Array
     transform: str = "identity"
 
-    def __call__(self, x: "Array | SharedBasis") -> Array:
+    def __call__(self, x: Array) -> Array:
         """Output at inputs x of shape (m, n)."""
-        points = x if isinstance(x, SharedBasis) else SharedBasis(np.atleast_2d(x))
-        total = points.basis(self) @ self.coefficients
+        total = basis_matrix(scaled(np.atleast_2d(x), self.ranges), self.degrees) @ self.coefficients
         return np.exp(total) if self.transform == "log" else total
-
-
-class SharedBasis:
-    """Inputs at which several responses are wanted: those with the same terms share their basis."""
-
-    def __init__(self, x: Array):
-        self.x = x
-        self._bases: dict[tuple[bytes, bytes], Array] = {}
-
-    def basis(self, response: Surrogate) -> Array:
-        """Terms of a response at the points, shape (m, terms)."""
-        key = response.ranges.tobytes(), response.degrees.tobytes()
-        if key not in self._bases:
-            self._bases[key] = basis_matrix(scaled(self.x, response.ranges), response.degrees)
-        return self._bases[key]
 
 
 @dataclass(frozen=True)
@@ -101,7 +85,7 @@ class Below:
         """Degrees of the drop's terms, shape (terms, n)."""
         return self.drop.degrees
 
-    def __call__(self, x: Array | SharedBasis) -> Array:
+    def __call__(self, x: Array) -> Array:
         """Output at inputs x of shape (m, n)."""
         return self.above(x) - self.drop(x)
 
@@ -109,10 +93,9 @@ class Below:
 Response = Surrogate | Below
 
 
-def evaluate(responses: Sequence[Callable[[SharedBasis], Array] | None], x: Array) -> Array:
+def evaluate(responses: Sequence[Callable[[Array], Array] | None], x: Array) -> Array:
     """Responses at inputs x (m, n), shape (m, responses); NaN where there is no response."""
-    points = SharedBasis(x)
-    return np.stack([response(points) if response else np.full(len(x), np.nan) for response in responses], axis=1)
+    return np.stack([response(x) if response else np.full(len(x), np.nan) for response in responses], axis=1)
 
 
 def to_json(response: Response) -> dict[str, Any]:

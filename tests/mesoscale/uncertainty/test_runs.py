@@ -37,10 +37,10 @@ def test_random_runs_can_be_cut_anywhere():
     assert all(2 <= run.values["rms"] <= 15 for run in whole)
 
 
-def test_a_cycle_gives_eight_outputs():
+def test_a_cycle_gives_four_numbers_a_branch():
     cycle = computed(CENTRE, 0)
     outcome = fit_cycle(cycle)
-    assert outcome.outputs.shape == (8,)
+    assert outcome.closing.parameters.shape == outcome.opening.parameters.shape == (4,)
     assert outcome.closing.d_c_nm == pytest.approx(cycle.first_contact_nm)
     # a smooth closing: contact a few rms from the mean plane
     assert 2 < outcome.closing.d_c_nm / CENTRE["rms"] < 6
