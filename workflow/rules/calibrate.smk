@@ -92,10 +92,8 @@ rule calibrate:
     resources:
         mem_mb=CONTACT_MB,
     params:
+        **ON_PADS,
         settings=settings("measurements"),
-        contact=settings("contact"),
-        device=settings("device"),
-        pad=settings("pad"),
     message:
         "sample the posterior of the inputs"
     script:

@@ -53,8 +53,6 @@ except InputError as error:
 OXIDES = oxide_glasses(MATERIALS.values())  # by formula
 SHOWN = []  # files of the stages that the scene uses, of which the page is made
 KEPT = []  # what jobs of these stages leave besides; a lost one is made again
-ACCURACY = []  # result files of the error-against-run-time studies, filled by the stages' rules
-STABILITY = []  # result files of the stability studies
 
 
 def settings(section):

@@ -11,9 +11,7 @@ rule failure:
     log:
         f"{RESULTS}/logs/failure.log",
     params:
-        contact=settings("contact"),
-        device=settings("device"),
-        pad=settings("pad"),
+        **ON_PADS,
         failure=settings("failure"),
     message:
         "find how often the switch fails"
@@ -33,9 +31,7 @@ rule circuit:
     log:
         f"{RESULTS}/logs/circuit.log",
     params:
-        contact=settings("contact"),
-        device=settings("device"),
-        pad=settings("pad"),
+        **ON_PADS,
     message:
         "make the switch for circuit simulators"
     script:

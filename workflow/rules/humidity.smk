@@ -19,9 +19,7 @@ rule humidity:
     resources:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:
-        contact=settings("contact"),
-        device=settings("device"),
-        pad=settings("pad"),
+        **ON_PADS,
     message:
         "press pads and solve the switch from dry to humid air"
     script:

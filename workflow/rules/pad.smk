@@ -8,8 +8,9 @@ POINT_CHUNKS = {"central": (0, 1)} | {
 }
 
 
-# what jobs that use the pad read
+# what jobs that use the pad read, and the settings that they have
 PRESSED = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv", "model": f"{RESULTS}/pad/model.h5"}
+ON_PADS = {section: settings(section) for section in ("contact", "device", "pad")}
 
 
 rule press_pads:
@@ -25,9 +26,7 @@ rule press_pads:
     resources:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:
-        contact=settings("contact"),
-        device=settings("device"),
-        pad=settings("pad"),
+        **ON_PADS,
         bounds=lambda wildcards: POINT_CHUNKS[wildcards.chunk],
     message:
         f"press pads {{wildcards.chunk}} (central, 000 to {len(POINT_CHUNKS) - 2:03})"
@@ -55,9 +54,7 @@ rule device:
         f"{RESULTS}/logs/device.log",
     priority: 2
     params:
-        contact=settings("contact"),
-        device=settings("device"),
-        pad=settings("pad"),
+        **ON_PADS,
     message:
         "assemble the pad, and say what the switch does"
     script:

@@ -9,17 +9,11 @@ def studies_at_hand():
     return {name: file_checksum(name) for name in (*ACCURACY, *STABILITY) if Path(name).is_file()}
 
 
-def page_parts():
-    """What the page is made of beside results."""
-    room = ROOT / "workflow" / "report"
-    return [str(room / name) for name in ("template.html.j2", "style.css")]
-
-
 rule report:
     """the page, and all that it needs"""
     input:
         SHOWN,
-        style=page_parts(),
+        style=[str(ROOT / "workflow" / "report" / name) for name in ("template.html.j2", "style.css")],
     output:
         page=f"{RESULTS}/report.html",
         record=f"{RESULTS}/scene.yaml",

@@ -5,9 +5,8 @@ STUDIES = {  # what each reads beside settings
     "accuracy/pad": PRESSED,
     "stability/contact": {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"},
 }
-STABILITY.append(f"{RESULTS}/stability/contact.csv")
-if needed("topography"):
-    ACCURACY.append(f"{RESULTS}/accuracy/topography.csv")
+STABILITY = [f"{RESULTS}/stability/contact.csv"]
+ACCURACY = [f"{RESULTS}/accuracy/topography.csv"] if needed("topography") else []
 if "pad" in SCENE.tails:
     ACCURACY.append(f"{RESULTS}/accuracy/pad.csv")
 
@@ -36,7 +35,8 @@ rule study:
     resources:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:
-        **{section: settings(section) for section in ("contact", "device", "pad", "topography")},
+        **ON_PADS,
+        topography=settings("topography"),
     message:
         "study {wildcards.study}"
     script:
