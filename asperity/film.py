@@ -35,7 +35,7 @@ from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.measurements.loading import Measurement, load_measurements, with_limits
 from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import in_order, record
-from mesoscale.topography.summary import doubt_lines, measurement_lines, parameters, scan_rows
+from mesoscale.topography.summary import doubt_lines, measurement_lines, parameters
 
 MaterialInputs = Mapping[str, float | InputRow | Any]
 """Numbers, or distributions as `InputRow`, by the names of a scene's inputs: e_star, h_macro, h_prime, hamaker, …"""
@@ -113,8 +113,7 @@ class Film(Shown):
         # cells that grow to hold a film's long waves have the grid of usual ones, so that they cost no more
         pooled = pool(records, attributes, self.settings, cell_nm=None, cut_off=True, pixels=512)
         self._spectra = pooled.spectra
-        rows = scan_rows(pooled, attributes, None)
-        self.description = parameters(pooled, rows, self.settings, None)
+        self.description = parameters(pooled, attributes, self.settings)
 
     @property
     def maps(self) -> list[Scan]:

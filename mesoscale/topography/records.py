@@ -64,7 +64,6 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
     return arrays, attributes | {
         "length_x_nm": length_x,
         "pixels_x": pixels[0],
-        "raw_rms_nm": data.rms_nm,
         "rms_nm": cleaned.rms_nm,
         "spacing": spectrum.spacing,
         "nyquist": spectrum.nyquist,

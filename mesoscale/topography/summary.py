@@ -1,6 +1,6 @@
 """The content of topography/parameters.json: what is known of the surface, by name."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from mesoscale.settings import TopographySettings
@@ -8,6 +8,7 @@ from mesoscale.topography.description.choice import DESCRIPTIONS
 from mesoscale.topography.description.inputs import trusted_end
 from mesoscale.topography.description.intervals import CONFIDENCE
 from mesoscale.topography.description.likelihood import LikelihoodFit
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.pooling import Pooled
 from mesoscale.topography.records import is_profile
 from mesoscale.topography.roughness_spectrum import hurst_from_slope
@@ -37,39 +38,37 @@ def doubt_lines(content: Mapping[str, Any]) -> Iterator[str]:
         yield f"DOUBT ({doubt['code']}, about {doubt['about']}): {doubt['text']}{remedy}"
 
 
-def scan_rows(
-    pooled: Pooled, attributes: Mapping[str, Mapping[str, Any]], truth: Mapping[str, Any] | None
-) -> list[dict[str, Any]]:
-    """One row per scan: size, RMS from heights, trusted range and what limits it."""
-    rows = []
-    for item in pooled.spectra:
-        loaded = attributes[item.name]
-        line = is_profile(loaded)
-        row = {
-            "name": item.name,
-            "file": loaded["file"],
-            "sha256": loaded["sha256"],
-            "length_nm": loaded["length_x_nm"] if line else min(loaded["length_x_nm"], loaded["length_y_nm"]),
-            "pixels": f"{loaded['pixels_x']}" if line else f"{loaded['pixels_x']} x {loaded['pixels_y']}",
-            "rms_heights_nm": loaded["rms_nm"],
-            "trusted_low": item.low,
-            "trusted_high": item.high,
-            "limit": item.limit,
-            "steps": loaded["steps"],
-            "tip_radius_nm": loaded["tip_radius_nm"],
-        }
-        if line:
-            row["kind"] = "profile"
-        if truth is not None:
-            row["true_rms_nm"] = truth["scans"][item.name]["rms_nm"]
-        rows.append(row)
-    return rows
+def _scan(item: TrustedSpectrum, loaded: Mapping[str, Any]) -> dict[str, Any]:
+    """One measurement: size, RMS from heights, trusted range and what limits it."""
+    line = is_profile(loaded)
+    return {
+        "name": item.name,
+        "file": loaded["file"],
+        "sha256": loaded["sha256"],
+        "length_nm": loaded["length_x_nm"] if line else min(loaded["length_x_nm"], loaded["length_y_nm"]),
+        "pixels": f"{loaded['pixels_x']}" if line else f"{loaded['pixels_x']} x {loaded['pixels_y']}",
+        "rms_heights_nm": loaded["rms_nm"],
+        "trusted_low": item.low,
+        "trusted_high": item.high,
+        "limit": item.limit,
+        "steps": loaded["steps"],
+        "tip_radius_nm": loaded["tip_radius_nm"],
+    }
 
 
 def parameters(
-    pooled: Pooled, rows: Sequence[Mapping[str, Any]], settings: TopographySettings, truth: Mapping[str, Any] | None
+    pooled: Pooled,
+    attributes: Mapping[str, Mapping[str, Any]],
+    settings: TopographySettings,
+    truth: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """Content of topography/parameters.json."""
+    """Content of topography/parameters.json.
+
+    Parameters
+    ----------
+    attributes : of the records, by name.
+    truth : content of topography/truth.json, of synthetic scans.
+    """
     topography, doubts, used = pooled.topography, pooled.doubts, pooled.choice.name
     stopping = [doubt for doubt in doubts if doubt.fatal or doubt in topography.doubts]
     passed = bool(pooled.rows) and (not stopping or settings.on_doubt == "warn")
@@ -90,7 +89,7 @@ def parameters(
         },
         "q1": {"value": topography.q1, "unit": "1/nm", "instrument_limited": topography.q1_limited},
         "likelihood": _likelihood(topography.likelihood, topography.cutoff),
-        "scans": list(rows),
+        "scans": [_scan(item, attributes[item.name]) for item in pooled.spectra],
         "description": {
             "name": used,
             "meaning": DESCRIPTIONS[used],

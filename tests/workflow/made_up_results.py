@@ -348,7 +348,7 @@ def _topography(root: Path) -> None:
         name: {"value": v, "interval": [0.9 * v, 1.1 * v], "scatter": [0.5 * v, 2 * v], "unit": unit}
         for name, v, unit in (("q0", 0.02, "1/nm"), ("slope", 2.9, "1"), ("rms", 3.0, "nm"))
     }
-    scan = {"name": "small_01", "rms_heights_nm": 2.9, "true_rms_nm": 3.0}
+    scan = {"name": "small_01", "rms_heights_nm": 2.9}
     content = {"synthetic": True, "convention": "areal", "estimates": estimates, "truth": truth, "scans": [scan]}
     write_json(root / "topography/parameters.json", {**content, "gate": {"passed": True, "reasons": []}}, PROVENANCE)
 

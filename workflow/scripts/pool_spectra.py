@@ -11,7 +11,7 @@ from mesoscale.topography.curves import CURVES, result_curves
 from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import DATASETS, KEPT, in_order
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
-from mesoscale.topography.summary import parameters, scan_rows
+from mesoscale.topography.summary import parameters
 from workflow.files.results import Dataset, load_h5, load_json, write_h5, write_json
 from workflow.run.job import job, settings_from_job
 
@@ -32,9 +32,6 @@ with job(snakemake) as run:
     given = snakemake.params
     room_nm = given.electrode_nm or math.inf
     pooled = pool(arrays, attributes, settings, given.cell_nm, given.cut_off, room_nm, given.pixels)
-    rows = scan_rows(pooled, attributes, truth)
-    for row in rows:
-        attributes[row["name"]] = {**attributes[row["name"]], **row}
     curves = result_curves(pooled, typical)
     groups = {
         group: {name: Dataset(values, *CURVES[name], ("q",)) for name, values in content.items()}
@@ -49,4 +46,4 @@ with job(snakemake) as run:
         run.provenance,
         {f"scans/{name}": values for name, values in attributes.items()},
     )
-    write_json(snakemake.output.parameters, parameters(pooled, rows, settings, truth), run.provenance)
+    write_json(snakemake.output.parameters, parameters(pooled, attributes, settings, truth), run.provenance)

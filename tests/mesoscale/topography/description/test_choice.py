@@ -16,7 +16,7 @@ from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import record
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
-from mesoscale.topography.summary import parameters, scan_rows
+from mesoscale.topography.summary import parameters
 from mesoscale.topography.synthesis import synthesize_spectrum
 from mesoscale.topography.synthetic_scans import ScanSet, surface_patch, synthetic_scans
 from tests.mesoscale.topography.test_height_synthesis import SKEWED
@@ -30,8 +30,7 @@ def described(scans, settings=SETTINGS, cell_nm=1000.0):
         arrays[scan.name], attributes[scan.name] = record(Measurement(scan, settings.tip_radius_nm, True), settings)
         attributes[scan.name] |= {"file": "a", "sha256": "b"}
     pooled = pool(arrays, attributes, settings, cell_nm)
-    rows = scan_rows(pooled, attributes, None)
-    return pooled, parameters(pooled, rows, settings, None)
+    return pooled, parameters(pooled, attributes, settings)
 
 
 def patches(slope, q0, count=3):
