@@ -21,7 +21,9 @@ from evidence.record import load
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.overlaps import overlaps
 from mesoscale.topography.description.surfaces import several_surfaces
-from mesoscale.topography.description.trusted_range import trusted_scan
+from mesoscale.topography.description.trusted_range import trusted_map
+from mesoscale.topography.measurements.cleaning import clean
+from mesoscale.topography.measurements.loading import with_limits
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
 
 BASE = ScanSet(pixels=256, small_scans=3, large_scans=0)
@@ -67,7 +69,7 @@ def set_row(case: tuple[str, float, int]) -> dict[str, Any]:
     for k, change in enumerate(({}, OTHERS[other])):
         update = {**change, "seed": FIRST_SEED + 2 * number + k, "rms_variation": scatter}
         made = synthetic_scans(BASE.model_copy(update=update))
-        spectra += [trusted_scan(item.scan, settings) for item in made]
+        spectra += [trusted_map(clean(item.scan, settings), with_limits(item.scan, settings)) for item in made]
     spectra = [replace(item, name=f"{k}") for k, item in enumerate(spectra)]
     doubts = several_surfaces(spectra, overlaps(spectra), {})
     text = doubts[0].text if doubts else ""

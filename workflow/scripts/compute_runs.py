@@ -3,7 +3,7 @@
 In: inputs.csv.  Out: curves/runs/chunk_NNN.h5 (groups run_NNNN/closing and run_NNNN/opening; nm, nN, nm^2).
 """
 
-from dataclasses import fields
+from dataclasses import asdict
 
 from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.inputs.table import from_rows
@@ -31,12 +31,9 @@ with job(snakemake) as run:
             "first_contact_nm": cycle.first_contact_nm,
             "last_contact_nm": cycle.last_contact_nm,
         }
-        for branch in ("closing", "opening"):
-            curve = getattr(cycle, branch)
+        for branch, curve in (("closing", cycle.closing), ("opening", cycle.opening)):
             groups[f"{name}/{branch}"] = {
-                field.name: Dataset(getattr(curve, field.name), *BRANCH_COLUMNS[field.name], ("separation_nm",))
-                for field in fields(curve)
-                if field.name in BRANCH_COLUMNS
+                key: Dataset(values, *BRANCH_COLUMNS[key], ("separation_nm",)) for key, values in asdict(curve).items()
             }
     reading = {"cell_area_nm2": contact.length_nm**2, "contact": contact.model_dump(mode="json")}
     write_h5(snakemake.output[0], groups, reading, run.provenance, attributes)

@@ -9,9 +9,8 @@ from typing import Literal
 import numpy as np
 
 from mesoscale.errors import InputError
-from mesoscale.settings import TopographySettings
-from mesoscale.topography.measurements.cleaning import Scan, clean, form_share
-from mesoscale.topography.measurements.loading import Measurement, with_limits
+from mesoscale.topography.measurements.cleaning import Scan, form_share
+from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.profile_conversion import binned_line, isotropic_spectrum, line_spectrum
 from mesoscale.topography.spectrum import Spectrum, hann_spectrum
@@ -158,11 +157,6 @@ def trusted_map(cleaned: Scan, measured: Measurement) -> TrustedSpectrum:
     spectrum, radius, shortest = hann_spectrum(cleaned), measured.tip_radius_nm, measured.shortest_wave_nm
     limits = trusted_range(cleaned.name, spectrum, radius, cleaned.rms_nm, shortest, white)
     return replace(limits, side_nm=float(np.sqrt(np.prod(cleaned.lengths_nm))), form=form_share(cleaned.heights_nm))
-
-
-def trusted_scan(scan: Scan, settings: TopographySettings) -> TrustedSpectrum:
-    """Spectrum and trusted range of a raw scan."""
-    return trusted_map(clean(scan, settings), with_limits(scan, settings))
 
 
 def trusted_range(

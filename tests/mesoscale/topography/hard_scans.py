@@ -9,8 +9,9 @@ import numpy as np
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.parameters import Topography, analyse
-from mesoscale.topography.description.trusted_range import trusted_scan
-from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.description.trusted_range import TrustedSpectrum, trusted_map
+from mesoscale.topography.measurements.cleaning import Scan, clean
+from mesoscale.topography.measurements.loading import with_limits
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.synthetic_scans import ScanSet, surface_patch, synthetic_scans
 
@@ -18,6 +19,11 @@ TRUTH = ScanSet.model_validate(
     {"pixels": 256, "small_scans": 3, "large_scans": 3, "large_length_nm": 4000.0, "rms_variation": 0.0}
 )
 WITHIN = {"q0": 0.25, "slope": 0.25, "rms": 0.1}  # coarse: a few scans of 256 x 256 pixels
+
+
+def trusted_scan(scan: Scan, settings: TopographySettings) -> TrustedSpectrum:
+    """Spectrum and trusted range of a raw scan."""
+    return trusted_map(clean(scan, settings), with_limits(scan, settings))
 
 
 @dataclass(frozen=True)

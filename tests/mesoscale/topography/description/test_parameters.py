@@ -11,11 +11,12 @@ from mesoscale.settings import TopographySettings
 from mesoscale.topography.description import likelihood
 from mesoscale.topography.description.inputs import rms_scatter_row, rows_of
 from mesoscale.topography.description.parameters import MAX_MISFIT, analyse
-from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur, trusted_scan
+from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, mean_square, slope_from_hurst
 from mesoscale.topography.spectrum import Spectrum
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
+from tests.mesoscale.topography.hard_scans import trusted_scan
 
 TRUTH = ScanSet(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
 
