@@ -19,8 +19,8 @@ def describe(results: Results) -> Iterator[Block]:
     points = results.csv("hardness/points.csv")
     fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
     yield (
-        "Molecular dynamics of one asperity pressed against a flat, with full and with halved energies; "
-        "hardness is the contact stress beyond the onset of plastic flow."
+        "Molecular dynamics of one asperity pressed against a flat; hardness is the contact stress beyond the onset of "
+        "plastic flow."
     )
     yield Figure(
         contact_stress(results),
@@ -90,7 +90,7 @@ def contact_stress(results: Results) -> str | None:
                     axis.plot(
                         length[use][then], stress[use][then], "o", color=color, markerfacecolor="none", markersize=6
                     )
-        for label, color, _ in SCALES.values():
+        for label, color, _ in dict.fromkeys(map(_scale, points.values())):
             axis.plot([], [], color=color, label=label)
         axis.plot([], [], "o", color=SOFT, markerfacecolor="none", label="onset of plastic flow")
         axis.plot([], [], "D", color=SOFT, label="hardness of the run")
