@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.stats import rankdata
 
 SYSTEMATIC = {
     "rate": 0.05,  # closing speed in use against rest
@@ -217,6 +216,8 @@ def summary(samples: np.ndarray) -> dict[str, float]:
 
 def spearman(first: np.ndarray, second: np.ndarray) -> float:
     """Rank correlation."""
+    from scipy.stats import rankdata  # slow to import
+
     return float(np.corrcoef(rankdata(first), rankdata(second))[0, 1])
 
 

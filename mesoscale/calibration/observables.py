@@ -6,16 +6,16 @@ one surface to another the steps scatter log-normally; an unknown zero of the in
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.contact import Cycle
-from mesoscale.contact.cycle import Branch
-from mesoscale.settings import ContactSettings
-from mesoscale.uncertainty.designs import Run
-from mesoscale.uncertainty.runs import compute_all
+if TYPE_CHECKING:  # each job of a run reads the names of observables, and these bring all of the contact
+    from mesoscale.contact import Cycle
+    from mesoscale.contact.cycle import Branch
+    from mesoscale.settings import ContactSettings
+    from mesoscale.uncertainty.designs import Run
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def force_levels_nN(max_force_nN: float) -> Array:
     return max_force_nN * np.geomspace(0.02, 0.5, LEVELS)
 
 
-def observe(cycle: Cycle, max_force_nN: float) -> dict[str, float]:
+def observe(cycle: "Cycle", max_force_nN: float) -> dict[str, float]:
     """All observables of a cycle by name; NaN where the cycle does not give one."""
     values = []
     for branch in (cycle.closing, cycle.opening):
@@ -57,7 +57,7 @@ def observe(cycle: Cycle, max_force_nN: float) -> dict[str, float]:
     return dict(zip(NAMES, map(float, values), strict=True))
 
 
-def separations_at(branch: Branch, forces_nN: Array) -> Array:
+def separations_at(branch: "Branch", forces_nN: Array) -> Array:
     """Separations (nm) at which the net force first reaches given ones, coming from afar; NaN where it never does.
 
     Parameters
@@ -102,9 +102,11 @@ class Cycles:
 
 
 def observe_runs(
-    runs: Sequence[Run], contact: ContactSettings, progress: Callable[[float, str], None] | None = None
+    runs: Sequence["Run"], contact: "ContactSettings", progress: Callable[[float, str], None] | None = None
 ) -> list[dict[str, float]]:
     """Compute cycles: one row each with seed, inputs and observables; NaN where a cycle failed."""
+    from mesoscale.uncertainty.runs import compute_all
+
     rows = []
     for run, cycle in compute_all(runs, contact, progress):
         seen = dict.fromkeys(NAMES, np.nan) if isinstance(cycle, str) else observe(cycle, contact.max_force_nN)
