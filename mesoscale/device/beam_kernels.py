@@ -6,8 +6,6 @@ from numba import njit
 from mesoscale.device.plate import GPA, NM
 from mesoscale.pad.local import pad_pressure
 
-BANDS = 3
-"""Half bandwidth of the beam's matrix: two nodes of an element have a deflection and a slope."""
 STOPPER_GPa_nm = 1e-2
 """Stiffness of a stopper: it gives way by a tenth of a nanometre under 1 MPa."""
 CLOSING_NM, OPENING_NM = 1.0, 0.25
@@ -50,56 +48,61 @@ def add_loads(separation_nm, pressure, slope, electric, places):
 
 
 @njit(cache=True)
-def solve_bands(bands, border, corner, right):
-    """Gauss with row exchanges on a matrix of half bandwidth BANDS with one more row and column; in place.
+def determinant(a, b, c, d, e, f, g, h, i):
+    """Of a matrix of three rows."""
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 
-    Entry (i, j) stands in bands[i, j - i + BANDS], of shape (n, 3 BANDS + 1); the last BANDS columns are room for the
-    exchanges. The last column of `right` (n, sides + 1) is the border's column, `border` (n,) its row, `corner` their
-    corner; its right sides are zero. The matrix without its border may be singular: the last two unknowns are found
-    together (W. Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, SIAM 2000, section 3).
+
+@njit(cache=True)
+def solve_beam_matrix(own, next_, right, stretching):
+    """Solve for the nodes of a beam, whose stretching adds `stretching` times a column times itself; in place.
+
+    Nodes are eliminated one after the other, the last one together with the axial force: there the matrix may be
+    singular, as it is where a beam buckles or snaps (W. Govaerts, Numerical Methods for Bifurcations of Dynamical
+    Equilibria, SIAM 2000, section 3). That a part of the beam is singular to the last digits has no reason to happen.
+
+    Parameters
+    ----------
+    own : symmetric blocks of the nodes, shape (nodes, 2, 2); [0, 1] is not read.
+    next_ : blocks of a node (rows) and the next (columns), shape (nodes, 2, 2).
+    right : right sides, of which the last is the column of stretching, shape (nodes, sides + 1, 2).
     """
-    n, sides = len(bands), right.shape[1] - 1
-    below = np.zeros(sides)
-    for k in range(n):
-        end = min(k + BANDS + 1, n)
-        best = k
-        for i in range(k + 1, end):
-            if abs(bands[i, k - i + BANDS]) > abs(bands[best, k - best + BANDS]):
-                best = i
-        if best != k:
-            for j in range(k, min(k + 2 * BANDS + 1, n)):
-                kept = bands[k, j - k + BANDS]
-                bands[k, j - k + BANDS] = bands[best, j - best + BANDS]
-                bands[best, j - best + BANDS] = kept
-            for side in range(sides + 1):
-                kept = right[k, side]
-                right[k, side] = right[best, side]
-                right[best, side] = kept
-        for i in range(k + 1, end):
-            factor = bands[i, k - i + BANDS] / bands[k, BANDS]
-            if factor != 0.0:
-                for j in range(k + 1, min(k + 2 * BANDS + 1, n)):
-                    bands[i, j - i + BANDS] -= factor * bands[k, j - k + BANDS]
-                for side in range(sides + 1):
-                    right[i, side] -= factor * right[k, side]
-        if k < n - 1 and border[k] != 0.0:
-            factor = border[k] / bands[k, BANDS]
-            for j in range(k + 1, min(k + 2 * BANDS + 1, n)):
-                border[j] -= factor * bands[k, j - k + BANDS]
-            corner -= factor * right[k, sides]
-            for side in range(sides):
-                below[side] -= factor * right[k, side]
-    pivot, column, row = bands[n - 1, BANDS], right[n - 1, sides], border[n - 1]
-    determinant = pivot * corner - column * row
+    nodes, sides = len(own), right.shape[1] - 1
+    corner, below = -1.0, np.zeros(sides)
+    solved = np.empty((sides + 1, 2))
+    for k in range(nodes - 1):
+        a, b, d = own[k, 0, 0], own[k, 1, 0], own[k, 1, 1]
+        scale = 1.0 / (a * d - b * b)
+        p, q, r, t = next_[k, 0, 0], next_[k, 0, 1], next_[k, 1, 0], next_[k, 1, 1]
+        # inverse of the node's block times that to the next
+        u, v, w, x = scale * (d * p - b * r), scale * (d * q - b * t), scale * (a * r - b * p), scale * (a * t - b * q)
+        own[k + 1, 0, 0] -= p * u + r * w
+        own[k + 1, 1, 0] -= q * u + t * w
+        own[k + 1, 1, 1] -= q * v + t * x
+        next_[k, 0, 0], next_[k, 0, 1], next_[k, 1, 0], next_[k, 1, 1] = u, v, w, x
+        for side in range(sides + 1):
+            y, z = right[k, side]
+            solved[side, 0], solved[side, 1] = scale * (d * y - b * z), scale * (a * z - b * y)
+            right[k + 1, side, 0] -= u * y + w * z
+            right[k + 1, side, 1] -= v * y + x * z
+        y, z = right[k, sides]
+        corner -= stretching * (y * solved[sides, 0] + z * solved[sides, 1])
+        for side in range(sides):
+            below[side] -= stretching * (y * solved[side, 0] + z * solved[side, 1])
+        right[k] = solved
+    a, b, d = own[-1, 0, 0], own[-1, 1, 0], own[-1, 1, 1]
+    y, z = right[-1, sides]
+    m, n = stretching * y, stretching * z
+    whole = determinant(a, b, y, b, d, z, m, n, corner)
     for side in range(sides):
-        total = right[n - 1, side]
-        right[n - 1, side] = (total * corner - column * below[side]) / determinant
-        force = (pivot * below[side] - row * total) / determinant
-        for k in range(n - 2, -1, -1):
-            total = right[k, side] - right[k, sides] * force
-            for j in range(k + 1, min(k + 2 * BANDS + 1, n)):
-                total -= bands[k, j - k + BANDS] * right[j, side]
-            right[k, side] = total / bands[k, BANDS]
+        f, g, h = right[-1, side, 0], right[-1, side, 1], below[side]
+        right[-1, side, 0] = determinant(f, b, y, g, d, z, h, n, corner) / whole
+        right[-1, side, 1] = determinant(a, f, y, b, g, z, m, h, corner) / whole
+        force = determinant(a, b, f, b, d, g, m, n, h) / whole
+        for k in range(nodes - 2, -1, -1):
+            f, g = right[k + 1, side]
+            right[k, side, 0] -= right[k, sides, 0] * force + next_[k, 0, 0] * f + next_[k, 0, 1] * g
+            right[k, side, 1] -= right[k, sides, 1] * force + next_[k, 1, 0] * f + next_[k, 1, 1] * g
 
 
 @njit(cache=True)
@@ -138,42 +141,44 @@ def newton_step(
     the growth of the axial force is one unknown more.
     """
     elements, points = pressure_Pa.shape
-    bands, right = np.zeros((unknowns, 3 * BANDS + 1)), np.zeros((unknowns, 3))
-    border = np.zeros(unknowns)
+    nodes = unknowns // 2
+    own, next_, right = np.zeros((nodes, 2, 2)), np.zeros((nodes, 2, 2)), np.zeros((nodes, 3, 2))
     more = stretching * elongation(nodal, pulled, rest)
     for e in range(elements):
         for i in range(4):
-            row = 2 * e + i - 2
-            if row < 0 or row >= unknowns:
+            node, turned = e + i // 2 - 1, i % 2
+            if node < 0 or node >= nodes:
                 continue
+            pushed, other = 0.0, 0.0
             for g in range(points):
                 share = weights[e, g] * shape[e, i, g]
-                right[row, 0] += pressure_Pa[e, g] * share
-                right[row, 1] += other_Pa[e, g] * share
+                pushed += pressure_Pa[e, g] * share
+                other += other_Pa[e, g] * share
+            right[node, 1, turned] += other
             for j in range(4):
                 moved, at_rest = nodal[e + j // 2, j % 2], rest[e + j // 2, j % 2]
                 drawn = pulled[e, i, j]
-                right[row, 0] -= bends[e, i, j] * moved + drawn * (tension * moved + more * (moved + at_rest))
-                right[row, 2] += drawn * (moved + at_rest)
-                column = 2 * e + j - 2
-                if j > i or column < 0:
+                pushed -= bends[e, i, j] * moved + drawn * (tension * moved + more * (moved + at_rest))
+                right[node, 2, turned] += drawn * (moved + at_rest)
+                if j > i or e + j // 2 < 1:
                     continue
                 entry = bends[e, i, j] + (tension + more) * drawn
                 for g in range(points):
                     entry += (inertia - slope_Pa_m[e, g]) * coupled[e, i, j, g]
-                bands[row, column - row + BANDS] += entry
-                if j < i:
-                    bands[column, row - column + BANDS] += entry
+                if i // 2 == j // 2:
+                    own[node, turned, j % 2] += entry
+                else:
+                    next_[node - 1, j % 2, turned] += entry
+            right[node, 0, turned] += pushed
     force = right[:, 0].copy()
-    for row in range(unknowns):
-        border[row] = stretching * right[row, 2]
-    solve_bands(bands, border, -1.0, right)
+    solve_beam_matrix(own, next_, right, stretching)
     change, answer, work = np.zeros((elements + 1, 2)), np.zeros((elements + 1, 2)), 0.0
     # in loops: what numba brings for assigning a part of an array takes seconds to compile
-    for row in range(unknowns):
-        change[1 + row // 2, row % 2] = right[row, 0]
-        answer[1 + row // 2, row % 2] = right[row, 1]
-        work += force[row] * right[row, 0]
+    for node in range(nodes):
+        for turned in range(2):
+            change[1 + node, turned] = right[node, 0, turned]
+            answer[1 + node, turned] = right[node, 1, turned]
+            work += force[node, turned] * right[node, 0, turned]
     return change, answer, work
 
 

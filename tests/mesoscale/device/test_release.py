@@ -8,7 +8,7 @@ import pytest
 from evidence.pad.closed_form import ClosedForm
 from evidence.pad.rare_failures import known_pad
 from mesoscale.device import points
-from mesoscale.device.beam_kernels import BANDS, solve_bands
+from mesoscale.device.beam_kernels import solve_beam_matrix
 from mesoscale.device.beam_switch import press_GPa
 from mesoscale.device.by_key import release_by_key
 from mesoscale.device.electrode import presser, solve_deepened
@@ -264,24 +264,26 @@ def test_refused_points_widen_the_probability_of_sticking():
     assert opened["high"] > closed["high"]
 
 
-def test_banded_systems_with_a_border_are_solved_with_row_exchanges():
-    """Even where the band without its border is singular."""
-    rng = np.random.default_rng(0)
-    n = 20
+def test_the_matrix_of_a_beam_that_stretches_is_solved_where_the_beam_alone_is_singular():
+    rng, nodes, stretching = np.random.default_rng(0), 20, 0.3
     for singular in (False, True):
-        full = np.triu(np.tril(rng.normal(size=(n + 1, n + 1)), BANDS), -BANDS)
-        full[np.arange(n), np.arange(n)] *= 1e-3
-        full[:, n], full[n] = rng.normal(size=n + 1), rng.normal(size=n + 1)
-        if singular:
-            full[n - 1, :n] = 0.0
-        bands, sides = np.zeros((n, 3 * BANDS + 1)), rng.normal(size=(n, 2))
-        for i in range(n):
-            for j in range(max(i - BANDS, 0), min(i + BANDS + 1, n)):
-                bands[i, j - i + BANDS] = full[i, j]
-        wanted = np.linalg.solve(full, np.vstack([sides, np.zeros(2)]))[:n]
-        bordered = np.column_stack([sides, full[:n, n]])
-        solve_bands(bands, full[n, :n].copy(), full[n, n], bordered)
-        np.testing.assert_allclose(bordered[:, :2], wanted, rtol=1e-7)
+        full, own, next_ = np.zeros((2 * nodes, 2 * nodes)), rng.normal(size=(nodes, 2, 2)), np.zeros((nodes, 2, 2))
+        own += own.transpose(0, 2, 1)
+        next_[:-1] = rng.normal(size=(nodes - 1, 2, 2))
+        for k in range(nodes):
+            full[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = own[k]
+        for k in range(nodes - 1):
+            full[2 * k : 2 * k + 2, 2 * k + 2 : 2 * k + 4] = next_[k]
+            full[2 * k + 2 : 2 * k + 4, 2 * k : 2 * k + 2] = next_[k].T
+        if singular:  # by the last entry, on which the determinant depends linearly
+            full[-1, -1] -= 1.0 / np.linalg.inv(full)[-1, -1]
+            own[-1, 1, 1] = full[-1, -1]
+            assert np.linalg.cond(full) > 1e12
+        right = rng.normal(size=(nodes, 3, 2))
+        column = right[:, 2].ravel()
+        wanted = [np.linalg.solve(full + stretching * np.outer(column, column), right[:, k].ravel()) for k in (0, 1)]
+        solve_beam_matrix(own, next_, right, stretching)
+        np.testing.assert_allclose([right[:, 0].ravel(), right[:, 1].ravel()], wanted, rtol=1e-7)
 
 
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
