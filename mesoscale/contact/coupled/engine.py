@@ -398,7 +398,7 @@ class CoupledContact(Contact):
     def _displace(self, others: np.ndarray, displacement: np.ndarray) -> None:
         """Add the displacements (nm) of other sites by the pressures: of many pairs of sites by a transform."""
         if others.size * np.count_nonzero(self.pressure) > self.TRANSFORM_PAIRS * self.heights.size:
-            displacement += self.whole.displacement(self.whole.spread(self.sites, self.pressure))[others]
+            displacement += self.whole.displacement_by(self.sites, self.pressure)[others]
             return
         clusters.displace(self.table, self.scale, self.n, self.sites, self.pressure, others, displacement)
 

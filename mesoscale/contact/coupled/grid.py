@@ -50,6 +50,7 @@ class Grid:
         self.compliance = (length / (np.pi * e_star)) / number
         self.single_compliance = self.compliance.astype(np.float32)
         self.field = np.zeros(pixels**2)
+        self.room = np.empty(self.compliance.size, np.complex128)
         self.table = half_space.influence(pixels, length, bodies)
         self.drifted = False  # whether displacements at hand are by `split`
         self.block, self.block_sites = np.empty((0, 0), np.float32), np.empty(0, np.int32)
@@ -66,9 +67,12 @@ class Grid:
 
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) by a pressure (GPa), mean zero, in the precision of the pressure."""
-        spectrum = np.asarray(fft.rfft2(pressure.reshape(self.shape)))
-        spectrum *= self.single_compliance if pressure.dtype == np.float32 else self.compliance
-        return np.asarray(fft.irfft2(spectrum, s=self.shape, overwrite_x=True)).reshape(-1)
+        return self._between(pressure, slice(None), slice(None))
+
+    def _between(self, pressure: Array, rows: Array | slice, wanted: Array | slice) -> Array:
+        """The same of some rows of the cell by the pressures of some; the other rows have none."""
+        compliance = self.single_compliance if pressure.dtype == np.float32 else self.compliance
+        return half_space.convolve(pressure.reshape(-1, self.shape[1]), rows, compliance, self.room, wanted).reshape(-1)
 
     def spread(self, sites: Array, values: Array) -> Array:
         """Values of some sites, in the order of the cell, on all; 0 on the others."""
@@ -78,13 +82,24 @@ class Grid:
         everywhere[sites] = values
         return everywhere
 
-    def gather(self, sites: Array, everywhere: Array) -> Array:
-        """Values on all sites at some of them."""
-        return everywhere if sites.size == self.field.size else everywhere[sites]
+    def _pressed(self, sites: Array, pressure: Array) -> tuple[Array, Array, Array]:
+        """Pressures of all sites in the rows of some, these rows, and where the sites are in them."""
+        rows, place = half_space.lines(sites // self.shape[1], self.shape[0])
+        place *= self.shape[1]
+        place += sites % self.shape[1]
+        everywhere = np.zeros(rows.size * self.shape[1], pressure.dtype)
+        everywhere[place] = pressure
+        return everywhere, rows, place
 
     def displacement_at(self, sites: Array, pressure: Array) -> Array:
         """Displacement (nm) of some sites by their pressures (GPa), in the precision of the pressures."""
-        return self.gather(sites, self.displacement(self.spread(sites, pressure)))
+        everywhere, rows, place = self._pressed(sites, pressure)
+        return self._between(everywhere, rows, rows)[place]
+
+    def displacement_by(self, sites: Array, pressure: Array) -> Array:
+        """The same of all sites."""
+        everywhere, rows, _ = self._pressed(sites, pressure)
+        return self._between(everywhere, rows, slice(None))
 
     def nearly(self, sites: Array, pressure: Array) -> Array:
         """The same in single precision, by `split` where it pays."""
@@ -93,7 +108,7 @@ class Grid:
 
     def displace(self, sites: Array, pressure: Array) -> Array:
         """The same; that of all sites is kept in `field`, which nothing changes in place."""
-        self.field = self.displacement(self.spread(sites, pressure))
+        self.field = self.displacement_by(sites, pressure)
         self.under, self.rounded, self.drifted = (sites, pressure.copy()), 0.0, False
         return self.field[sites]
 
@@ -107,12 +122,13 @@ class Grid:
         if largest == 0.0 or (keep and rounded > SMALL):
             return self.displace(sites, pressure)
         self.drifted = False
-        moved = self.displacement(self.spread(sites, (change / largest).astype(np.float32)))
-        displacement = self.field[sites] + largest * moved[sites]
-        if keep:
-            self.field, self.under = self.field + np.float32(largest) * moved, (sites, pressure.copy())
-            self.rounded = rounded
-        return displacement
+        unit = (change / largest).astype(np.float32)
+        if not keep:
+            return self.field[sites] + largest * self.displacement_at(sites, unit)
+        moved = self.displacement_by(sites, unit)
+        moved *= np.float32(largest)
+        self.field, self.under, self.rounded = self.field + moved, (sites, pressure.copy()), rounded
+        return self.field[sites]
 
 
 def solve(

@@ -47,6 +47,36 @@ def influence(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarra
     return table
 
 
+def convolve(
+    pressure: np.ndarray, rows: np.ndarray | slice, compliance: np.ndarray, room: np.ndarray, wanted: np.ndarray | slice
+) -> np.ndarray:
+    """Displacements (nm) of wanted rows of a cell by the pressures (GPa) on some rows, the others having none.
+
+    Rows that have none and rows that are not wanted save half of their work each, and all works in place: between
+    half and a quarter of the time of `rfft2` and `irfft2`.
+
+    Parameters
+    ----------
+    pressure : (rows, N), single or double precision, as `compliance` (N, N // 2 + 1), nm/GPa
+    room : for the spectrum, as large as `compliance`, complex in double precision; its contents are lost
+    """
+    spectrum = np.asarray(fft.rfft(pressure))
+    if len(spectrum) < len(compliance):
+        known, spectrum = spectrum, room.view(spectrum.dtype)[: compliance.size].reshape(compliance.shape)
+        spectrum[:] = 0.0
+        spectrum[rows] = known
+    spectrum = np.asarray(fft.fft(spectrum, axis=0, overwrite_x=True))
+    spectrum *= compliance
+    spectrum = np.asarray(fft.ifft(spectrum, axis=0, overwrite_x=True))
+    return np.asarray(fft.irfft(spectrum[wanted], n=pressure.shape[1]))
+
+
+def lines(row: np.ndarray, pixels: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of a cell in which sites lie, rising, and the place of each site's row among them."""
+    present = np.bincount(row, minlength=pixels) > 0
+    return np.flatnonzero(present), (np.cumsum(present) - 1)[row]
+
+
 def stiffness_between_neighbours(table: np.ndarray) -> np.ndarray:
     """Pressures (E* / L) on a site and the eight around it that move this site alone by 1, row by row, shape (9,).
 
