@@ -50,6 +50,7 @@ class Grid:
         self.compliance = (length / (np.pi * e_star)) / number
         self.single_compliance = self.compliance.astype(np.float32)
         self.field = np.zeros(pixels**2)
+        self.rows, self.lines = np.arange(pixels), (self.field[:0], self.field[:0], self.field[:0])
         self.room = np.empty(self.compliance.size, np.complex128)
         self.table = half_space.influence(pixels, length, bodies)
         self.drifted = False  # whether displacements at hand are by `split`
@@ -67,9 +68,9 @@ class Grid:
 
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) by a pressure (GPa), mean zero, in the precision of the pressure."""
-        return self._between(pressure, slice(None), slice(None))
+        return self._between(pressure, self.rows, self.rows)
 
-    def _between(self, pressure: Array, rows: Array | slice, wanted: Array | slice) -> Array:
+    def _between(self, pressure: Array, rows: Array, wanted: Array) -> Array:
         """The same of some rows of the cell by the pressures of some; the other rows have none."""
         compliance = self.single_compliance if pressure.dtype == np.float32 else self.compliance
         return half_space.convolve(pressure.reshape(-1, self.shape[1]), rows, compliance, self.room, wanted).reshape(-1)
@@ -84,9 +85,10 @@ class Grid:
 
     def _pressed(self, sites: Array, pressure: Array) -> tuple[Array, Array, Array]:
         """Pressures of all sites in the rows of some, these rows, and where the sites are in them."""
-        rows, place = half_space.lines(sites // self.shape[1], self.shape[0])
-        place *= self.shape[1]
-        place += sites % self.shape[1]
+        if self.lines[0] is not sites:
+            rows, place = half_space.lines(sites // self.shape[1], self.shape[0])
+            self.lines = sites, rows, place * self.shape[1] + sites % self.shape[1]
+        _, rows, place = self.lines
         everywhere = np.zeros(rows.size * self.shape[1], pressure.dtype)
         everywhere[place] = pressure
         return everywhere, rows, place
@@ -99,7 +101,7 @@ class Grid:
     def displacement_by(self, sites: Array, pressure: Array) -> Array:
         """The same of all sites."""
         everywhere, rows, _ = self._pressed(sites, pressure)
-        return self._between(everywhere, rows, slice(None))
+        return self._between(everywhere, rows, self.rows)
 
     def nearly(self, sites: Array, pressure: Array) -> Array:
         """The same in single precision, by `split` where it pays."""

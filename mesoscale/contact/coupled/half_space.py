@@ -48,16 +48,17 @@ def influence(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarra
 
 
 def convolve(
-    pressure: np.ndarray, rows: np.ndarray | slice, compliance: np.ndarray, room: np.ndarray, wanted: np.ndarray | slice
+    pressure: np.ndarray, rows: np.ndarray, compliance: np.ndarray, room: np.ndarray, wanted: np.ndarray
 ) -> np.ndarray:
     """Displacements (nm) of wanted rows of a cell by the pressures (GPa) on some rows, the others having none.
 
-    Rows that have none and rows that are not wanted save half of their work each, and all works in place: between
-    half and a quarter of the time of `rfft2` and `irfft2`.
+    Only these rows are transformed, and the columns in place. On 2048^2 sites this takes two thirds of the time of
+    `rfft2` and `irfft2` for all rows, and half for a quarter of them.
 
     Parameters
     ----------
     pressure : (rows, N), single or double precision, as `compliance` (N, N // 2 + 1), nm/GPa
+    rows, wanted : numbers of rows, rising
     room : for the spectrum, as large as `compliance`, complex in double precision; its contents are lost
     """
     spectrum = np.asarray(fft.rfft(pressure))
@@ -68,7 +69,8 @@ def convolve(
     spectrum = np.asarray(fft.fft(spectrum, axis=0, overwrite_x=True))
     spectrum *= compliance
     spectrum = np.asarray(fft.ifft(spectrum, axis=0, overwrite_x=True))
-    return np.asarray(fft.irfft(spectrum[wanted], n=pressure.shape[1]))
+    spectrum = spectrum if len(wanted) == len(spectrum) else spectrum[wanted]
+    return np.asarray(fft.irfft(spectrum, n=pressure.shape[1]))
 
 
 def lines(row: np.ndarray, pixels: int) -> tuple[np.ndarray, np.ndarray]:
