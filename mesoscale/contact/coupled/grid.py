@@ -68,7 +68,9 @@ class Grid:
 
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) by a pressure (GPa), mean zero, in the precision of the pressure."""
-        return self._between(pressure, self.rows, self.rows)
+        spectrum = np.asarray(fft.rfft2(pressure.reshape(self.shape)))
+        spectrum *= self.single_compliance if pressure.dtype == np.float32 else self.compliance
+        return np.asarray(fft.irfft2(spectrum, s=self.shape, overwrite_x=True)).reshape(-1)
 
     def _between(self, pressure: Array, rows: Array, wanted: Array) -> Array:
         """The same of some rows of the cell by the pressures of some; the other rows have none."""

@@ -13,6 +13,8 @@ from scipy import fft
 from mesoscale.contact.coupled import layers
 from mesoscale.settings.contact import Body
 
+BLOCK = 2**17  # sites whose rows are transformed at a time, so that they stay in the cache
+
 
 def wave_numbers(pixels: int) -> np.ndarray:
     """abs(q) L / 2 pi of the modes of a real transform, shape (pixels, pixels // 2 + 1)."""
@@ -61,16 +63,19 @@ def convolve(
     rows, wanted : numbers of rows, rising
     room : for the spectrum, as large as `compliance`, complex in double precision; its contents are lost
     """
-    spectrum = np.asarray(fft.rfft(pressure))
-    if len(spectrum) < len(compliance):
-        known, spectrum = spectrum, room.view(spectrum.dtype)[: compliance.size].reshape(compliance.shape)
+    spectrum = room.view(np.result_type(pressure, np.complex64))[: compliance.size].reshape(compliance.shape)
+    moved = np.empty((wanted.size, pressure.shape[1]), pressure.dtype)
+    step = max(BLOCK // pressure.shape[1], 1)
+    if rows.size < len(spectrum):
         spectrum[:] = 0.0
-        spectrum[rows] = known
+    for start in range(0, rows.size, step):
+        spectrum[rows[start : start + step]] = fft.rfft(pressure[start : start + step])
     spectrum = np.asarray(fft.fft(spectrum, axis=0, overwrite_x=True))
     spectrum *= compliance
     spectrum = np.asarray(fft.ifft(spectrum, axis=0, overwrite_x=True))
-    spectrum = spectrum if len(wanted) == len(spectrum) else spectrum[wanted]
-    return np.asarray(fft.irfft(spectrum, n=pressure.shape[1]))
+    for start in range(0, wanted.size, step):
+        moved[start : start + step] = fft.irfft(spectrum[wanted[start : start + step]], n=pressure.shape[1])
+    return moved
 
 
 def lines(row: np.ndarray, pixels: int) -> tuple[np.ndarray, np.ndarray]:
