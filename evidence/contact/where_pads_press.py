@@ -190,6 +190,9 @@ def _beside(case: Case, row: Mapping[str, Any]) -> dict[str, float]:
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """Pairs of each cycle, by its name and grid."""
-    cycles = [row for row in rows if row["error"] == "nan"]
-    return {f"{row['what'].replace(' ', '_')}_{row['pixels']}": f"{float(row['pairs']):.0f}" for row in cycles}
+    """Pairs and seconds of each cycle, by its name and grid."""
+    found = {}
+    for row in (row for row in rows if row["error"] == "nan"):
+        name = f"{row['what'].replace(' ', '_')}_{row['pixels']}"
+        found |= {name: f"{float(row['pairs']):.0f}", f"{name}_s": f"{float(row['cpu_s']):.2g}"}
+    return found
