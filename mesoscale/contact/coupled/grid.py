@@ -50,7 +50,8 @@ class Grid:
         self.compliance = (length / (np.pi * e_star)) / number
         self.single_compliance = self.compliance.astype(np.float32)
         self.field = np.zeros(pixels**2)
-        self.rows, self.lines = np.arange(pixels), (self.field[:0], self.field[:0], self.field[:0])
+        self.rows = np.arange(pixels)
+        self.lines = (self.rows[:0], self.rows[:0], self.rows[:0])  # sites, their rows, their places in these
         self.room = np.empty(self.compliance.size, np.complex128)
         self.table = half_space.influence(pixels, length, bodies)
         self.drifted = False  # whether displacements at hand are by `split`
