@@ -17,8 +17,6 @@ from mesoscale.contact.numerics import Numerics
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
 
-STRESS_MPa = 20.5
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Which grid."""
@@ -29,14 +27,13 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """One row."""
     cell = {**SMOOTH_CELL, "pixels": given.pixels, "length_nm": float(given.pixels)}
     settings = ContactSettings(mechanics="coupled", model="elastic", **cell)
-    heights, force_nN = random_surface(SMOOTH, settings, SEED), 1e-3 * STRESS_MPa * given.pixels**2
+    heights, force_nN = random_surface(SMOOTH, settings, SEED), 20.5e-3 * given.pixels**2  # 20.5 MPa
     start, numerics = time.process_time(), Numerics(force_steps=10)
     with mock.patch.object(cycle, "check_memory"):  # which is what is measured
         found = run_cycle(SMOOTH, settings, SEED, force_nN, heights, contact_at="lowest", numerics=numerics)
     yield {
         "pixels": given.pixels,
         "share": found.closing.contact_area_nm2.max() / found.cell_area_nm2,
-        "rows": len(found.closing.net_nN) + len(found.opening.net_nN),
         "cycle_s": time.process_time() - start,
         "GB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024e-9,
         "converged": found.converged,

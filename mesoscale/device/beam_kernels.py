@@ -54,32 +54,32 @@ def determinant(a, b, c, d, e, f, g, h, i):
 
 
 @njit(cache=True)
-def solve_beam_matrix(own, next_, right, stretching):
+def solve_beam_matrix(blocks, coupling, right, stretching):
     """Solve for the nodes of a beam, whose stretching adds `stretching` times a column times itself; in place.
 
     Nodes are eliminated one after the other, the last one together with the axial force: there the matrix may be
     singular, as it is where a beam buckles or snaps (W. Govaerts, Numerical Methods for Bifurcations of Dynamical
-    Equilibria, SIAM 2000, section 3). That a part of the beam is singular to the last digits has no reason to happen.
+    Equilibria, SIAM 2000, section 3). Parts of the beam are singular to the last digits by chance alone.
 
     Parameters
     ----------
-    own : symmetric blocks of the nodes, shape (nodes, 2, 2); [0, 1] is not read.
-    next_ : blocks of a node (rows) and the next (columns), shape (nodes, 2, 2).
+    blocks : symmetric blocks of the nodes, shape (nodes, 2, 2); [0, 1] is not read.
+    coupling : blocks of a node (rows) and the next (columns), shape (nodes, 2, 2).
     right : right sides, of which the last is the column of stretching, shape (nodes, sides + 1, 2).
     """
-    nodes, sides = len(own), right.shape[1] - 1
+    nodes, sides = len(blocks), right.shape[1] - 1
     corner, below = -1.0, np.zeros(sides)
     solved = np.empty((sides + 1, 2))
     for k in range(nodes - 1):
-        a, b, d = own[k, 0, 0], own[k, 1, 0], own[k, 1, 1]
+        a, b, d = blocks[k, 0, 0], blocks[k, 1, 0], blocks[k, 1, 1]
         scale = 1.0 / (a * d - b * b)
-        p, q, r, t = next_[k, 0, 0], next_[k, 0, 1], next_[k, 1, 0], next_[k, 1, 1]
+        p, q, r, t = coupling[k, 0, 0], coupling[k, 0, 1], coupling[k, 1, 0], coupling[k, 1, 1]
         # inverse of the node's block times that to the next
         u, v, w, x = scale * (d * p - b * r), scale * (d * q - b * t), scale * (a * r - b * p), scale * (a * t - b * q)
-        own[k + 1, 0, 0] -= p * u + r * w
-        own[k + 1, 1, 0] -= q * u + t * w
-        own[k + 1, 1, 1] -= q * v + t * x
-        next_[k, 0, 0], next_[k, 0, 1], next_[k, 1, 0], next_[k, 1, 1] = u, v, w, x
+        blocks[k + 1, 0, 0] -= p * u + r * w
+        blocks[k + 1, 1, 0] -= q * u + t * w
+        blocks[k + 1, 1, 1] -= q * v + t * x
+        coupling[k, 0, 0], coupling[k, 0, 1], coupling[k, 1, 0], coupling[k, 1, 1] = u, v, w, x
         for side in range(sides + 1):
             y, z = right[k, side]
             solved[side, 0], solved[side, 1] = scale * (d * y - b * z), scale * (a * z - b * y)
@@ -90,7 +90,7 @@ def solve_beam_matrix(own, next_, right, stretching):
         for side in range(sides):
             below[side] -= stretching * (y * solved[side, 0] + z * solved[side, 1])
         right[k] = solved
-    a, b, d = own[-1, 0, 0], own[-1, 1, 0], own[-1, 1, 1]
+    a, b, d = blocks[-1, 0, 0], blocks[-1, 1, 0], blocks[-1, 1, 1]
     y, z = right[-1, sides]
     m, n = stretching * y, stretching * z
     whole = determinant(a, b, y, b, d, z, m, n, corner)
@@ -101,8 +101,8 @@ def solve_beam_matrix(own, next_, right, stretching):
         force = determinant(a, b, f, b, d, g, m, n, h) / whole
         for k in range(nodes - 2, -1, -1):
             f, g = right[k + 1, side]
-            right[k, side, 0] -= right[k, sides, 0] * force + next_[k, 0, 0] * f + next_[k, 0, 1] * g
-            right[k, side, 1] -= right[k, sides, 1] * force + next_[k, 1, 0] * f + next_[k, 1, 1] * g
+            right[k, side, 0] -= right[k, sides, 0] * force + coupling[k, 0, 0] * f + coupling[k, 0, 1] * g
+            right[k, side, 1] -= right[k, sides, 1] * force + coupling[k, 1, 0] * f + coupling[k, 1, 1] * g
 
 
 @njit(cache=True)
@@ -142,7 +142,7 @@ def newton_step(
     """
     elements, points = pressure_Pa.shape
     nodes = unknowns // 2
-    own, next_, right = np.zeros((nodes, 2, 2)), np.zeros((nodes, 2, 2)), np.zeros((nodes, 3, 2))
+    blocks, coupling, right = np.zeros((nodes, 2, 2)), np.zeros((nodes, 2, 2)), np.zeros((nodes, 3, 2))
     more = stretching * elongation(nodal, pulled, rest)
     for e in range(elements):
         for i in range(4):
@@ -166,12 +166,12 @@ def newton_step(
                 for g in range(points):
                     entry += (inertia - slope_Pa_m[e, g]) * coupled[e, i, j, g]
                 if i // 2 == j // 2:
-                    own[node, turned, j % 2] += entry
+                    blocks[node, turned, j % 2] += entry
                 else:
-                    next_[node - 1, j % 2, turned] += entry
+                    coupling[node - 1, j % 2, turned] += entry
             right[node, 0, turned] += pushed
     force = right[:, 0].copy()
-    solve_beam_matrix(own, next_, right, stretching)
+    solve_beam_matrix(blocks, coupling, right, stretching)
     change, answer, work = np.zeros((elements + 1, 2)), np.zeros((elements + 1, 2)), 0.0
     # in loops: what numba brings for assigning a part of an array takes seconds to compile
     for node in range(nodes):

@@ -267,22 +267,26 @@ def test_refused_points_widen_the_probability_of_sticking():
 def test_the_matrix_of_a_beam_that_stretches_is_solved_where_the_beam_alone_is_singular():
     rng, nodes, stretching = np.random.default_rng(0), 20, 0.3
     for singular in (False, True):
-        full, own, next_ = np.zeros((2 * nodes, 2 * nodes)), rng.normal(size=(nodes, 2, 2)), np.zeros((nodes, 2, 2))
-        own += own.transpose(0, 2, 1)
-        next_[:-1] = rng.normal(size=(nodes - 1, 2, 2))
+        full, blocks, coupling = (
+            np.zeros((2 * nodes, 2 * nodes)),
+            rng.normal(size=(nodes, 2, 2)),
+            np.zeros((nodes, 2, 2)),
+        )
+        blocks += blocks.transpose(0, 2, 1)
+        coupling[:-1] = rng.normal(size=(nodes - 1, 2, 2))
         for k in range(nodes):
-            full[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = own[k]
+            full[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = blocks[k]
         for k in range(nodes - 1):
-            full[2 * k : 2 * k + 2, 2 * k + 2 : 2 * k + 4] = next_[k]
-            full[2 * k + 2 : 2 * k + 4, 2 * k : 2 * k + 2] = next_[k].T
+            full[2 * k : 2 * k + 2, 2 * k + 2 : 2 * k + 4] = coupling[k]
+            full[2 * k + 2 : 2 * k + 4, 2 * k : 2 * k + 2] = coupling[k].T
         if singular:  # by the last entry, on which the determinant depends linearly
             full[-1, -1] -= 1.0 / np.linalg.inv(full)[-1, -1]
-            own[-1, 1, 1] = full[-1, -1]
+            blocks[-1, 1, 1] = full[-1, -1]
             assert np.linalg.cond(full) > 1e12
         right = rng.normal(size=(nodes, 3, 2))
         column = right[:, 2].ravel()
         wanted = [np.linalg.solve(full + stretching * np.outer(column, column), right[:, k].ravel()) for k in (0, 1)]
-        solve_beam_matrix(own, next_, right, stretching)
+        solve_beam_matrix(blocks, coupling, right, stretching)
         np.testing.assert_allclose([right[:, 0].ravel(), right[:, 1].ravel()], wanted, rtol=1e-7)
 
 
