@@ -402,3 +402,13 @@ def test_changes_of_pressure_are_followed_to_their_rounding():
         exact = whole.displacement_at(sites, pressure)
         np.testing.assert_allclose(followed, exact, atol=2e-7 * np.abs(exact).max())
         np.testing.assert_allclose(whole.field[sites], followed, atol=2e-7 * np.abs(exact).max())
+
+
+@pytest.mark.parametrize(("precision", "error"), [(np.float64, 1e-13), (np.float32, 1e-5)])
+def test_rows_without_pressure_are_left_out_of_transforms(precision, error):
+    rng, whole = np.random.default_rng(5), grid.Grid(96, 100.0, 90.0)
+    sites = np.sort(rng.choice(96 * 40, 300, replace=False)) + 96 * 20
+    pressure = rng.random(300).astype(precision)
+    exact = whole.displacement(whole.spread(sites, pressure.astype(float)))
+    np.testing.assert_allclose(whole.displacement_by(sites, pressure), exact, atol=error * exact.max())
+    np.testing.assert_allclose(whole.displacement_at(sites, pressure), exact[sites], atol=error * exact.max())
