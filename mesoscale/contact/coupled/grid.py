@@ -51,7 +51,8 @@ class Grid:
         self.single_compliance = self.compliance.astype(np.float32)
         self.field = np.zeros(pixels**2)
         self.rows = np.arange(pixels)
-        self.lines = (self.rows[:0], self.rows[:0], self.rows[:0])  # sites, their rows, their places in these
+        nowhere = self.rows[:0]
+        self.located = nowhere, nowhere, nowhere  # the sites asked for last, their rows, and their places in these
         self.room = np.empty(self.compliance.size, np.complex128)
         self.table = half_space.influence(pixels, length, bodies)
         self.drifted = False  # whether displacements at hand are by `split`
@@ -70,13 +71,17 @@ class Grid:
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) by a pressure (GPa), mean zero, in the precision of the pressure."""
         spectrum = np.asarray(fft.rfft2(pressure.reshape(self.shape)))
-        spectrum *= self.single_compliance if pressure.dtype == np.float32 else self.compliance
+        spectrum *= self._compliance(pressure)
         return np.asarray(fft.irfft2(spectrum, s=self.shape, overwrite_x=True)).reshape(-1)
 
     def _between(self, pressure: Array, rows: Array, wanted: Array) -> Array:
         """The same of some rows of the cell by the pressures of some; the other rows have none."""
-        compliance = self.single_compliance if pressure.dtype == np.float32 else self.compliance
-        return half_space.convolve(pressure.reshape(-1, self.shape[1]), rows, compliance, self.room, wanted).reshape(-1)
+        compliance, of_rows = self._compliance(pressure), pressure.reshape(-1, self.shape[1])
+        return half_space.convolve(of_rows, rows, compliance, self.room, wanted).reshape(-1)
+
+    def _compliance(self, pressure: Array) -> Array:
+        """That of the waves, in the precision of the pressure."""
+        return self.single_compliance if pressure.dtype == np.float32 else self.compliance
 
     def spread(self, sites: Array, values: Array) -> Array:
         """Values of some sites, in the order of the cell, on all; 0 on the others."""
@@ -88,10 +93,10 @@ class Grid:
 
     def _pressed(self, sites: Array, pressure: Array) -> tuple[Array, Array, Array]:
         """Pressures of all sites in the rows of some, these rows, and where the sites are in them."""
-        if self.lines[0] is not sites:
-            rows, place = half_space.lines(sites // self.shape[1], self.shape[0])
-            self.lines = sites, rows, place * self.shape[1] + sites % self.shape[1]
-        _, rows, place = self.lines
+        if self.located[0] is not sites:
+            rows, place = half_space.rows_of(sites // self.shape[1], self.shape[0])
+            self.located = sites, rows, place * self.shape[1] + sites % self.shape[1]
+        _, rows, place = self.located
         everywhere = np.zeros(rows.size * self.shape[1], pressure.dtype)
         everywhere[place] = pressure
         return everywhere, rows, place

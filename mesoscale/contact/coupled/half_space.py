@@ -78,7 +78,7 @@ def convolve(
     return moved
 
 
-def lines(row: np.ndarray, pixels: int) -> tuple[np.ndarray, np.ndarray]:
+def rows_of(row: np.ndarray, pixels: int) -> tuple[np.ndarray, np.ndarray]:
     """Rows of a cell in which sites lie, rising, and the place of each site's row among them."""
     present = np.bincount(row, minlength=pixels) > 0
     return np.flatnonzero(present), (np.cumsum(present) - 1)[row]

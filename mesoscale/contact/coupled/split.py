@@ -64,7 +64,7 @@ class Split:
         old, new = self.rows.size, sites.size - self.rows.size
         if self.open and new:
             self.rows, self.cols = (index.astype(np.int32) for index in np.divmod(sites, self.pixels))
-            self.lines, places = half_space.lines(self.nodes[self.rows].ravel(), self.coarse)
+            self.coarse_rows, places = half_space.rows_of(self.nodes[self.rows].ravel(), self.coarse)
             self.row_nodes = places.reshape(-1, 4).astype(np.int32)
             self.first = np.append(self.first, np.zeros(new, np.int64))
             self.open = pair(
@@ -74,10 +74,10 @@ class Split:
 
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) of the known sites by their pressures (GPa), in single precision."""
-        coarse, moved = np.zeros((self.lines.size, self.coarse), np.float32), np.empty_like(pressure)
+        coarse, moved = np.zeros((self.coarse_rows.size, self.coarse), np.float32), np.empty_like(pressure)
         around = (self.rows, self.cols, self.row_nodes, self.nodes, self.weights)
         spread(around, pressure, coarse)
-        coarse = half_space.convolve(coarse, self.lines, self.rest, self.room, self.lines)
+        coarse = half_space.convolve(coarse, self.coarse_rows, self.rest, self.room, self.coarse_rows)
         gather(around, coarse, (self.first, self.others, self.values, self.table[0, 0]), pressure, moved)
         return moved
 
@@ -103,27 +103,27 @@ def pair(rows, cols, place, pixels, table, old, first, others, values):
 
 @njit(cache=True, fastmath=dense.FAST)
 def spread(around, pressure, coarse):
-    """Add the pressures of sites to the coarse sites around them."""
-    rows, cols, lines, nodes, weights = around
+    """Add the pressures of sites to the coarse sites around them; `coarse` has the rows in which these lie."""
+    rows, cols, row_nodes, nodes, weights = around
     for k in range(pressure.size):
         if pressure[k] != 0.0:
             for i in range(4):
                 value = pressure[k] * weights[rows[k], i]
                 for j in range(4):
-                    coarse[lines[k, i], nodes[cols[k], j]] += value * weights[cols[k], j]
+                    coarse[row_nodes[k, i], nodes[cols[k], j]] += value * weights[cols[k], j]
 
 
 @njit(cache=True, fastmath=dense.FAST)
 def gather(around, coarse, pairs, pressure, moved):
     """Displacements of sites from those of the coarse sites around them, and from the pairs of near sites."""
-    rows, cols, lines, nodes, weights = around
+    rows, cols, row_nodes, nodes, weights = around
     first, others, values, itself = pairs
     for k in range(moved.size):
         here = pressure[k]
         total = itself * here
         for i in range(4):
             for j in range(4):
-                total += coarse[lines[k, i], nodes[cols[k], j]] * weights[rows[k], i] * weights[cols[k], j]
+                total += coarse[row_nodes[k, i], nodes[cols[k], j]] * weights[rows[k], i] * weights[cols[k], j]
         for m in range(first[k], first[k + 1]):
             total += values[m] * pressure[others[m]]
             moved[others[m]] += values[m] * here
