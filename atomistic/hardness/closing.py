@@ -91,10 +91,10 @@ def run_closing(
         return Readout(workspace, plan.segment_steps, plan.timestep, protocol.samples, area, cell, bond)
 
     def read(cell: PressedCell, reached: Plan) -> ClosedAsperity:
-        relaxed = range(reached.segments + 1)
-        if missing := [n for n in relaxed if not (workspace / f"relaxed.{n}").exists()]:
+        snapshots = protocol.snapshots(reached.segments)
+        if missing := [n for n in snapshots if not (workspace / f"relaxed.{n}").exists()]:
             run_lammps("relax.in", workspace, {"pairs": "pairs", "segment": missing})
-        return _read(readout(cell), reached, 10 * protocol.frozen_nm, cell)
+        return _read(readout(cell), reached, snapshots, 10 * protocol.frozen_nm, cell)
 
     def complete(cell: PressedCell, segments: int) -> bool:
         cell_nm2 = (cell.wavelength_A / 10) ** 2
@@ -106,11 +106,12 @@ def run_closing(
         return may_stop(curve, witness, cell_nm2, closing.stop, protocol.approach_nm, on_base=on_base)
 
     cell, reached = press_body(run, body, cut.force, closing, protocol, plan, place, workspace, complete, progress)
-    result, snapshots = read(cell, reached), range(reached.segments + 1)
+    result = read(cell, reached)
+    snapshots = protocol.snapshots(reached.segments)
     # atoms of a base pull otherwise: their tops say nothing of the oxide's
     tops = [NO_TOP if on_base else attraction_row(readout(cell), n, cell) for n in snapshots]
     if run.asperity.film_nm and base is not None:
-        start, end = (readout(cell).relaxed(n).frame for n in (0, reached.segments))
+        start, end = (readout(cell).relaxed(n).frame for n in (0, snapshots[-1]))
         result.summary.update(film_properties(start, end, cell.wavelength_A, len(base[0].elements)))
     shutil.rmtree(work)
     return replace(result, witness=[{**row, **top} for row, top in zip(result.witness, tops, strict=True)])
@@ -171,16 +172,14 @@ def oxide_bond(elements: tuple[str, ...], material: Material, potential: Potenti
     return OxideBond(types[cation], types[anion], material.part("oxide_glass").cutoff_A)
 
 
-def _read(readout: Readout, plan: Plan, held_A: float, cell: PressedCell) -> ClosedAsperity:
-    segments = range(1, plan.segments + 1)
-    snapshots = [readout.relaxed(n) for n in (0, *segments)]
+def _read(readout: Readout, plan: Plan, snapshots: list[int], held_A: float, cell: PressedCell) -> ClosedAsperity:
     summary: dict[str, float] = {
         "atoms": cell.atoms,
         "steps": plan.total_steps,
         "wavelength_nm": cell.wavelength_A / 10,
     }
-    witness = witness_rows(snapshots, plan.timestep, plan.speed, held_A)
-    return ClosedAsperity(readout.curve(segments), witness, summary)
+    witness = witness_rows([readout.relaxed(n) for n in snapshots], plan.timestep, plan.speed, held_A)
+    return ClosedAsperity(readout.curve(range(1, plan.segments + 1)), witness, summary)
 
 
 def attraction_row(readout: Readout, segment: int, cell: PressedCell) -> dict[str, float]:

@@ -117,10 +117,14 @@ def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES, by_bonds
     The top must stay `min_lowering_A` lower than in the last snapshot before contact, from then on. Where a metal lies
     below this is all (`by_bonds` False): its grain boundaries change neighbours at rest too.
 
-    The background is the mean number of new exchanges between the snapshots before contact.  The onset is the
-    first snapshot with `min_exchanges` more new exchanges than the background and its two-sigma Poisson noise allow.
-    Its p value is that of the exact test for two Poisson counts (Przyborowski and Wilenski 1940), which knows that the
-    background is an estimate.
+    The background is the number of new exchanges on the travel before contact; after a longer travel a snapshot has
+    proportionally more.  The onset is the first snapshot with `min_exchanges` more new exchanges than the background
+    and its two-sigma Poisson noise allow.  Its p value is that of the exact test for two Poisson rates (Przyborowski
+    and Wilenski 1940), which knows that the background is an estimate.
+
+    Returns
+    -------
+    Its `background` is that of the travel between the first two snapshots.
     """
     displacement = np.array([row["displacement_nm"] for row in witness])
     new = np.array([row["new_exchanges"] for row in witness])
@@ -129,8 +133,12 @@ def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES, by_bonds
     before = apart & (np.arange(len(witness)) > 0)
     if not np.any(before):
         return Onset(None, float("nan"))
-    background = float(np.mean(new[before]))
-    limit = background + max(rules.min_exchanges, 2 * np.sqrt(background)) if by_bonds else 0.0
+    travel = np.round(np.diff(displacement, prepend=displacement[0]), 6)
+    travel /= travel[1]
+    exposure = float(np.sum(travel[before]))
+    background = float(np.sum(new[before])) / exposure
+    expected = background * travel
+    limit = expected + np.maximum(rules.min_exchanges, 2 * np.sqrt(expected)) if by_bonds else np.zeros(len(new))
     lowering -= lowering[apart][-1]
     lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= rules.min_lowering_A
     onsets = np.flatnonzero((new >= limit) & lasting & ~apart)
@@ -140,9 +148,11 @@ def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES, by_bonds
         return Onset(float(displacement[onsets[0]]), background)
     from scipy.special import bdtrc  # half a second to import, which plans do without
 
-    count, earlier, snapshots = int(new[onsets[0]]), int(np.sum(new[before])), int(np.sum(before))
-    p_value = float(bdtrc(count - 1, count + earlier, 1 / (1 + snapshots)))
-    return Onset(float(displacement[onsets[0]]), background, float(count), p_value)
+    first = onsets[0]
+    count = int(new[first])
+    earlier = int(np.sum(new[before]))
+    p_value = float(bdtrc(count - 1, count + earlier, travel[first] / (travel[first] + exposure)))
+    return Onset(float(displacement[first]), background, float(count), p_value)
 
 
 def find_hardness(

@@ -26,7 +26,8 @@ class Protocol(Settings):
     depth_over_amplitude : largest travel below the highest atom, in amplitudes.
     approach_nm : clearance at the start; bonds exchanged on this way are the background.
     averaged_travel_A, samples : travel over which area and force are averaged, snapshots of an average.
-    segment_nm : travel between restart files and relaxed snapshots.
+    segment_nm : travel between restart files.
+    segments_per_snapshot : segments between relaxed snapshots; the first two frame one segment before contact.
     """
 
     timestep_fs: float = 3.0
@@ -41,6 +42,11 @@ class Protocol(Settings):
     averaged_travel_A: float = 0.25
     samples: int = 5
     segment_nm: float = 0.1
+    segments_per_snapshot: int = 1
+
+    def snapshots(self, segments: int) -> list[int]:
+        """After which of so many segments the body is relaxed: before and after the first, then regularly."""
+        return [0, *range(1, segments + 1, self.segments_per_snapshot)]
 
 
 PROTOCOL = Protocol()

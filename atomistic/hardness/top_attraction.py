@@ -73,15 +73,7 @@ def gap_cutoff(
     -------
     `distribution`, `values`, `unit` as an input has them, and `runs`; None where a fit needs more runs with a top.
     """
-    runs = {
-        run: [
-            TopAttraction(100 * row["top_area_nm2"], row["top_force_over_hamaker"] / 10, row["top_work_over_hamaker"])
-            for row in rows
-            if row["top_area_nm2"] > 0
-        ]
-        for run, rows in witnesses.items()
-    }
-    runs = {run: tops for run, tops in runs.items() if tops}
+    runs = {run: tops for run, rows in witnesses.items() if (tops := tops_of(rows))}
     if len(runs) < FIT_RULES.least_runs:
         return None
     by_run = np.array([combined_cutoffs_nm(tops) for tops in runs.values()])
@@ -96,6 +88,15 @@ def gap_cutoff(
             for (run, tops), (force, work) in zip(runs.items(), by_run.tolist(), strict=True)
         ],
     }
+
+
+def tops_of(witness: Sequence[Mapping[str, float]]) -> list[TopAttraction]:
+    """Tops of the snapshots of a run with a contact; rows of `Closing.witness`."""
+    return [
+        TopAttraction(100 * row["top_area_nm2"], row["top_force_over_hamaker"] / 10, row["top_work_over_hamaker"])
+        for row in witness
+        if row["top_area_nm2"] > 0
+    ]
 
 
 def mean_over_glasses(values: np.ndarray, glasses: Sequence[int], count: int, rng: np.random.Generator) -> np.ndarray:
