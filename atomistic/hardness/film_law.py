@@ -17,12 +17,15 @@ from atomistic.hardness.size_effect import (
     FIT_RULES,
     SLOPES,
     SYSTEMATIC,
+    Energies,
     PointRow,
-    energy_range,
+    energy_bounds,
     samples_of,
+    scales_of,
     spearman,
     steepness,
     summary,
+    twins,
 )
 
 
@@ -90,15 +93,15 @@ class FilmPoints(NamedTuple):
 
 
 def points_of(points: Sequence[PointRow], curves: Mapping[str, Sequence[Mapping[str, float]]]) -> FilmPoints:
-    """The mean stresses of sound runs with the highest energies.
+    """The mean stresses of sound runs with full energies.
 
     Parameters
     ----------
     points : rows of points.csv. curves : rows of the closing runs, by run.
     """
-    rows, highest = [], max(float(point["energy_scale"]) for point in points)
+    rows = []
     for point in points:
-        if point["sound"] == "True" and float(point["energy_scale"]) == highest:
+        if point["sound"] == "True" and float(point["energy_scale"]) == 1.0:
             thickness = float(point["film_nm"]) if point["film_nm"] else np.inf
             stresses = mean_stresses(curves[point["run"]], float(point["wavelength_nm"]))
             rows += [(float(point["seed"]), thickness, *of) for of in stresses]
@@ -229,6 +232,7 @@ def fit_films(
     curves: Mapping[str, Sequence[Mapping[str, float]]],
     glasses: Sequence[Mapping[str, Any]],
     area_error: float,
+    energies: Energies = "measured",
     indentation_GPa: tuple[float, float] | None = None,
 ) -> dict[str, Any]:
     """Fit the law to the runs of a scene with films, and judge whether it may be used.
@@ -238,6 +242,7 @@ def fit_films(
     points, curves : of `points_of`.
     glasses : properties of the glasses, each with its gate.
     area_error : largest error of the contact area by the calibrations in use, as a fraction.
+    energies : of the settings: what bounds the energies of the oxide.
     indentation_GPa : lowest and highest measured hardness of the oxide; None: not known.
 
     Returns
@@ -258,7 +263,14 @@ def fit_films(
     if throughout and not slopes:
         reasons.append(f"asperities flatter or steeper than RMS slopes of {min(SLOPES):.2g} to {max(SLOPES):.2g}")
     counts = {"points_used": sound, "points_total": len(points), "points_rejected": unsound}
-    result = {"method": "film", **counts, "inputs": {}, "gate": {"passed": not reasons, "reasons": reasons}}
+    result = {
+        "method": "film",
+        "energies_from": energies,
+        **counts,
+        "twins": twins(points),
+        "inputs": {},
+        "gate": {"passed": not reasons, "reasons": reasons},
+    }
     if few:
         return result
     rng = np.random.default_rng(np.random.SeedSequence([43]))
@@ -269,9 +281,14 @@ def fit_films(
     ]
     draws *= np.exp([shared[0], shared[0], shared[1], 0 * shared[1]]).T
     h_film, base, k, m = draws.T
-    low, high = energy_range(float(np.median(h_film)), slopes, indentation_GPa)
+    scales = scales_of(throughout)
+    if energies == "measured":
+        low, high = energy_bounds(float(np.median(h_film)), slopes, scales, indentation_GPa)
+        h_film *= rng.uniform(low, high, len(h_film))
+    else:
+        low, high = scales[0], scales[-1]
+        h_film *= rng.choice(scales, len(h_film))
     result["energies"] = [low, high]
-    h_film *= rng.uniform(low, high, len(h_film))
     result["inputs"] = {
         "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
         "k_film": samples_of(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},

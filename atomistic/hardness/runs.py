@@ -58,7 +58,7 @@ def slowed(protocol: Protocol, factor: float) -> Protocol:
 
 
 def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
-    """Every asperity x seed x energy scale of the settings; films and their base at the highest scale alone.
+    """Every asperity x seed x energy scale of the settings; films and their base at full energies alone.
 
     A base keeps its energies, and oxide with halved ones is no harder than titanium: no effect of a film would be left.
     """
@@ -72,6 +72,6 @@ def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
         )
         for asperity in settings.asperities
         for seed in settings.seeds
-        for scale in settings.energy_scales
-        if asperity.film_nm is None or scale == max(settings.energy_scales)
+        for scale in settings.scales_of(asperity)
+        if asperity.film_nm is None or scale == 1.0
     ]

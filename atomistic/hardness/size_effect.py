@@ -1,12 +1,15 @@
 """Size dependence of hardness, H(A) = H_macro + H' A^-0.25 (Kim et al. 2013, eq. 4).
 
-A series of sizes cannot identify both parameters. H_macro is therefore taken from a stated range, and
-H' = (H - H_macro) A^0.25 from every run.
+A series of sizes seldom identifies both parameters (`free_fit`). H_macro is therefore taken from a stated distribution,
+and H' = (H - H_macro) A^0.25 from every run.
+
+The form of the potential is not known. Its error stands for all energies times one factor, as in the paper. Two ways
+bound the factor: the measured hardness of the glass, or twins of the runs with other energies, each as likely.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -17,14 +20,15 @@ SYSTEMATIC = {
     "steepness": 0.06,  # 4 % by another curve between the slopes that were pressed, 4 % by the glasses
 }
 """What moves every run of a scene alike, as standard deviations relative to the hardness (study `hardness.choices`)."""
-H_MACRO_GPA = (0.7, 3.2)
-"""Range of H_macro, from which H' follows (Kim et al. 2013, Table 1)."""
+RUN_SCATTER = 0.09
+"""Standard deviation between runs of one kind, relative to the hardness (study `hardness.choices`)."""
 SLOPES = {0.222: 0.55, 0.444: 1.0, 0.889: 1.31}
 """Hardness of asperities by their RMS slope, over that of the second (study `hardness.choices`, two glasses)."""
 BERKOVICH = 0.358
 """Slope of a Berkovich tip: of the cone with the same area at each depth, whose half angle is 70.3 degrees."""
 PointRow = Mapping[str, str]
 """A row of points.csv."""
+Energies = Literal["measured", "scales"]
 
 
 @dataclass(frozen=True)
@@ -37,12 +41,14 @@ class FitRules:
     least_runs, least_share : defended runs needed, and their share of all runs. Runs scatter by 9 %, so that four leave
         their mean open by 5 %; errors that all runs share are 13 %.
     samples : of the joint distribution of H_macro and H'.
+    identified : Student's t of H_macro and of H' from which on a free fit tells both.
     """
 
     interval: tuple[float, float] = (0.16, 0.84)
     least_runs: int = 4
     least_share: float = 0.5
     samples: int = 2000
+    identified: float = 0.95
 
 
 FIT_RULES = FitRules()
@@ -51,10 +57,11 @@ FIT_RULES = FitRules()
 def fit_size_effect(
     points: Sequence[PointRow],
     glasses: Sequence[Mapping],
-    energy_scales: Sequence[float],
     area_error: float,
-    others: Mapping[str, float] = SYSTEMATIC,
+    h_macro: Callable[[np.ndarray], np.ndarray],
+    energies: Energies = "measured",
     indentation_GPa: tuple[float, float] | None = None,
+    others: Mapping[str, float] = SYSTEMATIC,
 ) -> dict:
     """H' and the hardness of the runs with 68 % intervals, judged whether they may be used.
 
@@ -63,110 +70,228 @@ def fit_size_effect(
     points : rows of points.csv.
     glasses : properties of the glasses, each with its gate.
     area_error : largest error of the contact area by its calibration, as a fraction.
-    others : errors that all runs share, as standard deviations relative to the hardness.
+    h_macro : quantiles of H_macro (GPa) by their probability.
+    energies : of the settings: what bounds the energies of the potential.
     indentation_GPa : lowest and highest measured hardness of the glass; None: not known.
+    others : errors that all runs share, as standard deviations relative to the hardness.
 
     Returns
     -------
     Content of fit.json (docs/hardness.md).
     """
-    used = [point for point in points if point["status"] == "yield"]
-    refused = [{"run": point["run"], "status": point["status"]} for point in points if point["status"] != "yield"]
+    asked = [point for point in points if energies == "scales" or float(point["energy_scale"]) == 1.0]
+    used = [point for point in asked if point["status"] == "yield"]
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
-    rules = FIT_RULES
-    if len(used) < rules.least_runs:
-        reasons.append(f"{len(used)} of {len(points)} runs gave a defended hardness, {rules.least_runs} are needed")
-    elif len(used) < rules.least_share * len(points):
-        share = f"gate {rules.least_share:.0%}"
-        reasons.append(f"only {len(used)} of {len(points)} runs gave a defended hardness ({share})")
-    scales = {float(point["energy_scale"]) for point in used}
-    if missing := sorted(set(energy_scales) - scales):
-        reasons.append(f"no defended hardness at energy scale {', '.join(f'{scale:g}' for scale in missing)}")
+    reasons += _too_few(used, asked)
     result: dict = {
         "method": "literature",
+        "energies_from": energies,
         "points_used": len(used),
-        "points_total": len(points),
-        "points_rejected": refused,
+        "points_total": len(asked),
+        "points_rejected": refused_runs(points),
+        "twins": twins(points),
+        "free_fit": free_fit(used),
         "inputs": {},
         "gate": {"passed": False, "reasons": reasons},
     }
-    if len(used) < 2:
-        result["gate"]["reasons"] = reasons or ["fewer than two points"]
+    if not used:
         return result
     # the error of the area lies anywhere within that of its calibration: a uniform distribution
     systematic = {"area": area_error / np.sqrt(3), **others}
     slopes = steepness(used)
-    hardness, _, _, scales = _columns(used)
-    energies = energy_range(float(np.mean(hardness / scales)), slopes, indentation_GPa, scales)
-    h_macro, h_prime, h_film = literature_samples(used, H_MACRO_GPA, systematic, energies)
-    low, high = H_MACRO_GPA
-    result["energies"] = list(energies)
     if not slopes:
         reasons.append(f"asperities flatter or steeper than RMS slopes of {min(SLOPES):.2g} to {max(SLOPES):.2g}")
-        result["gate"]["reasons"] = reasons
         return result
-    typical, base = float(np.median(h_film)), 0.5 * (low + high)
+    ways = {}
+    for way, (runs, bounds) in energy_ways(points, slopes, indentation_GPa).items():
+        ways[way] = bounds, *hardness_samples(runs, systematic, bounds)
+    bounds, length, h_film = ways[energies]
+    h_macro_GPa = h_macro(_rng(13).random(FIT_RULES.samples))
+    h_prime = (h_film - h_macro_GPa) * np.sqrt(length)
+    typical = float(np.median(h_film))
+    base = float(np.median(h_macro_GPa))
     of_h_prime = [(factor * typical - base) / (typical - base) for factor in slopes["factor"]]
+    result["energies"] = list(bounds)
     result["inputs"] = {
-        "h_macro": {"distribution": "uniform", "a": low, "b": high, "unit": "GPa"},
         "h_prime": {
             **_uniform(h_prime, "GPa nm^0.5"),
-            "correlation": {"h_macro": spearman(h_macro, h_prime)},
+            "correlation": {"h_macro": spearman(h_macro_GPa, h_prime)} if np.ptp(h_macro_GPa) else {},
             "steepness": {**slopes, "factor": of_h_prime},
         },
         "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
     }
-    result["H_macro_GPa"] = summary(h_macro)
+    result["hardness_GPa"] = {way: summary(drawn) for way, (_, _, drawn) in ways.items()}
+    result["H_macro_GPa"] = summary(h_macro_GPa)
     result["H_prime_GPa_nm0.5"] = summary(h_prime)
-    result["curve"] = band(h_macro, h_prime)
-    if result["inputs"]["h_prime"]["a"] <= 0 or low <= 0:
+    result["curve"] = band(h_macro_GPa, h_prime)
+    if result["inputs"]["h_prime"]["a"] <= 0 or np.min(h_macro_GPa) <= 0:
         reasons.append("the fit allows a hardness that falls with decreasing size or is negative: not identifiable")
-    result["gate"] = {"passed": not reasons, "reasons": reasons}
+    result["gate"]["passed"] = not reasons
     return result
 
 
-def energy_range(
-    hardness_GPa: float,
+def _too_few(used: Sequence[PointRow], asked: Sequence[PointRow]) -> list[str]:
+    """Why the defended runs among those asked for are too few; empty where they are enough."""
+    reasons = []
+    if len(used) < FIT_RULES.least_runs:
+        reasons.append(f"{len(used)} of {len(asked)} runs gave a defended hardness, {FIT_RULES.least_runs} are needed")
+    elif len(used) < FIT_RULES.least_share * len(asked):
+        share = f"gate {FIT_RULES.least_share:.0%}"
+        reasons.append(f"only {len(used)} of {len(asked)} runs gave a defended hardness ({share})")
+    if missing := sorted(set(scales_of(asked)) - set(scales_of(used))):
+        reasons.append(f"no defended hardness at energy scale {', '.join(f'{scale:g}' for scale in missing)}")
+    return reasons
+
+
+def refused_runs(points: Sequence[PointRow]) -> list[dict[str, str]]:
+    """Runs without a defended hardness, each with the reason."""
+    return [{"run": point["run"], "status": point["status"]} for point in points if point["status"] != "yield"]
+
+
+def twins(points: Sequence[PointRow]) -> list[dict[str, Any]]:
+    """Hardness of runs with scaled energies over that of their twins with full ones, by energy scale.
+
+    A pair has the same asperity and glass. Both of its runs scatter by `RUN_SCATTER`, which makes the 68 % interval.
+
+    Returns
+    -------
+    `energy_scale`, `pairs`, `full_GPa`, `scaled_GPa` and `ratio` (median, low, high) of each scale with a pair.
+    """
+    hardness = {
+        (point["asperity"], point["seed"], float(point["energy_scale"])): float(point["hardness_GPa"])
+        for point in points
+        if point["status"] == "yield" and not point["film_nm"]
+    }
+    rows = []
+    for scale in scales_of(points):
+        if scale == 1.0:
+            continue
+        pairs = [
+            (hardness[asperity, seed, 1.0], scaled)
+            for (asperity, seed, energies), scaled in hardness.items()
+            if energies == scale and (asperity, seed, 1.0) in hardness
+        ]
+        if not pairs:
+            continue
+        full, scaled = np.array(pairs).T
+        ratio = float(np.exp(np.mean(np.log(scaled / full))))
+        error = np.sqrt(2 / len(pairs)) * RUN_SCATTER
+        rows.append(
+            {
+                "energy_scale": scale,
+                "pairs": len(pairs),
+                "full_GPa": float(full.mean()),
+                "scaled_GPa": float(scaled.mean()),
+                "ratio": {"median": ratio, "low": ratio * np.exp(-error), "high": ratio * np.exp(error)},
+            }
+        )
+    return rows
+
+
+def free_fit(used: Sequence[PointRow]) -> dict[str, Any] | None:
+    """Least squares of both parameters of eq. 4, as the paper fits them, and whether the runs tell both.
+
+    The runs at full energies count alike: they scatter by more than each one's own interval.
+
+    Returns
+    -------
+    `H_macro_GPa` and `H_prime_GPa_nm0.5` (mean, low, high: 68 %), `identified` and `verdict`; None below three runs.
+    """
+    from scipy.stats import t as student  # slow to import
+
+    full = [point for point in used if float(point["energy_scale"]) == 1.0]
+    if len(full) < 3:
+        return None
+    hardness, _, length, _ = _columns(full)
+    model = np.column_stack([np.ones(len(full)), 1 / np.sqrt(length)])
+    values, *_ = np.linalg.lstsq(model, hardness, rcond=None)
+    freedom = len(full) - 2
+    variance = np.sum((hardness - model @ values) ** 2) / freedom
+    errors = np.sqrt(variance * np.diag(np.linalg.pinv(model.T @ model)))
+    half = errors * student.ppf(FIT_RULES.interval[1], freedom)
+    surely_positive = values - errors * student.ppf(FIT_RULES.identified, freedom) > 0
+    names = ("H_macro_GPa", "H_prime_GPa_nm0.5")
+    fitted = {
+        name: {"mean": value, "low": value - width, "high": value + width}
+        for name, value, width in zip(names, values.tolist(), half.tolist(), strict=True)
+    }
+    unknown = [name.partition("_GPa")[0] for name, sure in zip(names, surely_positive, strict=True) if not sure]
+    verdict = f"{len(full)} runs tell both"
+    if unknown:
+        verdict = f"{len(full)} runs do not tell {' and '.join(unknown)} from zero"
+    return {**fitted, "identified": not unknown, "verdict": verdict}
+
+
+def energy_ways(
+    points: Sequence[PointRow],
     slopes: Mapping[str, Sequence[float]],
     indentation_GPa: tuple[float, float] | None,
-    scales: Sequence[float] | np.ndarray = (1.0,),
+) -> dict[Energies, tuple[list[PointRow], tuple[float, float]]]:
+    """Both ways to bound the energies: the defended runs that count, and the range of the factor on their hardness.
+
+    The second is left out where no run has scaled energies, the first where none with full ones is defended.
+    """
+    defended = [point for point in points if point["status"] == "yield"]
+    full = [point for point in defended if float(point["energy_scale"]) == 1.0]
+    ways: dict[Energies, tuple[list[PointRow], tuple[float, float]]] = {}
+    if full:
+        full_GPa = float(np.mean([float(point["hardness_GPa"]) for point in full]))
+        ways["measured"] = full, energy_bounds(full_GPa, slopes, scales_of(points), indentation_GPa)
+    if defended and len(scales_of(points)) > 1:
+        ways["scales"] = defended, (1.0, 1.0)  # as they are
+    return ways
+
+
+def scales_of(points: Sequence[PointRow]) -> list[float]:
+    """Energy scales of runs, rising."""
+    return sorted({float(point["energy_scale"]) for point in points})
+
+
+def energy_bounds(
+    full_GPa: float,
+    slopes: Mapping[str, Sequence[float]],
+    scales: Sequence[float],
+    indentation_GPa: tuple[float, float] | None,
 ) -> tuple[float, float]:
     """Factors on the energies of a potential that bound the measured hardness of its glass, and 1 between them.
 
-    Hardness is proportional to the energies: twins with halved ones have 0.48 to 0.52 of it.
+    Hardness is proportional to the energies (`twins`).
 
     Parameters
     ----------
-    hardness_GPa : of the runs at full energies. slopes : of `steepness`.
-    indentation_GPa : lowest and highest measured hardness; None: the range is that of the scene's energy scales.
+    full_GPa : mean hardness of the runs at full energies.
+    slopes : of `steepness`.
+    scales : energy scales that were run; their range counts where no hardness was measured.
+    indentation_GPa : lowest and highest measured hardness; None: not known.
     """
     if indentation_GPa is None or not slopes:
-        return float(np.min(scales)), float(np.max(scales))
+        return min(scales), max(scales)
     factor = np.interp(np.log(BERKOVICH), np.log(slopes["rms_slope"]), slopes["factor"])
-    low, high = np.array(indentation_GPa) / (factor * hardness_GPa)
+    low, high = np.array(indentation_GPa) / (factor * full_GPa)
     return min(float(low), 1.0), max(float(high), 1.0)
 
 
-def literature_samples(
+def hardness_samples(
     points: Sequence[PointRow],
-    h_macro_GPa: tuple[float, float],
     systematic: Mapping[str, float],
     energies: tuple[float, float],
     count: int = FIT_RULES.samples,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Joint samples of H_macro (uniform in its range), H' and the hardness (from the points, energies in their range).
+) -> tuple[np.ndarray, np.ndarray]:
+    """Contact length (nm) and hardness (GPa) of runs drawn at random, each energy scale as often.
 
-    A run with scaled energies counts as one of its hardness over their scale.
+    Parameters
+    ----------
+    systematic : errors that all runs share, as standard deviations relative to the hardness.
+    energies : of `energy_bounds`; the factor is uniform between them.
     """
     rng = _rng(11)
     hardness, spread, length, scale = _columns(points)
-    chosen = rng.choice(len(points), size=count)
-    h_macro = rng.uniform(*h_macro_GPa, count)
+    _, of_scale, runs = np.unique(scale, return_inverse=True, return_counts=True)
+    chosen = rng.choice(len(points), size=count, p=1 / (len(runs) * runs[of_scale]))
     # factors on the hardness of all runs alike
     shared = 1 + np.array(list(systematic.values())) @ _rng(15).normal(size=(len(systematic), count))
-    shared *= rng.uniform(*energies, count) / scale[chosen]
-    drawn = (hardness[chosen] + spread[chosen] * rng.normal(size=count)) * shared
-    return h_macro, (drawn - h_macro) * np.sqrt(length[chosen]), drawn
+    shared *= rng.uniform(*energies, count)
+    return length[chosen], (hardness[chosen] + spread[chosen] * rng.normal(size=count)) * shared
 
 
 def relative_hardness(slope: float) -> float:

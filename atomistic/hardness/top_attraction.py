@@ -33,6 +33,11 @@ from atomistic.hardness.size_effect import FIT_RULES, samples_of
 
 DENSE_CUTOFF_A = 1.65
 """D of flat dense solids, Å (Israelachvili, section 13.13)."""
+FOLLOW = (0.905, 0.037)
+"""D0 of tops whose atoms follow the pull over that of rigid ones: mean of eight tops and its standard error (study
+`hardness.tops`, columns free_work and whole_work)."""
+RIM_ERROR = 0.045
+"""Change of ln D0 where the rim of the contact area lies 0.7 Å farther out or in, as other definitions have it."""
 STEP_A = 0.02
 """Between the gaps at which force and energy are looked at; their extremes are then refined."""
 SCATTERS = np.geomspace(0.03, 10.0, 40)
@@ -61,8 +66,8 @@ def gap_cutoff(
     """The cut-off D0 of all tops of some runs: its distribution, and what each run says.
 
     It is that of the work; the one of the largest force stands beside it. The mean over all glasses is known as far as
-    runs and glasses scatter. It is multiplied by a uniform factor between tops whose atoms follow the pull, which have
-    0.9 of the D0 of rigid ones (study `hardness.tops`), and these.
+    runs and glasses scatter. Two factors multiply it: `FOLLOW`, since atoms of a top follow the pull, and `RIM_ERROR`,
+    since the area decides how much work a flat of it has.
 
     Parameters
     ----------
@@ -80,7 +85,9 @@ def gap_cutoff(
     by_work = combined_cutoffs_nm(top for tops in runs.values() for top in tops)[1]
     logs, rng = np.log(by_run[:, 1]), np.random.default_rng(0)
     errors = mean_over_glasses(logs, [glasses[run] for run in runs], FIT_RULES.samples, rng) - logs.mean()
-    cutoffs = by_work * np.exp(errors) * rng.uniform(0.9, 1.0, FIT_RULES.samples)
+    follow = rng.normal(*FOLLOW, FIT_RULES.samples)
+    rim = np.exp(rng.uniform(-RIM_ERROR, RIM_ERROR, FIT_RULES.samples))
+    cutoffs = by_work * np.exp(errors) * follow * rim
     return {
         **samples_of(cutoffs, "nm"),
         "runs": [

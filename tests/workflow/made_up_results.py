@@ -283,6 +283,13 @@ def _hardness(root: Path) -> None:
         "method": "literature",
         "gate": {"passed": False, "reasons": ["only 2 of 9 runs <gave> a hardness"]},
         "H_macro_GPa": {"median": 1.9, "low": 1.1, "high": 2.8},
+        "hardness_GPa": {way: {"median": 9.0, "low": 8.0, "high": 10.0} for way in ("measured", "scales")},
+        "twins": [{"energy_scale": 0.5, "pairs": 1, "ratio": {"median": 0.5, "low": 0.44, "high": 0.57}}],
+        "free_fit": {
+            "H_macro_GPa": {"mean": 10.0, "low": 7.0, "high": 13.0},
+            "H_prime_GPa_nm0.5": {"mean": 0.1, "low": -6.0, "high": 4.0},
+            "verdict": "6 runs do not tell H_prime from zero",
+        },
         "curve": [{"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9} for x in (2.0, 10.0)],
         "film": {
             "base_GPa": {"low": 4, "median": 5, "high": 6},

@@ -77,6 +77,7 @@ use rule press_pads as press_prior_pads with:
 rule calibrate:
     """inputs narrowed by your measurements of contacts"""
     input:
+        required(MEASUREMENT_FILES, "measurements.tables: none; name the tables of measurements (docs/calibration.md)"),
         **MEASUREMENT_FILES,
         **SURFACE,
         **PRIOR_PADS,

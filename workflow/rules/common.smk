@@ -73,10 +73,10 @@ def material_path(material):
     return str(CONFIG / "materials" / f"{material.name}.yaml")
 
 
-def in_tail(tail):
-    """No input where the scene has the tail; else what refuses a target that needs it."""
-    line = f"{SCENE_GIVEN}: tails: {', '.join(SCENE.tails)}: the target needs the tail {tail}; add it to tails"
-    return [] if tail in SCENE.tails else lambda wildcards: refuse(line)
+def required(is_there, words):
+    """No input where a scene has what a target needs; else what refuses the target in these words."""
+    line = f"{SCENE_GIVEN}: {words}"
+    return [] if is_there else lambda wildcards: refuse(line)
 
 
 def needed(stage):

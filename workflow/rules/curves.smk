@@ -18,4 +18,5 @@ rule curves:
         "../scripts/compute_nominal.py"
 
 
-SHOWN += rules.curves.output
+if SCENE.tails:
+    SHOWN += rules.curves.output

@@ -4,6 +4,10 @@
 rule failure:
     """how often the switch fails, down to one in a million"""
     input:
+        required(
+            SCENE.failure.probability is not None,
+            "failure.probability = null: give the share of the switches that may fail, such as 1e-6",
+        ),
         **PRESSED,
     output:
         rate=f"{RESULTS}/device/failure.json",

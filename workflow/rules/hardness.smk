@@ -3,13 +3,18 @@ from workflow.scene.hardness_files import check_bodies, hardness_files
 
 HARDNESS = settings("hardness")
 CLOSING_S = {}  # seconds of each closing run
+UNFIT = ""  # why the closings cannot be run; of a scene that needs none, it refuses the target alone
 try:
     BODIES = hardness_files(SCENE.hardness, MATERIALS, CONFIG, lambda path: named_files("hardness.potential", path)[0])
-    if needed("hardness") and workflow.is_main_process:
+    if workflow.is_main_process:
         CLOSING_S = check_bodies(SCENE.hardness, BODIES, MATERIALS)
 except InputError as error:
-    refuse(f"{SCENE_GIVEN}: {error}")
-CLOSINGS, BASE = BODIES.closings, BODIES.base
+    UNFIT = str(error)
+    if needed("hardness"):
+        refuse(f"{SCENE_GIVEN}: {UNFIT}")
+CLOSINGS = BODIES.closings
+BASE = BODIES.base
+H_MACRO = SCENE.inputs.priors().h_macro  # the runs give H' beside it
 
 
 def of_run(pattern):
@@ -32,6 +37,7 @@ wildcard_constraints:
 
 rule make_glass:
     input:
+        required(not UNFIT, UNFIT),
         material=BODIES.material,
         potential=BODIES.potential,
     output:
@@ -104,6 +110,7 @@ rule hardness:
         base_material=BASE or [],
         potential=BODIES.potential,
         glasses=[f"{RESULTS}/hardness/glass/{seed}.json" for seed in dict.fromkeys(SCENE.hardness.seeds)],
+        h_macro=named_files("inputs.h_macro.values", H_MACRO.values)[0] if isinstance(H_MACRO.values, str) else [],
     output:
         points=f"{RESULTS}/hardness/points.csv",
         fit=f"{RESULTS}/hardness/fit.json",
@@ -111,7 +118,8 @@ rule hardness:
         f"{RESULTS}/logs/hardness.log",
     params:
         potential=HARDNESS["potential"],
-        energy_scales=HARDNESS["energy_scales"],
+        energies=HARDNESS["energies"],
+        h_macro=H_MACRO.model_dump(mode="json"),
     message:
         "find the hardness of each closing run and fit it"
     script:

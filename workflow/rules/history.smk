@@ -6,6 +6,7 @@ from workflow.scene.memory import history_MB
 rule history:
     """cycle after cycle, with creep"""
     input:
+        required(SCENE.history.cycles > 0, "history.cycles = 0: give the cycles of each surface"),
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:

@@ -1,16 +1,10 @@
 # The switch against humidity; only in scenes with inputs.humidity or contact.air
 
 
-def in_humid_air():
-    """No input where the scene has humid air; else what refuses the target."""
-    line = f"{SCENE_GIVEN}: the air is dry; give inputs.humidity or contact.air"
-    return [] if SCENE.humid else lambda wildcards: refuse(line)
-
-
 rule humidity:
     """the switch from dry to humid air"""
     input:
-        in_humid_air(),
+        required(SCENE.humid, "the air is dry; give inputs.humidity or contact.air"),
         **PRESSED,
     output:
         f"{RESULTS}/device/humidity.csv",

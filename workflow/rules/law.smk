@@ -26,7 +26,6 @@ rule compute_runs:
 rule law:
     """compact law of one cell"""
     input:
-        in_tail("law"),
         inputs=f"{RESULTS}/inputs.csv",
         chunks=[f"{RESULTS}/curves/runs/chunk_{chunk}.h5" for chunk in RUN_CHUNKS],
         nominal=f"{RESULTS}/curves/nominal.h5",

@@ -34,18 +34,33 @@ rule press_pads:
         "../scripts/press_pads.py"
 
 
-rule device:
-    """pads at points of all that is uncertain, and the switch on them"""
+rule pad:
+    """pads at points of all that is uncertain"""
     input:
-        in_tail("pad"),
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
         chunks=[f"{RESULTS}/pad/points/chunk_{chunk}.h5" for chunk in POINT_CHUNKS],
-        effects=str(CONFIG / "effects.yaml"),
     output:
         model=f"{RESULTS}/pad/model.h5",
         inputs=f"{RESULTS}/pad/inputs.csv",
         table=f"{RESULTS}/pad/curves.csv",
+    log:
+        f"{RESULTS}/logs/pad.log",
+    priority: 2
+    params:
+        **ON_PADS,
+    message:
+        "assemble the pad"
+    script:
+        "../scripts/assemble_pad.py"
+
+
+rule device:
+    """the switch on the pads: release, sticking and what they hang on"""
+    input:
+        **PRESSED,
+        effects=str(CONFIG / "effects.yaml"),
+    output:
         switch=f"{RESULTS}/device/pad_switch.json",
         budget=f"{RESULTS}/device/budget.csv",
         verilog=f"{RESULTS}/device/rough_pad.va",
@@ -56,11 +71,11 @@ rule device:
     params:
         **ON_PADS,
     message:
-        "assemble the pad, and say what the switch does"
+        "say what the switch does"
     script:
-        "../scripts/assemble_pad.py"
+        "../scripts/answer_switch.py"
 
 
 if "pad" in SCENE.tails:
-    SHOWN += rules.device.output
-    KEPT += rules.device.input.chunks
+    SHOWN += [*rules.pad.output, *rules.device.output]
+    KEPT += rules.pad.input.chunks

@@ -30,7 +30,6 @@ rule compute_direct_runs:
 rule uq:
     """what uncertain inputs do to the law, and which cause the spread"""
     input:
-        in_tail("law"),
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
         direct=DIRECT,
@@ -56,6 +55,12 @@ rule uq:
         "propagate the uncertainty of the inputs, and rank them"
     script:
         "../scripts/propagate_uncertainty.py"
+
+
+rule sensitivity:
+    """the same as uq: the ranking of the inputs comes with their effect"""
+    input:
+        rules.uq.output,
 
 
 if "law" in SCENE.tails:

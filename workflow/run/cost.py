@@ -26,7 +26,7 @@ TYPICAL_S = {
     "judge_scans": 10.0,
     "press_pads": 15.0,
     "press_prior_pads": 15.0,
-    "device": 15.0,
+    "device": 12.0,
     "uq": 20.0,
     "report": 8.0,
     "calibrate": 60.0,

@@ -111,7 +111,7 @@ def _too_few_points(scene: Scene) -> Iterator[str]:
     """A line on points too few to tell causes apart: for a curve of second degree each, a constant, and one over."""
     inputs = sum(row.distribution != "fixed" for row in scene.inputs.rows().values()) + scene.unequal_places
     needed = 2 * (inputs + ("gap_cutoff" not in scene.inputs.rows()) + len(scene.device.varied)) + 2
-    if "pad" in scene.tails and 0 < scene.pad.points < needed:
+    if 0 < scene.pad.points < needed:
         yield (
             f"pad.points = {scene.pad.points}: {needed // 2 - 1} inputs and properties of the device vary, whose parts "
             f"in the spread so few points cannot tell apart; accepted are 0 (no interval) or at least {needed}"

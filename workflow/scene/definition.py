@@ -37,9 +37,8 @@ class Scene(Settings):
     )
     tails: tuple[Literal["law", "pad"], ...] = Field(
         default=("law", "pad"),
-        min_length=1,
-        description="what is made of the inputs: the law of one cell with its uncertainty, as in the paper; the pad of "
-        "many cells and the switch on it",
+        description="what is made of the inputs and shown: the law of one cell with its uncertainty, as in the paper; "
+        "the pad of many cells and the switch on it; none: the inputs alone",
     )
     inputs: InputsSettings = InputsSettings()
     hardness: HardnessSettings = HardnessSettings()

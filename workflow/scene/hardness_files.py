@@ -63,7 +63,10 @@ def hardness_files(
 def check_bodies(
     settings: HardnessSettings, files: HardnessFiles, materials: Mapping[str, Material]
 ) -> dict[str, float]:
-    """Refuse before the first job what it would refuse: a bad potential, a film that does not fit its asperity or base.
+    """Refuse before the first job what it would refuse.
+
+    That is a bad potential, one without a calibration of the contact area or without the material, and a film that does
+    not fit its asperity or base.
 
     Returns
     -------
@@ -73,11 +76,13 @@ def check_bodies(
     ------
     InputError : of the first of them.
     """
-    from atomistic.hardness.cost import closing_seconds  # jobs do without
+    from atomistic.hardness.contact_area import calibrated  # jobs do without
+    from atomistic.hardness.cost import closing_seconds
     from atomistic.hardness.stack import base_of, check_ions
     from atomistic.potentials import load_potential
 
     potential = load_potential(files.potential)
+    calibrated(potential)
     base = None if settings.base is None else base_of(materials[settings.base])
     if base is not None:
         check_ions(base.material, potential.materials.get(settings.material, {}))

@@ -6,7 +6,6 @@ In: inputs.csv, pad/model.h5.  Out: device/failure.json, device/failure.csv (V).
 import numpy as np
 
 from mesoscale.device.points import press_pad, surfaces_of
-from mesoscale.errors import InputError
 from mesoscale.failure.population import Population
 from mesoscale.failure.rate import failure_rate
 from mesoscale.settings import FailureSettings
@@ -16,8 +15,6 @@ from workflow.run.pads import load_model, points_of_job
 
 with job(snakemake) as run:
     asked = settings_from_job(FailureSettings, snakemake.params.failure)
-    if asked.probability is None:
-        raise InputError("failure.probability = null: give the share of the switches that may fail, such as 1e-6")
     points, pad = points_of_job(snakemake)
     model = load_model([snakemake.input.model], points)
 

@@ -1,7 +1,7 @@
 """Hardness of each closing run, or the reason why there is none; the fit to all of them.
 
 In:  curves, witnesses (GPa, nm) and summaries of the runs, glass/*.json, potential (YAML), material and, below films,
-     base_material (YAML).
+     base_material (YAML); samples of H_macro (GPa) where the scene has a file of them.
 Out: points.csv (GPa, nm), fit.json (H_macro in GPa, H' in GPa nm^0.5, law of films, cut-off D0 of the attraction in nm,
      gate).
 """
@@ -13,8 +13,10 @@ from atomistic.hardness.size_effect import fit_size_effect
 from atomistic.hardness.top_attraction import gap_cutoff
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
+from mesoscale.inputs.table import stated_distribution
+from mesoscale.settings import InputRow
 from workflow.files.results import load_csv, load_json, load_numbers, write_csv, write_json
-from workflow.run.job import job
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     given, params = snakemake.input, snakemake.params
@@ -29,10 +31,18 @@ with job(snakemake) as run:
     measured = load_material(given.material).part("oxide_glass").indentation_GPa
     if given.base_material:
         area_error = max(area_error, load_material(given.base_material).part("film_base").area_error)
-        fit = fit_films(points, curves, glasses, area_error, measured)
+        fit = fit_films(points, curves, glasses, area_error, params.energies, measured)
     else:
-        fit = fit_size_effect(points, glasses, params.energy_scales, area_error, indentation_GPa=measured)
-    used = {p["run"]: int(p["seed"]) for p in points if p["status"] == "yield" and not p["film_nm"]}
+        row = settings_from_job(InputRow, params.h_macro)
+        if given.h_macro:
+            row = row.model_copy(update={"values": given.h_macro})
+        h_macro = stated_distribution("h_macro", row).quantile
+        fit = fit_size_effect(points, glasses, area_error, h_macro, params.energies, measured)
+    used = {
+        point["run"]: int(point["seed"])
+        for point in points
+        if point["status"] == "yield" and not point["film_nm"] and float(point["energy_scale"]) == 1.0
+    }
     if cutoff := gap_cutoff({name: witnesses[name] for name in used}, used):
         fit["tops"] = cutoff.pop("runs")
         fit["inputs"]["gap_cutoff"] = cutoff

@@ -21,7 +21,14 @@ def made_up(films=FILMS, seeds=(1, 2), noise=0.0, of_seed=0.0):
         stress = film_law.film(np.array(TRUE), length, np.array(thickness)) * np.exp(of_seed * rng.normal())
         stress = stress * np.exp(noise * rng.normal(size=60))
         points.append({"run": run, "film_nm": film, "seed": str(seed), "energy_scale": "1.0", "sound": "True"})
-        points[-1] |= {"status": "yield", "wavelength_nm": "5", "amplitude_nm": "0.5", **COST}
+        points[-1] |= {
+            "asperity": film or "oxide",
+            "hardness_GPa": str(TRUE[0]),
+            "status": "yield",
+            "wavelength_nm": "5",
+            "amplitude_nm": "0.5",
+            **COST,
+        }
         curves[run] = [
             {"contact_length_nm": at, "contact_stress_GPa": of} for at, of in zip(length, stress, strict=True)
         ]

@@ -10,6 +10,10 @@ from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SOFT, draw
 from workflow.report.numbers import cell, column, number, show, spread
 from workflow.report.page import Block, CellText, Figure, stage, table
 
+PAPER_VALUES = ((3.0, 10.0), (15.0, 2.0))
+"""Contact length (nm) and hardness (GPa) in the text of Kim et al. (2013)."""
+TABLE_1 = {"H_macro_GPa": (0.7, 3.2), "H_prime_GPa_nm0.5": (1.95, 14.8)}
+"""Ranges of both constants of eq. 4 in Table 1 of Kim et al. (2013)."""
 SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
 
 
@@ -30,7 +34,8 @@ def describe(results: Results) -> Iterator[Block]:
     )
     yield Figure(
         hardness_size(results),
-        "Hardness against contact length."
+        "Hardness against contact length, with full and with halved energies where both were run."
+        + " Grey: Table 1 of the paper; crosses: the values in its text." * _as_paper(results)
         + (f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval." if fit.get("curve") else ""),
         "Figure 8",
     )
@@ -51,6 +56,27 @@ def describe(results: Results) -> Iterator[Block]:
         del columns["film (nm)"]
     yield table("Every run and what became of it", points, columns)
     yield from _fit_notes(fit)
+
+
+def _as_paper(results: Results) -> bool:
+    """Whether the figure has the paper's values: in scene `paper`, and where energies enter as in the paper."""
+    fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
+    return results.beside_paper or fit.get("energies_from") == "scales"
+
+
+def _twin_notes(fit: dict[str, Any]) -> Iterator[str]:
+    """What scaled energies do to the hardness, and the hardness by both ways to bound the energies."""
+    for row in fit.get("twins", ()):
+        ratio = row["ratio"]
+        yield (
+            f"With energies × {show(row['energy_scale'])} the hardness is {show(ratio['median'])} "
+            f"[{show(ratio['low'])}, {show(ratio['high'])}] of that with full ones. The pairs of runs are "
+            f"{row['pairs']}; the 68 % interval is from the 9 % by which runs of one kind scatter."
+        )
+    for way, words in (("measured", "bounded by indentation"), ("scales", "as run, both alike")):
+        if found := fit.get("hardness_GPa", {}).get(way):
+            span = f"{show(found['median'])} [{show(found['low'])}, {show(found['high'])}] GPa"
+            yield f"Hardness with the energies {words}: {span} (median and 68 % interval)."
 
 
 def _use_of_eq_4(results: Results) -> str:
@@ -127,6 +153,14 @@ def hardness_size(results: Results) -> str | None:
             )
             axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L (eq. 4)")
             axis.fill_between(length, low, high, color=GREEN, alpha=0.18, linewidth=0, label="its 68 % interval")
+        if _as_paper(results):
+            lengths = np.geomspace(1.0, longest, 60)
+            least, most = (
+                macro + prime / np.sqrt(lengths)
+                for macro, prime in zip(TABLE_1["H_macro_GPa"], TABLE_1["H_prime_GPa_nm0.5"], strict=True)
+            )
+            axis.fill_between(lengths, least, most, color=SOFT, alpha=0.15, linewidth=0, label="Table 1")
+            axis.plot(*zip(*PAPER_VALUES, strict=True), "x", color=INK, label="paper, in its text")
         axis.set(xlabel="contact length √A (nm)", ylabel="hardness (GPa)", ylim=(0, None), xlim=(1, 1.1 * longest))
         axis.legend()
 
@@ -143,8 +177,8 @@ def _key(point: CsvRow) -> str:
 
 
 def _fit_notes(fit: dict[str, Any]) -> list[str]:
-    """Both constants in use, and the attraction of the tops."""
-    notes = []
+    """Both constants in use, what the energies do, and the attraction of the tops."""
+    notes = [*_twin_notes(fit)]
     for key, label, unit, origin in (
         ("H_macro_GPa", "H_macro", "GPa", "from the literature"),
         ("H_prime_GPa_nm0.5", "H′", "GPa nm½", "from the points"),
@@ -152,6 +186,14 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
         if isinstance(entry := fit.get(key), dict):
             span = f"{show(entry['median'])} [{show(entry['low'])}, {show(entry['high'])}] {unit}"
             notes.append(f"{label} in use, {origin}: {span} (median and 68 % interval).")
+    if free := fit.get("free_fit"):
+        macro, prime = (
+            f"{show(free[key]['mean'])} [{show(free[key]['low'])}, {show(free[key]['high'])}]" for key in TABLE_1
+        )
+        notes.append(
+            f"Both constants fitted freely: H_macro {macro} GPa, H′ {prime} GPa nm½ (mean and 68 % interval). "
+            f"{free['verdict'][0].upper()}{free['verdict'][1:]}."
+        )
     if film := fit.get("film"):
         base, (low, high) = film["base_GPa"], film["length_over_thickness"]
         errors = {name: f"{100 * error:.0f} %" for name, error in film["left_out"].items()}

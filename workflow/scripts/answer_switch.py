@@ -1,0 +1,29 @@
+"""What the switch does on the pad, over all that is uncertain.
+
+In: inputs.csv, pad/model.h5 (GPa against nm; V), config/effects.yaml.
+Out: device/pad_switch.json, device/budget.csv (V), device/rough_pad.va, device/rough_pad.sub.
+"""
+
+from pathlib import Path
+
+from asperity.guards.foreign_yaml import load_mapping
+from mesoscale.circuit.spice import spice_pad
+from mesoscale.circuit.verilog import verilog_pad
+from mesoscale.device.budget import budget, effects_of
+from mesoscale.device.release import switch_on_pad
+from workflow.files.results import write_csv, write_json, write_text
+from workflow.run.job import job
+from workflow.run.pads import load_model, points_of_job
+
+with job(snakemake) as run:
+    points, _ = points_of_job(snakemake)
+    model = load_model([snakemake.input.model], points)
+    pad = model.central.pressed
+    write_text(snakemake.output.verilog, verilog_pad(pad.law, pad.cells.count))
+    write_text(snakemake.output.spice, spice_pad(pad.law, pad.cells.count))
+    switch = switch_on_pad(model, points.contact.length_nm**2)
+    write_json(snakemake.output.switch, switch, run.provenance)
+    effects = effects_of(load_mapping(Path(snakemake.input.effects), "table of effects"))
+    if points.contact.air or "humidity" in points.table.names:
+        effects.pop("humid air", None)  # the answer holds it
+    write_csv(snakemake.output.budget, budget(effects, switch, model.central))
