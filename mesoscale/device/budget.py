@@ -1,6 +1,6 @@
 """What an expert would name, and by how many volts each moves the release: the budget."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -33,6 +33,7 @@ class Effect(Settings):
     share: float | None = key(None, "a bound from the source, as a share of the release", "[0, 1]")
     squared_V2: float | None = key(None, "what is taken off the square of the voltage", "V^2")
     charge_e_cm2: float | None = key(None, "charge at the surface of the dielectric", "1/cm^2")
+    hardness: float | None = key(None, "factor on the hardness of the film, or of the body without one", "(0, 10]")
     varied_as: str = key("", "input that stands for it, where a scene varies it")
     changes: str = key("", "property of the device that it changes")
     factor: float = key(1.0, "times its value")
@@ -45,9 +46,10 @@ class Effect(Settings):
             raise ValueError("a row without source; name the publication or page that its volts come from")
         if self.changes and self.changes not in DeviceSettings.model_fields:
             raise ValueError(f"changes = {self.changes}: no property of the device")
-        ways = [self.volts, self.share, self.squared_V2, self.charge_e_cm2, self.changes or None]
+        ways = [self.volts, self.share, self.squared_V2, self.charge_e_cm2, self.hardness, self.changes or None]
         if sum(way is not None for way in ways) != (self.how != "unknown"):
-            raise ValueError("state one of volts, share, squared_V2, charge_e_cm2 and changes; none of what is unknown")
+            words = "volts, share, squared_V2, charge_e_cm2, hardness and changes"
+            raise ValueError(f"state one of {words}; none of what is unknown")
         return self
 
 
@@ -67,12 +69,37 @@ def effects_of(rows: Mapping[str, Any]) -> dict[str, Effect]:
     return effects
 
 
-def budget(effects: Mapping[str, Effect], switch: Mapping[str, Any], central: Solved) -> list[dict[str, Any]]:
+TWIN = "potential with half its energies"
+"""The effect whose factor twins of the closing runs tell."""
+
+
+def with_twins(effects: Mapping[str, Effect], twins: Sequence[Mapping[str, Any]]) -> dict[str, Effect]:
+    """The effects with the factor on the hardness that the twins of half the energies have.
+
+    Parameters
+    ----------
+    twins : of hardness/fit.json.
+    """
+    known = {row["energy_scale"]: row["ratio"] for row in twins}
+    if 0.5 not in known:
+        return dict(effects)
+    ratio = known[0.5]
+    about = f"{ratio['median']:.2f} [{ratio['low']:.2f}, {ratio['high']:.2f}] of the hardness, by twins of this scene"
+    return {**effects, TWIN: effects[TWIN].model_copy(update={"hardness": ratio["median"], "about": about})}
+
+
+def budget(
+    effects: Mapping[str, Effect],
+    switch: Mapping[str, Any],
+    central: Solved,
+    by_hardness: Mapping[float, float] | None = None,
+) -> list[dict[str, Any]]:
     """Rows of device/budget.csv, the most volts first; without a release there is nothing to move, and no row.
 
     Parameters
     ----------
     switch : content of device/pad_switch.json.
+    by_hardness : of `release_by_hardness`; None: effects on the hardness have no row.
     """
     if central.pad is None or not central.states or central.states["release_V"] == 0.0:
         return []
@@ -84,7 +111,9 @@ def budget(effects: Mapping[str, Effect], switch: Mapping[str, Any], central: So
             continue  # a plate on a spring has no such property
         if effect.varied_as and effect.varied_as in central.point.values:
             continue
-        volts, remark = _moved_V(effect, pressed)
+        if effect.hardness is not None and by_hardness is None:
+            continue
+        volts, remark = _moved_V(effect, pressed, by_hardness or {})
         stated = effect.model_dump(include={"how", "held", "settle", "source"})
         rows.append({"effect": name, "volts": volts, "about": f"{effect.about}{remark}", **stated})
     return sorted(rows, key=lambda row: -1.0 if row["volts"] is None else -row["volts"] - 1e3)
@@ -175,9 +204,14 @@ def _of_device(pressed: _Pressed) -> Iterator[dict[str, Any]]:
         }
 
 
-def _moved_V(effect: Effect, pressed: _Pressed) -> tuple[float | None, str]:
+def _moved_V(effect: Effect, pressed: _Pressed, by_hardness: Mapping[float, float]) -> tuple[float | None, str]:
     """By how much an effect moves the release of the central switch, and a remark."""
     device, release = pressed.device, pressed.central.states["release_V"]
+    if effect.hardness is not None:
+        usual, other = by_hardness[1.0], by_hardness[effect.hardness]
+        if not np.isfinite(usual - other):
+            return None, "; no answer"
+        return abs(other - usual), "; it may stick" * (other == 0.0)
     if effect.changes:
         return pressed.reach_V(_changed(effect, pressed.central))
     if effect.charge_e_cm2 is not None:

@@ -243,7 +243,7 @@ def _pad(root: Path) -> None:
     switch = switch_on_pad(model, area)
     write_json(root / "device/pad_switch.json", switch, PROVENANCE)
     shipped = load_mapping(ROOT / "config" / "effects.yaml", "table of effects")
-    _write(root / "device/budget.csv", budget(effects_of(shipped), switch, central))
+    _write(root / "device/budget.csv", budget(effects_of(shipped), switch, central, {1.0: 7.0, 0.5: 5.0, 1.37: 7.3}))
 
 
 def _hardness(root: Path) -> None:

@@ -59,6 +59,7 @@ rule device:
     """the switch on the pads: release, sticking and what they hang on"""
     input:
         **PRESSED,
+        hardness=INPUT_STAGES.get("hardness", []),
         effects=str(CONFIG / "effects.yaml"),
     output:
         switch=f"{RESULTS}/device/pad_switch.json",

@@ -1,6 +1,6 @@
 """What the switch does on the pad, over all that is uncertain.
 
-In: inputs.csv, pad/model.h5 (GPa against nm; V), config/effects.yaml.
+In: inputs.csv, pad/model.h5 (GPa against nm; V), config/effects.yaml, hardness/fit.json where the scene uses it.
 Out: device/pad_switch.json, device/budget.csv (V), device/rough_pad.va, device/rough_pad.sub.
 """
 
@@ -9,14 +9,15 @@ from pathlib import Path
 from asperity.guards.foreign_yaml import load_mapping
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.verilog import verilog_pad
-from mesoscale.device.budget import budget, effects_of
+from mesoscale.device.budget import TWIN, budget, effects_of, with_twins
+from mesoscale.device.by_hardness import release_by_hardness
 from mesoscale.device.release import switch_on_pad
-from workflow.files.results import write_csv, write_json, write_text
+from workflow.files.results import load_json, write_csv, write_json, write_text
 from workflow.run.job import job
 from workflow.run.pads import load_model, points_of_job
 
 with job(snakemake) as run:
-    points, _ = points_of_job(snakemake)
+    points, settings = points_of_job(snakemake)
     model = load_model([snakemake.input.model], points)
     pad = model.central.pressed
     write_text(snakemake.output.verilog, verilog_pad(pad.law, pad.cells.count))
@@ -26,4 +27,10 @@ with job(snakemake) as run:
     effects = effects_of(load_mapping(Path(snakemake.input.effects), "table of effects"))
     if points.contact.air or "humidity" in points.table.names:
         effects.pop("humid air", None)  # the answer holds it
-    write_csv(snakemake.output.budget, budget(effects, switch, model.central))
+    if computed := snakemake.input.get("hardness"):
+        effects = with_twins(effects, load_json(computed)["twins"])
+    else:
+        effects.pop(TWIN)
+    factors = [effect.hardness for effect in effects.values() if effect.hardness is not None]
+    releases = release_by_hardness(model.central.point, points.on_grid, settings.point_cells, factors)
+    write_csv(snakemake.output.budget, budget(effects, switch, model.central, releases))

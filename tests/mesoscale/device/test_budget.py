@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from asperity.guards.foreign_yaml import load_mapping
-from mesoscale.device.budget import budget, effects_of
+from mesoscale.device.budget import TWIN, budget, effects_of, with_twins
 from mesoscale.device.electrode import solve_deepened
 from mesoscale.device.points import Point, Solved
 from mesoscale.errors import InputError
@@ -87,6 +87,22 @@ def test_a_plate_has_no_stress_and_a_switch_that_sticks_has_no_budget():
     assert (
         budget({}, SWITCH_CONTENT, Solved(stuck.point, KnownPad, stuck.states | {"release_V": 0.0}, (0.0, 0.0))) == []
     )
+
+
+def test_the_factor_of_half_the_energies_is_that_of_the_scenes_twins():
+    effects = effects_of(SHIPPED)
+    ratio = {"median": 0.52, "low": 0.46, "high": 0.58}
+    told = with_twins(effects, [{"energy_scale": 0.5, "ratio": ratio}])
+    assert told[TWIN].hardness == 0.52
+    assert told[TWIN].about == "0.52 [0.46, 0.58] of the hardness, by twins of this scene"
+    assert with_twins(effects, []) == effects
+    switch = central(DeviceSettings(hold_voltage_V=80.0))
+    rows = {row["effect"]: row for row in budget(told, SWITCH_CONTENT, switch, {1.0: 7.0, 0.52: 0.0, 1.37: 7.5})}
+    assert rows[TWIN]["volts"] == 7.0
+    assert rows[TWIN]["about"].endswith("; it may stick")
+    assert rows["asperities that meet asperities"]["volts"] == 0.5
+    without = {row["effect"] for row in budget(told, SWITCH_CONTENT, switch)}
+    assert set(rows) - without == {TWIN, "asperities that meet asperities"}
 
 
 def test_an_input_of_the_scene_takes_the_place_of_its_row():
