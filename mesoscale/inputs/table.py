@@ -37,7 +37,7 @@ def collect(
 
     Raises
     ------
-    InputError : a stage's gate failed, a stage lacks an input, or a range crosses a physical bound.
+    InputError : a stage's gate failed and is not accepted, a stage lacks an input, or a range crosses a physical bound.
     """
     rows, pairs = [], dict(settings.pairs)
     for names, rank in joint_samples(settings.rows(law)).items():
@@ -47,7 +47,8 @@ def collect(
             given, source, where = stated_distribution(name, row), row.source or "scene", f"inputs.{name}"
         else:
             source = files[row.origin]
-            entry = _from_stage(name, row.origin, stages[row.origin], source)
+            accepted = row.origin in settings.accepted_gates
+            entry = _from_stage(name, row.origin, stages[row.origin], source, accepted)
             where = f"{source}: inputs.{name}"
             given = distribution_of(entry, where)
             for other, rank in entry.get("correlation", {}).items():
@@ -222,9 +223,9 @@ def distribution_of(entry: Mapping[str, Any], where: str) -> Distribution:
     return Distribution(str(entry["distribution"]), **numbers)
 
 
-def _from_stage(name: str, origin: str, content: Mapping[str, Any], source: str) -> Mapping[str, Any]:
+def _from_stage(name: str, origin: str, content: Mapping[str, Any], source: str, accepted: bool) -> Mapping[str, Any]:
     gate = content.get("gate", {})
-    if not gate.get("passed", False):
+    if not (gate.get("passed", False) or accepted):
         reasons = "; ".join(gate.get("reasons", [])) or "no reason given"
         raise InputError(
             f"{source}: its gate failed ({reasons}), so {name} cannot be taken from {origin}; "

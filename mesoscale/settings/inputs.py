@@ -141,6 +141,9 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
         "hardness by contact area: constant, eq. 4 (h_prime), or film on a base (h_film, t_film, k_film, m_film)",
     )
     adhesion: WorkAndRangeSettings | None = key(None, "work and range in place of hamaker and gap_cutoff")
+    accepted_gates: tuple[Literal["hardness", "elastic", "topography"], ...] = key(
+        (), "stages whose inputs are taken although their gate failed: to test the chain, for no prediction"
+    )
     correlations: dict[str, dict[str, Rank]] = key(
         {}, "rank correlations besides those that a stage reports, such as {rms: {q0: -0.4, hurst: 0.2}}"
     )

@@ -18,6 +18,13 @@ def gates_of(results: Results) -> list[Gate]:
     return [gate for build in GATES for gate in build(results)]
 
 
+def accepted_failures(results: Results) -> dict[str, Gate]:
+    """Failed gates of stages whose inputs the scene takes all the same, by stage."""
+    stages = {**INPUT_GATES, "topography": _topography}
+    gates = {stage: next(build(results), None) for stage, build in stages.items()}
+    return {stage: gate for stage, gate in gates.items() if gate and gate.used and not gate.passed}
+
+
 def trust(gates: Sequence[Gate]) -> tuple[str, str]:
     """One light for the answer (pass, warn or fail), and in words what it says."""
     failed = [gate.stage for gate in gates if gate.used and gate.answer and not gate.passed]
@@ -120,9 +127,12 @@ def _calibration(results: Results) -> Iterator[Gate]:
         yield Gate("calibration", bool(posterior["gate"]["passed"]), reasons, answer=results.uses("calibration"))
 
 
+INPUT_GATES: dict[str, Callable[[Results], Iterator[Gate]]] = {
+    "hardness": lambda results: _of_file("hardness", "hardness/fit.json", results),
+    "elastic": lambda results: _of_file("elastic", "elastic/e_star.json", results),
+}
 GATES: tuple[Callable[[Results], Iterator[Gate]], ...] = (
-    lambda results: _of_file("hardness", "hardness/fit.json", results),
-    lambda results: _of_file("elastic", "elastic/e_star.json", results),
+    *INPUT_GATES.values(),
     _topography,
     _curves,
     _pad,

@@ -13,7 +13,7 @@ from asperity.guards.foreign_text import shown
 from workflow.report.available import Results
 from workflow.report.drawing import SUBSCRIPT
 from workflow.report.first import first_screen
-from workflow.report.gates import GATES, trust
+from workflow.report.gates import GATES, accepted_failures, trust
 from workflow.report.limits import limits
 from workflow.report.page import Gate
 from workflow.report.stages import PARTS
@@ -34,7 +34,9 @@ def render(results: Results) -> str:
             parts.append({"anchor": anchor, "title": title, "sections": sections})
     gates = [gate for build in GATES for gate in guarded("gates", lambda one=build: [*one(results)], [], broken)]
     first = guarded("first screen", partial(first_screen, results, gates), None, broken)
+    failures = guarded("accepted gates", partial(accepted_failures, results), {}, broken)
     page = {
+        "rests_on": "; ".join(f"{stage}: {', '.join(gate.reasons)}" for stage, gate in failures.items()),
         "scene": results.scene,
         "beside_paper": results.beside_paper,
         "first": first,

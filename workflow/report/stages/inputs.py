@@ -10,6 +10,7 @@ from mesoscale.inputs.distributions import Distribution
 from mesoscale.inputs.table import distribution_of, from_rows
 from mesoscale.settings.definitions import BY_NAME
 from workflow.report.available import CsvRow, Results
+from workflow.report.gates import accepted_failures
 from workflow.report.numbers import number, show, shown_unit
 from workflow.report.page import Block, PageTable, stage, table
 from workflow.report.verdict import in_words
@@ -19,12 +20,13 @@ from workflow.report.verdict import in_words
 def describe(results: Results) -> Iterator[Block]:
     """Table 1 in use."""
     rows = results.csv("inputs.csv")
+    failed = accepted_failures(results)
     columns = {
         "input": lambda row: in_words(row["parameter"]),
         "unit": lambda row: shown_unit(row["unit"]),
         "distribution": _distribution,
         "varies": lambda row: {"common": "one unknown value", "each": "device to device"}[row["varies"]],
-        "origin": "origin",
+        "origin": lambda row: row["origin"] + ", whose gate failed" * (row["origin"] in failed),
         "source": "file",
     }
     yield ""
