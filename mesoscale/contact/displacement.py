@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact.cycle import contact_on
+from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.pressed import Contact, State
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
@@ -51,9 +52,11 @@ class Closing:
     settled : whether flow came to rest at every separation so far.
     """
 
-    def __init__(self, inputs: ContactInputs, settings: ContactSettings, heights: Array) -> None:
+    def __init__(
+        self, inputs: ContactInputs, settings: ContactSettings, heights: Array, numerics: Numerics = NUMERICS
+    ) -> None:
         """Take (N, N) heights in nm, with contact at their minima; flow changes them in place."""
-        self._contact = contact_on(heights, inputs, settings)
+        self._contact = contact_on(heights, inputs, settings, numerics)
         self._touching = self._contact.touching_separation
         self._flats: list[float] = []
         self._forces: list[tuple[float, float]] = []
@@ -94,7 +97,12 @@ class Closing:
 
 
 def close_by_separation(
-    inputs: ContactInputs, settings: ContactSettings, heights: Array, separations_nm: Array, depths: Positions
+    inputs: ContactInputs,
+    settings: ContactSettings,
+    heights: Array,
+    separations_nm: Array,
+    depths: Positions,
+    numerics: Numerics = NUMERICS,
 ) -> Displacement:
     """Close a rough surface to falling separations, and open it again from some of them.
 
@@ -111,7 +119,7 @@ def close_by_separation(
     separations_nm = np.asarray(separations_nm, float)
     if not (np.diff(separations_nm) < 0).all():
         raise InputError("separations_nm: accepted are falling separations in nm, from far to near")
-    surface = Closing(inputs, settings, heights)
+    surface = Closing(inputs, settings, heights, numerics)
     opening = np.full((len(depths), 2, separations_nm.size), np.nan)
     for place, separation in enumerate(separations_nm.tolist()):
         surface.close_to(separation)

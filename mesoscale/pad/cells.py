@@ -19,6 +19,7 @@ from scipy.fft import rfft2
 
 from mesoscale.contact.displacement import Closing, Displacement, close_by_separation
 from mesoscale.contact.menisci import reach_nm
+from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.surface import random_surface, shortest_wave, surface_spectrum
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
@@ -297,22 +298,26 @@ def close_cells(
     grid: PadGrid,
     cells: Sequence[Cell],
     progress: Callable[[float, str], None] | None = None,
+    numerics: Numerics = NUMERICS,
 ) -> Iterator[Displacement]:
     """Forces of each cell at the separations of the pad, while closing and while opening from each depth."""
     for done, cell in enumerate(cells):
-        yield _close(inputs, contact, grid, cell)
+        yield _close(inputs, contact, grid, cell, numerics)
         if progress:
             progress((done + 1) / len(cells), f"{done + 1} of {len(cells)} cells")
 
 
-def _close(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cell: Cell) -> Displacement:
+def _close(
+    inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cell: Cell, numerics: Numerics
+) -> Displacement:
     """One cell at the separations of the pad; a rough one in longer steps, between which its forces are straight."""
     heights = surface_of(inputs, contact, cell)
     plane = float(heights.mean())  # the separation is that from the mean plane of the film
     ratio = place_ratio(inputs, cell)
     kept = _own_steps(grid, min(PAD.place_step_rms * ratio**2 * inputs.rms, PAD.longest_place_step_nm))
     known = grid.separation_nm[kept]
-    closed = close_by_separation(inputs, contact, heights, known + plane, np.flatnonzero(np.isin(kept, grid.depths)))
+    depths = np.flatnonzero(np.isin(kept, grid.depths))
+    closed = close_by_separation(inputs, contact, heights, known + plane, depths, numerics)
     opening = np.array([_between(grid.separation_nm, known, branch) for branch in closed.opening])
     for branch, depth in zip(opening, grid.depths, strict=True):
         branch[:, depth + 1 :] = np.nan

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact.displacement import Displacement
+from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.cells import Cell, PadGrid, close_cells, half_of, place_ratio
 from mesoscale.settings import ContactSettings
@@ -70,9 +71,11 @@ def press_cells(
     grid: PadGrid,
     cells: Sequence[Cell],
     progress: Callable[[float, str], None] | None = None,
+    numerics: Numerics = NUMERICS,
 ) -> PadCells:
     """The cells of a pad, closed to its separations and opened from its depths."""
-    return assemble(inputs, contact, grid, cells, list(close_cells(inputs, contact, grid, cells, progress)))
+    closed = list(close_cells(inputs, contact, grid, cells, progress, numerics))
+    return assemble(inputs, contact, grid, cells, closed)
 
 
 def assemble(

@@ -1,7 +1,5 @@
 """Stiff and extreme cases of a scene's contact, each judged by physical invariants (target `stability`)."""
 
-import time
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -16,8 +14,9 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.settings.definitions import definition
-from mesoscale.studies.driver import Progress, StudyRow
+from mesoscale.studies.driver import HardCase
 
+CHECKS = "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow settled"
 FINER = 16  # force steps of the path that judges a gain of energy, over those of the cycle
 
 
@@ -193,31 +192,20 @@ def judge(case: Case, settings: ContactSettings) -> tuple[list[str], str]:
     return broken, detail
 
 
-def stability_rows(
-    inputs: ContactInputs, settings: ContactSettings, progress: Progress | None = None
-) -> Iterator[StudyRow]:
-    """Rows of stability/contact.csv without the stage; a case that raises has failed.
+def hard_cases(inputs: ContactInputs, settings: ContactSettings) -> list[HardCase]:
+    """The cases of a scene, with their judges.
 
-    The extreme cases have at most 256 pixels a side of the scene's spacing: they cost more than usual ones.
+    They have at most 256 pixels a side of the scene's spacing: they cost more than usual contacts.
     """
     pixels = min(settings.pixels, 256)
     length = settings.length_nm * pixels / settings.pixels
     chosen = settings.model_copy(update={"pixels": pixels, "length_nm": length})
-    cases = extreme_cases(inputs, chosen)
-    for done, case in enumerate(cases, 1):
-        started = time.perf_counter()
-        try:
-            broken, detail = judge(case, chosen)
-        except Exception as error:  # whatever it is, it is this case's result
-            broken, detail = [type(error).__name__], " ".join(str(error).split())
-        yield {
-            "case": case.name,
-            "description": case.description,
-            "checks": "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow "
-            "settled",
-            "passed": not broken,
-            "detail": "; ".join([*broken[:5], detail]),
-            "wall_s": round(time.perf_counter() - started, 3),
-        }
-        if progress is not None:
-            progress(done / len(cases), case.name)
+    return [
+        HardCase(case.name, case.description, CHECKS, partial(_verdict, case, chosen))
+        for case in extreme_cases(inputs, chosen)
+    ]
+
+
+def _verdict(case: Case, settings: ContactSettings) -> tuple[bool, str]:
+    broken, detail = judge(case, settings)
+    return not broken, "; ".join([*broken[:5], detail])

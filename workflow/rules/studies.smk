@@ -1,14 +1,36 @@
-# Error against run time (accuracy) of what a scene can choose, and hard cases of its contact (stability)
+# Error against run time (accuracy) and stiff and extreme cases (stability) of every stage that the scene uses
 
-STUDIES = {  # what each reads beside settings
-    "accuracy/topography": {},
-    "accuracy/pad": PRESSED,
-    "stability/contact": {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"},
+OF_CELL = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"}
+STUDIED = {  # what both studies of a stage read beside settings, and whether the scene uses the stage
+    "hardness": ({"material": BODIES.material, "potential": BODIES.potential}, needed("hardness")),
+    "elastic": ({"material": MATERIAL}, needed("elastic")),
+    "topography": ({}, needed("topography")),
+    "contact": (OF_CELL, bool(SCENE.tails)),
+    "uncertainty": ({**OF_CELL, "direct": DIRECT}, "law" in SCENE.tails),
+    "pad": (PRESSED, "pad" in SCENE.tails),
+    "answer": (PRESSED, "pad" in SCENE.tails),
+    "circuit": (PRESSED, "pad" in SCENE.tails),
+    "failure": (PRESSED, "pad" in SCENE.tails and SCENE.failure.probability is not None),
 }
-STABILITY = [f"{RESULTS}/stability/contact.csv"]
-ACCURACY = [f"{RESULTS}/accuracy/topography.csv"] if needed("topography") else []
-if "pad" in SCENE.tails:
-    ACCURACY.append(f"{RESULTS}/accuracy/pad.csv")
+ALSO_READ = {  # by one study alone
+    "accuracy/contact": PRESSED if "pad" in SCENE.tails else {},
+}
+
+
+def studies_of(kind):
+    """The tables of a kind of study: those of the stages that the scene uses."""
+    return [f"{RESULTS}/{kind}/{stage}.csv" for stage, (_, used) in STUDIED.items() if used]
+
+
+def read_by_study(wildcards):
+    """As named inputs: what a study reads; a stage that the scene does not use is refused."""
+    files, used = STUDIED[wildcards.stage]
+    words = f"target accuracy or stability: the scene does not use the stage {wildcards.stage}; nothing to study"
+    return {"used": required(used, words), **files, **ALSO_READ.get(f"{wildcards.kind}/{wildcards.stage}", {})}
+
+
+ACCURACY = studies_of("accuracy")
+STABILITY = studies_of("stability")
 
 
 rule accuracy:
@@ -18,26 +40,28 @@ rule accuracy:
 
 
 rule stability:
-    """stiff and extreme cases of the contact"""
+    """stiff and extreme cases of the scene's stages"""
     input:
         STABILITY,
 
 
 rule study:
     input:
-        unpack(lambda wildcards: STUDIES[wildcards.study]),
+        unpack(read_by_study),
     output:
-        f"{RESULTS}/{{study}}.csv",
+        f"{RESULTS}/{{kind}}/{{stage}}.csv",
     log:
-        f"{RESULTS}/logs/{{study}}.log",
+        f"{RESULTS}/logs/{{kind}}_{{stage}}.log",
     wildcard_constraints:
-        study="|".join(STUDIES),
+        kind="accuracy|stability",
+        stage="|".join(STUDIED),
     resources:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:
         **ON_PADS,
-        topography=settings("topography"),
+        **{section: settings(section) for section in ("topography", "uncertainty", "failure", "hardness", "elastic")},
+        work=f"{RESULTS}/work/{{kind}}_{{stage}}",
     message:
-        "study {wildcards.study}"
+        "study {wildcards.kind} of {wildcards.stage}"
     script:
         "../scripts/study.py"
