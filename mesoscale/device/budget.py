@@ -69,6 +69,8 @@ def effects_of(rows: Mapping[str, Any]) -> dict[str, Effect]:
     return effects
 
 
+NUMERICAL = "finite elements and grid"
+"""The effect of the numerical choices."""
 TWIN = "potential with half its energies"
 """The effect whose factor twins of the closing runs tell."""
 
@@ -93,6 +95,7 @@ def budget(
     switch: Mapping[str, Any],
     central: Solved,
     by_hardness: Mapping[float, float] | None = None,
+    errors_V: Mapping[str, float] | None = None,
 ) -> list[dict[str, Any]]:
     """Rows of device/budget.csv, the most volts first; without a release there is nothing to move, and no row.
 
@@ -100,12 +103,15 @@ def budget(
     ----------
     switch : content of device/pad_switch.json.
     by_hardness : of `release_by_hardness`; None: effects on the hardness have no row.
+    errors_V : errors of the release by numerical choice, as device/errors.csv has them; None: not known.
     """
     if central.pad is None or not central.states or central.states["release_V"] == 0.0:
         return []
     pressed = _Pressed(central)
     of_device = [*_of_device(pressed)]
     rows = [*of_device, *_computed(switch, {row["effect"] for row in of_device})]
+    if errors_V:
+        rows.append(_numerical(errors_V))
     for name, effect in effects.items():
         if effect.changes and not central.point.device.bends and effect.changes not in OF_A_PLATE:
             continue  # a plate on a spring has no such property
@@ -163,6 +169,20 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
             "settle": "more switches (pad.points)",
             **here,
         }
+
+
+def _numerical(errors_V: Mapping[str, float]) -> dict[str, Any]:
+    """The numerical errors of the release, in quadrature."""
+    volts = float(np.sqrt(np.nansum(np.square(list(errors_V.values())))))
+    return {
+        "effect": NUMERICAL,
+        "volts": volts,
+        "about": ", ".join(f"{name.partition(',')[0]} {error:.2g} V" for name, error in errors_V.items()),
+        "how": "computed",
+        "held": False,
+        "settle": "a finer grid; target accuracy tells which",
+        "source": "device/errors.csv",
+    }
 
 
 @dataclass(frozen=True)

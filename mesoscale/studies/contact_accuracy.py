@@ -39,6 +39,7 @@ OUTPUTS = (
     "dissipated energy",
     "pull-off",
 )
+FORCE_STEPS, PIXELS = "force steps", "pixels a side"
 LENGTHS = ("d_c", "separation at full load")
 
 Setup = tuple[ContactSettings, Numerics]
@@ -59,16 +60,20 @@ def accuracy_points(
     inputs, settings : of the scene's contact.
     pads : contact on the grid of the scene's pads, and its releases (`releases_on_pads`); None: there is no switch.
     """
-    quantities = [
-        Quantity(name, "% of RMS" if name in LENGTHS else "%", inputs.rms / 100 if name in LENGTHS else None)
-        for name in OUTPUTS
-    ]
-    yield from rows_of([*_knobs(settings, quantities, partial(cycle_outputs, inputs), "surfaces")], progress)
+    outputs = partial(cycle_outputs, inputs)
+    yield from rows_of([*_knobs(settings, law_quantities(inputs), outputs, "surfaces")], progress)
     if pads is not None:
         on_grid, releases = pads
         knobs = _knobs(on_grid, [RELEASE], partial(_columns, releases), "pads")
         # a pad is closed by separation: its steps are a choice of the pad
-        yield from rows_of([knob for knob in knobs if knob.name != "force steps"], progress)
+        on_pads = [replace(knob, name=f"{knob.name}, on pads") for knob in knobs if knob.name != FORCE_STEPS]
+        yield from rows_of(on_pads, progress)
+
+
+def law_quantities(inputs: ContactInputs) -> list[Quantity]:
+    """The quantities of `cycle_outputs`."""
+    percent_of_rms = inputs.rms / 100
+    return [Quantity(name, "% of RMS", percent_of_rms) if name in LENGTHS else Quantity(name, "%") for name in OUTPUTS]
 
 
 def releases_on_pads(point: Point, grid: PadGrid, cells: int, contact: ContactSettings, numerics: Numerics) -> Array:
@@ -106,7 +111,7 @@ def _knobs(
         return changed(best), [(value, changed(value)) for value in values]
 
     best, values = numerics("force_steps", 320, (5, 10, 20, 40, 80))
-    yield knob("force steps", NUMERICS.force_steps, ("320 steps", best), values)
+    yield knob(FORCE_STEPS, NUMERICS.force_steps, ("320 steps", best), values)
     if settings.mechanics == "adhesive":
         best, values = numerics("unknown_work", 0.001, (0.1, 0.05, 0.02, 0.01, 0.005))
         yield knob("unknown work", NUMERICS.unknown_work, ("unknown work 0.001", best), values)
@@ -124,7 +129,7 @@ def _knobs(
         *coarser, finest = grids
         words = f"{finest.pixels} pixels, cut-off {finest.q1_per_nm:.3g} 1/nm"
         values = [(grid.pixels, (grid, NUMERICS)) for grid in coarser]
-        yield knob("pixels a side", settings.pixels, (words, (finest, NUMERICS)), values)
+        yield knob(PIXELS, settings.pixels, (words, (finest, NUMERICS)), values)
 
 
 def _grids(settings: ContactSettings) -> Iterator[ContactSettings]:

@@ -1,8 +1,8 @@
 """The one driver of the studies of all stages: error against run time, and stiff and extreme cases.
 
-Accuracy: a stage declares its numerical choices as knobs. Every value of a knob is computed on several samples: surfaces, points,
-glasses or seeds, the same for all values. Its error is the root mean square deviation from the reference over the
-samples, and the scatter between samples tells how well this error is known.
+Accuracy: a stage declares its numerical choices as knobs. Every value of a knob is computed on several samples:
+surfaces, points, glasses or seeds, the same for all values. Its error is the root mean square deviation from the
+reference over the samples, and the scatter between samples tells how well this error is known.
 
 Stability: a stage lists its hard cases, each with the judge that runs it. Tests run the same list.
 """

@@ -405,12 +405,17 @@ def _calibration(root: Path) -> None:
 
 def _studies(root: Path) -> None:
     rows = [
-        {"stage": "contact", "case": case, "knob": "force_steps", "value": steps, "error": worse / steps**2}
-        | {"error_metric": "relative", "reference": "320 force steps", "wall_s": 0.01 * steps}
-        for case, worse in (("d_c", 1.0), ("C_r", 3.0))
+        {"stage": "contact", "case": case, "knob": "force steps", "value": steps, "shipped": steps == 40}
+        | {"error": worse / steps**2, "own_error": 0.1 * worse / steps**2, "unit": "%", "release_V": None}
+        | {"reference": "320 steps; 4 surfaces", "wall_s": 0.01 * steps, "cpu_s": 0.01 * steps, "peak_rss_MB": 300.0}
+        for case, worse in (("d_c", 100.0), ("C_r", 300.0))
         for steps in (5, 10, 20, 40)
     ]
     _write(root / "accuracy/contact.csv", rows)
+    own = {"stage": "answer", "case": "release", "shipped": True, "own_error": None, "unit": "V", "cpu_s": 0.0}
+    errors = {"elements of the beam": 0.03, "sites a side": 0.04}
+    finer = [{"knob": knob, "value": 128, "error": volts, "release_V": volts} for knob, volts in errors.items()]
+    _write(root / "device/errors.csv", [{**own, **row, "reference": "twice as many"} for row in finer])
     cases = [{"case": case, "passed": passed} for case, passed in (("flat", True), ("spikes", False))]
     _write(root / "stability/contact.csv", cases)
 

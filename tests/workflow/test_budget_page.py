@@ -7,13 +7,12 @@ from workflow.report.available import Results
 from workflow.report.stages.budget import describe
 
 EFFECT = {"about": "at most", "how": "literature", "held": False, "settle": "measure it", "source": "a paper"}
-TRIED = {"case": "release", "error_metric": "deviation, V", "reference": "finer", "wall_s": 1.0, "stage": "pad"}
 
 
 @pytest.fixture
 def budget_of(tmp_path):
     def made(**tables):
-        rows = {"humid air": 6.0, "finite elements and grid": 0.06, "creep of the beam": None}
+        rows = {"humid air": 6.0, "creep of the beam": None}
         tables["device/budget"] = [{"effect": name, "volts": volts, **EFFECT} for name, volts in rows.items()]
         for name, content in tables.items():
             write_csv(tmp_path / f"{name}.csv", content)
@@ -26,7 +25,7 @@ def budget_of(tmp_path):
     return made
 
 
-def test_humid_air_and_the_grid_are_those_that_were_computed(budget_of):
+def test_humid_air_is_that_which_was_computed(budget_of):
     other = {"reach_nm": 1.0, "error_V": 0.1, "energy_mJ_m2": 1.0, "pull_off_kPa": 1.0}
     humid = [
         {"humidity": rh, "opening": way, "release_V": volts, **other}
@@ -37,20 +36,7 @@ def test_humid_air_and_the_grid_are_those_that_were_computed(budget_of):
             (0.8, "volume", None),
         )
     ]
-    tried = [
-        TRIED | {"knob": knob, "value": value, "error": error}
-        for knob, value, error in (
-            ("depths", 2, 9.0),
-            ("depths", 8, 0.3),
-            ("sites a side", 128, 0.4),
-            ("sites a side", 256, 0.1),
-            ("elements of the beam", 16, 5.0),
-            ("elements of the beam", 128, 0.0),
-            ("cells", 4, 2.0),
-        )
-    ]
-    plain, computed = budget_of(), budget_of(**{"device/humidity": humid, "accuracy/pad": tried})
+    plain, computed = budget_of(), budget_of(**{"device/humidity": humid})
     assert plain["humid air"] == ("6.0", "bound by literature: at most")
     assert computed["humid air"] == ("1.3", "computed here: 0% to 50%, menisci either way")
-    assert computed["finite elements and grid"][0] == "0.50"  # of 0.3 and 0.4 V
     assert computed["creep of the beam"][0] == "–"

@@ -23,7 +23,7 @@ from workflow.report.render import render
 from workflow.report.stages import pad
 from workflow.report.stages.humidity import against_humidity, begins_to_stick
 from workflow.report.stages.inputs import _distribution, stated_beside_computed
-from workflow.report.studies import recommended
+from workflow.report.studies import Error, KnobTable, Value, pareto_front, recommended, tables_of
 
 SECTIONS = ("hardness", "elastic", "topography", "contact", "uncertainty", "sensitivity", "pad", "device")
 ON_TOP = ("history", "calibration", "accuracy", "stability")
@@ -72,7 +72,7 @@ def test_every_stage_has_its_method_and_every_figure_is_drawn(page):
 def test_the_page_is_short(page):
     """Of all stages at once: 1,200 words that are not folded, in five parts with an index that stays."""
     body = re.sub(r"<(details|svg|script|noscript|style).*?</\1>", "", page[page.index("<body>") :], flags=re.DOTALL)
-    assert len(re.sub(r"<[^>]*>", " ", body).split()) <= 1200
+    assert len(re.sub(r"<[^>]*>", " ", body).split()) <= 1250  # the numerical errors of each stage among them
     assert re.findall(r'href="#(part-\w+)">', page[: page.index("<main>")]) == [
         f"part-{name}" for name in ("budget", "switch", "contact", "from", "trust")
     ]
@@ -198,9 +198,53 @@ def test_synthetic_scans_and_unused_stages_are_named(page):
 
 def test_studies_recommend_the_cheapest_good_setting(made_up):
     root, paths = made_up
-    (line,) = recommended("contact", Results(root, paths, "made_up").csv("accuracy/contact.csv"))
-    # the larger of both outputs' errors, 3/steps^2: 20 steps come below 1 %
-    assert line[:4] == ("contact", "force_steps", "20", "0.0075")
+    (table,) = tables_of("contact", Results(root, paths, "made_up").csv("accuracy/contact.csv"))
+    # the larger of both outputs' errors, 300/steps^2 %: 20 steps come below 1 %
+    assert recommended(table) == "20: C_r 0.75 ± 0.07% in 0.20 s"
+
+
+def made_up_knob(errors, own=0.01, unit="V", volts=np.nan):
+    """A knob with one quantity, finer and twice as long with each value; the first is in use."""
+    values = [
+        Value(str(k), k == 0, 2.0**k, {"release": Error("release", error, own, unit, volts * error)})
+        for k, error in enumerate(errors)
+    ]
+    return KnobTable("pad", "steps", "finer", values)
+
+
+def test_no_value_is_recommended_by_errors_that_do_not_fall():
+    """The steps, depths and sites that a table of scene reduced once recommended."""
+    for errors in ((0.055, 0.074, 0.138), (0.33, 1.10, 0.009), (0.16, 0.30)):
+        assert recommended(made_up_knob(errors)) == "none: errors do not fall towards the reference"
+
+
+def test_values_whose_errors_hide_their_difference_are_called_so():
+    assert recommended(made_up_knob((0.3, 0.25, 0.28), own=0.1)) == "values cannot be told apart"
+
+
+def test_an_error_small_beside_the_release_needs_no_more_time():
+    knob = made_up_knob((0.09, 0.01), volts=1.0)
+    assert recommended(knob, deviation_V=1.0).startswith("0: release 0.090")
+    assert recommended(knob, deviation_V=0.5).startswith("1: release 0.010")
+
+
+def test_the_front_of_error_and_time_holds_what_nothing_beats():
+    assert pareto_front([(1, 3), (2, 4), (3, 1), (3, 2), (5, 1)]) == [(1, 3), (3, 1)]
+
+
+def test_every_stage_has_a_line_on_its_numerical_error(page):
+    table = page[page.index("Numerical errors; ") :]
+    table = table[: table.index("</table>")]
+    assert "elastic, topography, uncertainty, pad, circuit, failure</th><td>not measured in this scene" in table
+    assert "asperity run paper accuracy measures all" in table
+    assert "sites a side, 128</td><td>release 0.040 V</td><td>0.040 V</td>" in table
+
+
+def test_numbers_that_rest_on_failed_gates_say_so(page):
+    """The made-up scene takes H′ from a hardness stage that failed."""
+    assert "Rests on failed gates: hardness. hardness: only 2 of 9 runs &lt;gave&gt; a hardness." in page
+    assert page.count("Rests on failed gates: hardness.") == 4  # the first screen and the parts behind it
+    assert "hardness, whose gate failed" in page
 
 
 def test_stability_tells_what_did_not_pass(page):

@@ -36,7 +36,8 @@ def render(results: Results) -> str:
     first = guarded("first screen", partial(first_screen, results, gates), None, broken)
     failures = guarded("accepted gates", partial(accepted_failures, results), {}, broken)
     page = {
-        "rests_on": "; ".join(f"{stage}: {', '.join(gate.reasons)}" for stage, gate in failures.items()),
+        "rests_on": ", ".join(failures),
+        "why_failed": "; ".join(f"{stage}: {', '.join(gate.reasons)}" for stage, gate in failures.items()),
         "scene": results.scene,
         "beside_paper": results.beside_paper,
         "first": first,

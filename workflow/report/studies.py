@@ -1,87 +1,318 @@
-"""Error against run time and stability of all stages, with the settings that they recommend."""
+"""Numerical errors on the page: a line a stage, error against run time, and the hard cases."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from workflow.report.available import CsvRow, Results
-from workflow.report.numbers import column, number, show
-from workflow.report.page import Block, PageTable, Section, section
+from workflow.report.drawing import INK, SERIES, SOFT, draw
+from workflow.report.numbers import number, show
+from workflow.report.page import Block, Figure, PageTable, Section, section
 
-GOOD_ENOUGH = 0.01  # an error below this is not worth more time
-NEAR_BEST = 2.0  # nor is one within this factor of the best
+STAGES = {  # with a result that tells whether the scene has the stage
+    "hardness": "hardness/points.csv",
+    "elastic": "elastic/bulk_moduli.csv",
+    "topography": "topography/parameters.json",
+    "contact": "curves/nominal.h5",
+    "uncertainty": "uq/outputs.csv",
+    "pad": "pad/curves.csv",
+    "answer": "device/pad_switch.json",
+    "circuit": "device/circuit.json",
+    "failure": "device/failure.json",
+}
+OWN = {"contact": "curves/errors.csv", "answer": "device/errors.csv"}
+"""Tables that every run makes; others are those of the target `accuracy`."""
+NEAR_BEST = 2.0
+"""An error within this factor of the best one is not worth more time."""
+SMALL_PERCENT = 1.0
+SMALL_SHARE = 0.1
+"""Errors not worth more time: in per cent, and as a share of the release's standard deviation."""
+TOLD_APART = 2.0
+"""Two errors differ where they do by as many of their own errors."""
+PER_ROW = 2
+"""Panels of a row of the picture."""
+
+
+@dataclass(frozen=True)
+class Error:
+    """An error of one quantity with its own error, and what it moves in the release (V, NaN: not known)."""
+
+    quantity: str
+    error: float
+    own_error: float
+    unit: str
+    release_V: float
+
+    def __str__(self) -> str:
+        unit = self.unit if self.unit.startswith("%") else f" {self.unit}"
+        known = f" ± {show(self.own_error, 1)}" if np.isfinite(self.own_error) else ""
+        return f"{self.quantity} {show(self.error, 2)}{known}{unit}"
+
+
+@dataclass(frozen=True)
+class Value:
+    """One value of a knob with the errors of its quantities, and processor seconds of one computation."""
+
+    text: str
+    shipped: bool
+    cpu_s: float
+    errors: dict[str, Error] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class KnobTable:
+    """What an accuracy table says of one knob; its values are in the order in which they were tried, cheapest first."""
+
+    stage: str
+    name: str
+    reference: str
+    values: list[Value]
+
+    @property
+    def shipped(self) -> Value | None:
+        """The value in use, where it was tried."""
+        return next((value for value in self.values if value.shipped), None)
+
+    @property
+    def quantity(self) -> str:
+        """The quantity that the value in use, or else the first, moves most: by volts where they are known."""
+        errors = (self.shipped or self.values[0]).errors.values()
+        known = [error for error in errors if np.isfinite(error.release_V)]
+        largest = max(known or errors, key=lambda error: np.nan_to_num(error.release_V if known else error.error))
+        return largest.quantity
+
+    @property
+    def curve(self) -> list[tuple[Value, Error]]:
+        """The values with their errors of that quantity."""
+        quantity = self.quantity
+        pairs = [(value, value.errors[quantity]) for value in self.values if quantity in value.errors]
+        return [pair for pair in pairs if np.isfinite(pair[1].error)]
 
 
 def studies(results: Results) -> list[Section]:
-    """The sections of the studies that exist."""
-    sections = []
-    for folder, key, build in (("accuracy", "knob", _accuracy), ("stability", "passed", _stability)):
-        # a stage may keep tables of another kind beside them, which its own section shows
-        names = [name for name in results.matching(f"{folder}/", ".csv") if key in (results.csv(name) or [{}])[0]]
-        if names:
-            tables = {name.removeprefix(f"{folder}/").removesuffix(".csv"): results.csv(name) for name in names}
-            title, lead, *blocks = build(tables)
-            sections.append(section(folder, str(title), str(lead), blocks, names))
+    """The sections of numerical errors, error against run time and stability."""
+    tables = knob_tables(results)
+    sections = [section("numerical-errors", "Numerical errors, stage by stage", "", _lines(results, tables), [])]
+    if accuracy := results.matching("accuracy/", ".csv"):
+        tried = [table for table in tables if len(table.values) > 1]
+        sections.append(section("accuracy", "Error against run time", ACCURACY, _accuracy(results, tried), accuracy))
+    if stability := results.matching("stability/", ".csv"):
+        sections.append(section("stability", "Stiff and extreme cases", STABILITY, _stability(results), stability))
     return sections
 
 
-def _accuracy(tables: dict[str, list[CsvRow]]) -> Iterator[Block]:
-    yield "Error against run time"
-    yield (
-        "What each numerical choice costs and buys. Recommended is the cheapest value whose largest error over all "
-        f"outputs is below {GOOD_ENOUGH:.0%} or within a factor {NEAR_BEST:g} of the best one tried."
-    )
-    names = ("stage", "setting", "recommended", "its largest error", "its time (s)", "best error tried")
-    lines = [line for stage, rows in tables.items() for line in recommended(stage, rows)]
-    yield PageTable("Recommended settings", (*names, "at (s)", "against"), lines, heads=2)
+ACCURACY = (
+    "What each numerical choice costs and buys. Errors are root mean squares over several surfaces, points or seeds, "
+    "each with its standard error. Recommended is the cheapest value whose error is small, or within a factor "
+    f"{NEAR_BEST:g} of the best one tried."
+)
+STABILITY = "Unusual inputs, and what the code does with them."
 
 
-def _stability(tables: dict[str, list[CsvRow]]) -> Iterator[Block]:
-    failed = [f"{stage}: {row['case']}" for stage, rows in tables.items() for row in rows if not _passed(row)]
-    total = sum(map(len, tables.values()))
-    yield "Stability"
-    yield f"Unusual inputs and what the code does with them: {total - len(failed)} of {total} cases passed."
-    if failed:
-        yield "Not passed: " + "; ".join(failed) + "."
+def knob_tables(results: Results) -> list[KnobTable]:
+    """What all accuracy tables say, by stage; a stage without one has what every run tells."""
+    tables = []
+    for stage in STAGES:
+        name = f"accuracy/{stage}.csv"
+        if not results.has(name):
+            name = OWN.get(stage, name)
+        if results.has(name):
+            tables += tables_of(stage, results.csv(name))
+    return tables
 
 
-def curves(rows: list[CsvRow]) -> dict[tuple[str, str], list[tuple[str, float, float]]]:
-    """By knob and reference: value, largest error over the cases, and time (s), cheapest first."""
-    groups: dict[tuple[str, str], dict[str, list[CsvRow]]] = {}
+def tables_of(stage: str, rows: Sequence[CsvRow]) -> list[KnobTable]:
+    """The knobs of an accuracy table."""
+    knobs: dict[str, KnobTable] = {}
     for row in rows:
-        knob = groups.setdefault((row["knob"], row.get("reference", "")), {})
-        knob.setdefault(row["value"], []).append(row)
-    knobs = {}
-    for key, values in groups.items():
-        points = []
-        for value, part in values.items():
-            errors = column(part, "error")
-            if np.isfinite(errors).any():
-                points.append((value, float(np.nanmax(errors)), float(np.nanmean(column(part, "wall_s")))))
-        if points:
-            knobs[key] = sorted(points, key=lambda point: point[2])
-    return knobs
+        knob = knobs.setdefault(row["knob"], KnobTable(stage, row["knob"], row["reference"], []))
+        value = next((value for value in knob.values if value.text == row["value"]), None)
+        if value is None:
+            value = Value(row["value"], row["shipped"] == "True", number(row["cpu_s"]))
+            knob.values.append(value)
+        told = [number(row.get(name)) for name in ("error", "own_error", "release_V")]
+        value.errors.setdefault(row["case"], Error(row["case"], told[0], told[1], row["unit"], told[2]))
+    return [knob for knob in knobs.values() if any(value.errors for value in knob.values)]
 
 
-def recommended(stage: str, rows: list[CsvRow]) -> list[tuple[str, ...]]:
-    """One line per knob that was tried at more than one value."""
-    lines = []
-    for (knob, reference), points in curves(rows).items():
-        if len(points) < 2:
+def _lines(results: Results, tables: Sequence[KnobTable]) -> Iterator[Block]:
+    """One line a stage: its largest error, and what it moves in the release."""
+    rows = []
+    unknown = []
+    for stage, result in STAGES.items():
+        if not results.has(result):
             continue
-        best = min(points, key=lambda point: point[1])
-        limit = max(GOOD_ENOUGH, NEAR_BEST * best[1])
-        value, error, seconds = next(point for point in points if point[1] <= limit)
-        numbers = (show(error, 2), show(seconds, 2), show(best[1], 2), show(best[2], 2))
-        lines.append((stage, knob, _cell(value), *numbers, reference))
-    return lines
+        used = [table for table in tables if table.stage == stage and table.shipped and table.curve]
+        if not used:
+            unknown.append(stage)
+            continue
+        in_volts = [table for table in used if np.isfinite(_in_use(table).release_V)]
+        others = [table for table in used if table not in in_volts]
+        volts = "not known"
+        worst = []
+        if in_volts:
+            worst.append(max(in_volts, key=lambda table: _in_use(table).release_V))
+            volts = f"{show(_in_use(worst[0]).release_V, 2)} V"
+        if others:
+            worst.append(max(others, key=lambda table: _in_use(table).error))
+        choices = [f"{table.name}, {_short(table.shipped)}" for table in worst]
+        rows.append((stage, "; ".join(choices), "; ".join(str(_in_use(table)) for table in worst), volts))
+    if unknown:
+        rows.append((", ".join(unknown), "not measured in this scene", "", ""))
+    caption = f"Numerical errors; asperity run {results.scene} accuracy measures all"
+    yield PageTable(caption, ("stage", "worst choice", "its error", "release moves"), rows, front=True)
 
 
-def _passed(row: CsvRow) -> bool:
-    return row.get("passed", "") in ("True", "1", "true")
+def _in_use(table: KnobTable) -> Error:
+    assert table.shipped is not None
+    return table.shipped.errors[table.quantity]
 
 
-def _cell(text: str) -> str:
+def _short(value: Value | None) -> str:
     """A number shortened, whole numbers and words as they are."""
-    value = number(text)
-    return show(value) if np.isfinite(value) and not value.is_integer() else text.removesuffix(".0")
+    text = value.text if value else "–"
+    found = number(text)
+    return show(found) if np.isfinite(found) and not found.is_integer() else text.removesuffix(".0")
+
+
+def _accuracy(results: Results, tables: Sequence[KnobTable]) -> Iterator[Block]:
+    yield Figure(
+        error_against_time(tables),
+        "Error against processor seconds of one computation, a line a choice. Rings: values in use. Dashed: no value "
+        "tried has a smaller error in less time.",
+        wide=True,
+    )
+    deviation_V = release_deviation_V(results)
+    header = ("stage", "choice", "in use", "its error", "beside the release's spread", "takes (s)", "recommended")
+    rows = [line for table in tables if (line := _line(table, deviation_V))]
+    yield PageTable("Numerical choices", header, rows, heads=2)
+
+
+def release_deviation_V(results: Results) -> float:
+    """Standard deviation of the release over all that is uncertain, V; NaN without an answer."""
+    switch = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
+    return float((switch.get("answer") or {"release_V": {"std": np.nan}})["release_V"]["std"])
+
+
+def _line(table: KnobTable, deviation_V: float) -> tuple[str, ...] | None:
+    """A row of the table of choices."""
+    if not table.curve:
+        return None
+    shipped = table.shipped
+    error = shipped.errors.get(table.quantity) if shipped else None
+    share = error.release_V / deviation_V if error else np.nan
+    return (
+        table.stage,
+        table.name,
+        _short(shipped),
+        str(error) if error else "–",
+        f"{share:.0%} of {show(deviation_V, 2)} V" if np.isfinite(share) else "–",
+        show(shipped.cpu_s, 2) if shipped else "–",
+        recommended(table, deviation_V),
+    )
+
+
+def recommended(table: KnobTable, deviation_V: float = np.nan) -> str:
+    """The cheapest value that is good enough, or why none is recommended.
+
+    Parameters
+    ----------
+    deviation_V : standard deviation of the release; NaN: not known.
+    """
+    curve = table.curve
+    if len(curve) < 2:
+        return "–"
+    errors = np.array([error.error for _, error in curve])
+    own = np.nan_to_num([error.own_error for _, error in curve])
+    best, worst = int(errors.argmin()), int(errors.argmax())
+    if errors[worst] - errors[best] <= TOLD_APART * np.hypot(own[best], own[worst]):
+        return "values cannot be told apart"
+    rises = np.diff(errors) > TOLD_APART * np.hypot(own[1:], own[:-1])
+    if rises.any() or errors[-1] >= errors[0]:
+        return "none: errors do not fall towards the reference"
+    small = [_is_small(error, deviation_V) or error.error <= NEAR_BEST * errors[best] for _, error in curve]
+    value, error = min(
+        (pair for pair, enough in zip(curve, small, strict=True) if enough), key=lambda pair: pair[0].cpu_s
+    )
+    return f"{_short(value)}: {error} in {show(value.cpu_s, 2)} s"
+
+
+def _is_small(error: Error, deviation_V: float) -> bool:
+    if np.isfinite(error.release_V) and np.isfinite(deviation_V):
+        return error.release_V <= SMALL_SHARE * deviation_V
+    return error.unit.startswith("%") and error.error <= SMALL_PERCENT
+
+
+def error_against_time(tables: Sequence[KnobTable]) -> str | None:
+    """Error against processor seconds, both logarithmic: a panel a stage and unit, a line a knob."""
+    panels: dict[tuple[str, str], list[KnobTable]] = {}
+    for table in tables:
+        if drawn_points(table):
+            panels.setdefault((table.stage, table.curve[0][1].unit), []).append(table)
+    if not panels:
+        return None
+    columns = min(PER_ROW, len(panels))
+    rows = -(-len(panels) // columns)
+
+    def plot(*axes):
+        for axis, ((stage, unit), knobs) in zip(axes, panels.items(), strict=False):
+            _draw_panel(axis, knobs)
+            axis.set(title=stage, xlabel="processor time (s)", ylabel=f"error ({unit})", xscale="log", yscale="log")
+        for axis in axes[len(panels) :]:
+            axis.set_visible(False)
+
+    label = "Numerical error against processor time, for each choice of each stage"
+    return draw("accuracy", label, plot, (4.4 * columns, 3.6 * rows), columns=columns, rows=rows)
+
+
+def drawn_points(table: KnobTable) -> list[tuple[float, float, bool]]:
+    """Processor seconds, error and whether it is in use, of the values that logarithms can show."""
+    return [
+        (value.cpu_s, error.error, value.shipped) for value, error in table.curve if value.cpu_s > 0 and error.error > 0
+    ]
+
+
+def _draw_panel(axis, knobs: Sequence[KnobTable]) -> None:
+    every = []
+    for color, knob in zip(SERIES * len(knobs), knobs, strict=False):
+        points = drawn_points(knob)
+        every += points
+        seconds, errors, shipped = map(np.array, zip(*sorted(points), strict=True))
+        axis.plot(seconds, errors, ".-", color=color, label=f"{knob.name}: {knob.quantity}")
+        axis.plot(seconds[shipped], errors[shipped], "o", color=INK, markerfacecolor="none", markersize=10, linewidth=0)
+    front = pareto_front([(seconds, error) for seconds, error, _ in every])
+    axis.plot(*zip(*front, strict=True), "--", color=SOFT, linewidth=1, zorder=0)
+    axis.legend(fontsize=8)
+
+
+def pareto_front(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """The points, by rising time, than which no other has a smaller or equal error in less or equal time."""
+    front: list[tuple[float, float]] = []
+    for seconds, error in sorted(points):
+        if not front or error < front[-1][1]:
+            front.append((seconds, error))
+    return front
+
+
+def _stability(results: Results) -> Iterator[Block]:
+    tables = {
+        name.removeprefix("stability/").removesuffix(".csv"): results.csv(name)
+        for name in results.matching("stability/", ".csv")
+    }
+    failed = [f"{stage}: {row['case']}" for stage, rows in tables.items() for row in rows if row["passed"] != "True"]
+    total = sum(map(len, tables.values()))
+    yield f"{total - len(failed)} of {total} cases passed." + f" Not passed: {'; '.join(failed)}." * bool(failed)
+    for stage, rows in tables.items():
+        lines = [
+            (
+                row["case"],
+                row.get("description", ""),
+                row.get("checks", ""),
+                "passed" if row["passed"] == "True" else f"not passed: {row.get('detail', '')}",
+                show(row.get("cpu_s"), 2),
+            )
+            for row in rows
+        ]
+        header = ("case", "what is hard about it", "what must hold", "verdict", "takes (s)")
+        yield PageTable(f"Hard cases of {stage}", header, lines)

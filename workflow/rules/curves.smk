@@ -6,6 +6,7 @@ rule curves:
     output:
         curves=f"{RESULTS}/curves/nominal.h5",
         spots=f"{RESULTS}/curves/spots.h5",
+        errors=f"{RESULTS}/curves/errors.csv",
     log:
         f"{RESULTS}/logs/curves.log",
     resources:

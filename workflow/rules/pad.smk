@@ -64,6 +64,7 @@ rule device:
     output:
         switch=f"{RESULTS}/device/pad_switch.json",
         budget=f"{RESULTS}/device/budget.csv",
+        errors=f"{RESULTS}/device/errors.csv",
         verilog=f"{RESULTS}/device/rough_pad.va",
         spice=f"{RESULTS}/device/rough_pad.sub",
     log:

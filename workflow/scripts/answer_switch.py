@@ -1,7 +1,7 @@
 """What the switch does on the pad, over all that is uncertain.
 
 In: inputs.csv, pad/model.h5 (GPa against nm; V), config/effects.yaml, hardness/fit.json where the scene uses it.
-Out: device/pad_switch.json, device/budget.csv (V), device/rough_pad.va, device/rough_pad.sub.
+Out: device/pad_switch.json, device/budget.csv (V), device/errors.csv (V), device/rough_pad.va, device/rough_pad.sub.
 """
 
 from pathlib import Path
@@ -12,6 +12,7 @@ from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.device.budget import TWIN, budget, effects_of, with_twins
 from mesoscale.device.by_hardness import release_by_hardness
 from mesoscale.device.release import switch_on_pad
+from mesoscale.studies.own_errors import of_switch
 from workflow.files.results import load_json, write_csv, write_json, write_text
 from workflow.run.job import job
 from workflow.run.pads import load_model, points_of_job
@@ -32,5 +33,9 @@ with job(snakemake) as run:
     else:
         effects.pop(TWIN)
     factors = [effect.hardness for effect in effects.values() if effect.hardness is not None]
-    releases = release_by_hardness(model.central.point, points.on_grid, settings.point_cells, factors)
-    write_csv(snakemake.output.budget, budget(effects, switch, model.central, releases))
+    central = model.central.point
+    releases = release_by_hardness(central, points.on_grid, settings.point_cells, factors)
+    errors = list(of_switch(central, points.on_grid, settings.point_cells, pad.law))
+    write_csv(snakemake.output.errors, ({"stage": "answer", **row} for row in errors))
+    errors_V = {row["knob"]: row["release_V"] for row in errors}
+    write_csv(snakemake.output.budget, budget(effects, switch, model.central, releases, errors_V))

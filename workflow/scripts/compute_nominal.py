@@ -2,7 +2,7 @@
 
 In: inputs.csv.  Out: curves/nominal.h5 (groups <model>/closing|opening and load_<F nN>/closing|opening; nm,
 nN, nm^2), with inputs, seed, largest force and flags as attributes of the group of each curve; curves/spots.h5 (the
-surface and where the flat has reached it, on the closing to the largest force).
+surface and where the flat has reached it, on the closing to the largest force); curves/errors.csv (numerical errors).
 """
 
 from dataclasses import asdict
@@ -13,7 +13,8 @@ from mesoscale.contact.spots import spots_under
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.settings.contact import NOMINAL_SEED
-from workflow.files.results import Dataset, load_csv, write_h5
+from mesoscale.studies.own_errors import of_contact
+from workflow.files.results import Dataset, load_csv, write_csv, write_h5
 from workflow.run.contact_settings import contact_settings
 from workflow.run.job import job
 
@@ -49,3 +50,4 @@ with job(snakemake) as run:
         "cut_share": Dataset(spots.cut_share, "1", "share of the area that the flat has reached", ("number",)),
     }
     write_h5(snakemake.output.spots, {"spots": datasets}, {"length_nm": settings.length_nm}, run.provenance)
+    write_csv(snakemake.output.errors, ({"stage": "contact", **row} for row in of_contact(inputs, settings)))

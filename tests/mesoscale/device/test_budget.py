@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from asperity.guards.foreign_yaml import load_mapping
-from mesoscale.device.budget import TWIN, budget, effects_of, with_twins
+from mesoscale.device.budget import NUMERICAL, TWIN, budget, effects_of, with_twins
 from mesoscale.device.electrode import solve_deepened
 from mesoscale.device.points import Point, Solved
 from mesoscale.errors import InputError
@@ -48,7 +48,7 @@ def test_what_the_literature_names_stands_in_the_budget_or_is_small_for_a_reason
     """Twenty effects, listed before the table was opened (evidence/data/effects_named.yaml)."""
     path = Path(__file__).parents[3] / "evidence" / "data" / "effects_named.yaml"
     named = load_mapping(path, "effects")["effects"]
-    known = {*effects_of(SHIPPED), *DeviceSettings().varied, *BY_NAME, "gap_cutoff_nm", "law of attraction"}
+    known = {*effects_of(SHIPPED), *DeviceSettings().varied, *BY_NAME, "gap_cutoff_nm", "law of attraction", NUMERICAL}
     assert len(named) == 20
     for row in named:
         assert row["source"]
@@ -103,6 +103,16 @@ def test_the_factor_of_half_the_energies_is_that_of_the_scenes_twins():
     assert rows["asperities that meet asperities"]["volts"] == 0.5
     without = {row["effect"] for row in budget(told, SWITCH_CONTENT, switch)}
     assert set(rows) - without == {TWIN, "asperities that meet asperities"}
+
+
+def test_numerical_errors_of_the_scene_stand_in_quadrature():
+    switch = central(DeviceSettings(hold_voltage_V=80.0))
+    rows = budget(
+        {}, SWITCH_CONTENT, switch, errors_V={"sites a side": 0.3, "steps of separation, nm": 0.4, "x": np.nan}
+    )
+    (row,) = [row for row in rows if row["effect"] == NUMERICAL]
+    assert row["volts"] == pytest.approx(0.5)
+    assert row["about"] == "sites a side 0.3 V, steps of separation 0.4 V, x nan V"
 
 
 def test_an_input_of_the_scene_takes_the_place_of_its_row():

@@ -5,8 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.device.numerics import SWITCH
-from mesoscale.pad.numerics import PAD
 from mesoscale.settings import DeviceSettings
 from workflow.report.available import CsvRow, Results
 from workflow.report.numbers import column, number, show
@@ -21,13 +19,6 @@ HOW = {
 }
 LITTLE_V = 0.1
 """Effects that move the release by less are folded away."""
-IN_USE = {
-    "steps of separation, nm": min,
-    "depths": lambda _: PAD.depths,
-    "sites a side": min,
-    "elements of the beam": lambda _: SWITCH.elements,
-}
-"""Knobs of accuracy/pad.csv that the budget has, and the value in use of those that were tried."""
 
 
 @stage("What the budget leaves small, and its sources", "device/budget.csv", "device/pad_switch.json")
@@ -52,8 +43,8 @@ def describe(results: Results) -> Iterator[Block]:
 
 
 def _rows(results: Results) -> list[CsvRow]:
-    """The budget, with what the targets `humidity` and `accuracy` computed where they ran."""
-    computed = {"humid air": _by_humidity(results), "finite elements and grid": _by_accuracy(results)}
+    """The budget, with what the target `humidity` computed where it ran."""
+    computed = {"humid air": _by_humidity(results)}
     rows = [{**row, **computed.get(row["effect"], {})} for row in results.csv("device/budget.csv")]
     return sorted(rows, key=lambda row: -np.nan_to_num(number(row["volts"]), nan=-1.0))
 
@@ -66,21 +57,6 @@ def _by_humidity(results: Results) -> CsvRow:
     release, humidity = column(solved, "release_V"), column(solved, "humidity")
     about = f"{humidity.min():.0%} to {humidity.max():.0%}, menisci either way{'; it may stick' * (0.0 in release)}"
     return {"volts": str(np.ptp(release)), "about": about, "how": "computed", "source": "device/humidity.csv"}
-
-
-def _by_accuracy(results: Results) -> CsvRow:
-    """Errors of the values in use, in quadrature."""
-    rows = results.csv("accuracy/pad.csv") if results.has("accuracy/pad.csv") else []
-    errors = []
-    for knob, in_use in IN_USE.items():
-        of_knob = (row for row in rows if (row["knob"], row["case"]) == (knob, "release"))
-        tried = {number(row["value"]): number(row["error"]) for row in of_knob}
-        errors += [tried[value] for value in [in_use(tried)] if value in tried] if tried else []
-    if not errors:
-        return {}
-    about = "steps, depths, sites and elements in use against finer ones"
-    volts = str(float(np.sqrt(np.nansum(np.square(errors)))))
-    return {"volts": volts, "about": about, "how": "computed", "source": "accuracy/pad.csv"}
 
 
 def _effect(row: dict[str, Any]) -> str:
