@@ -5,6 +5,7 @@ import pytest
 
 from mesoscale.contact import attraction, run_cycle
 from mesoscale.contact.asperity import engine
+from mesoscale.contact.energy import pull_off
 from mesoscale.contact.numerics import Numerics
 from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
@@ -318,3 +319,35 @@ def test_the_smallest_map_that_repeats_has_four_sites_a_side(mechanics, sites):
         return
     with pytest.raises(InputError, match="a square array of at least 4 x 4 sites"):
         run_cycle(INPUTS, settings_for(mechanics=mechanics), 1, **call)
+
+
+@pytest.mark.parametrize(
+    ("mechanics", "model"), [("asperity", "plastic"), ("coupled", "plastic"), ("adhesive", "elastic")]
+)
+@pytest.mark.parametrize("times", [0.25, 3.0, 16.0])
+def test_a_contact_that_is_larger_in_all_lengths_has_the_same_pressures(mechanics, model, times):
+    """No length is in the code: forces go with the square, to rounding; adhesive ones to where their iteration ends."""
+    inputs = replace(INPUTS, rms=5.0)
+    settings = settings_for(mechanics=mechanics, model=model, pixels=64, gap_cutoff_nm=0.5)
+    heights = random_surface(inputs, settings, 3)
+
+    def cycle(times):
+        larger = replace(
+            inputs, hamaker=inputs.hamaker * times**3, h_prime=inputs.h_prime * times**0.5, rms=inputs.rms * times
+        )
+        force = settings.max_force_nN * times**2
+        grid = settings.model_copy(update={"max_force_nN": force, "gap_cutoff_nm": settings.gap_cutoff_nm * times})
+        side = settings.length_nm * times
+        return run_cycle(larger, grid, 3, heights=heights * times, length_nm=side, contact_at="lowest")
+
+    whole, scaled = cycle(1.0), cycle(times)
+    within = 1e-6 if mechanics == "adhesive" else 1e-9
+    forces = ("repulsive_nN", "attractive_nN")
+    for branch, place in (("closing", -1), ("opening", 0)):
+        one, other = getattr(whole, branch), getattr(scaled, branch)
+        assert other.separation_nm[place] / times == pytest.approx(one.separation_nm[place], rel=within)
+        for name in forces:
+            wanted = getattr(one, name)[place]
+            assert getattr(other, name)[place] / times**2 == pytest.approx(wanted, rel=within)
+    pulls = (pull_off(whole.opening), pull_off(scaled.opening) / times**2)
+    assert pulls[1] == pytest.approx(pulls[0], rel=within)
