@@ -7,11 +7,11 @@ from typing import Any, get_args
 import numpy as np
 
 from asperity.film import Shown
-from mesoscale.checks import check_memory, check_number, checked_array, checked_heights
+from mesoscale.checks import check_memory, check_number, check_periodic, checked_array, checked_heights
 from mesoscale.contact.attraction import attracting
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.coupled.free import FreeContact
-from mesoscale.contact.cycle import LARGEST_FORCE_NN, MAX_FORCE_MISS, SMALLEST_FORCE_NN
+from mesoscale.contact.cycle import LARGEST_FORCE_NN, MAX_FORCE_MISS, SMALLEST_FORCE_NN, check_hardness
 from mesoscale.contact.numerics import NUMERICS
 from mesoscale.contact.path import trace
 from mesoscale.contact.surface import ContactAt
@@ -21,6 +21,15 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 PressureOfGaps = Callable[[np.ndarray], Any]
+
+MAP_MB = 16e-6
+"""Of a site at a load: its pressure and its gap."""
+STRONGEST_GPA = 1e3
+"""Of an attraction: 0.25 aJ across 0.1 nm make 13 GPa, the cohesion of diamond is some 100 GPa."""
+ATTRACTION = (
+    "accepted is a function of an array of gaps (nm) that gives finite pressures of "
+    f"0 .. {STRONGEST_GPA:g} GPa in its shape"
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -117,31 +126,32 @@ def press(
 
     Raises
     ------
-    InputError : no such map, side, load or material; a map beyond memory; a load beyond full contact.
+    InputError : no such map, side, load or material; maps beyond memory; a load beyond full contact; a tilted map that
+        is periodic; an attraction that is no such function.
     """
-    surface, spacing = _surface(heights, counterface, side_nm, periodic, contact_at)
-    if (loads_nN is None) == (approach_nm is None):
-        raise InputError("press: give either loads_nN or approach_nm, and None for the other")
+    if not isinstance(periodic, (bool, np.bool_)):
+        raise InputError(f"periodic = {periodic!r}: accepted are True and False")
+    if attraction is not None and not callable(attraction):
+        raise InputError(f"attraction = {attraction!r:.60}: {ATTRACTION}")
+    if h_macro is None and h_prime != 0.0:
+        raise InputError(f"h_prime = {h_prime!r:.60} without h_macro: the size effect of a hardness; give h_macro, too")
     by_load = loads_nN is not None
-    name, unit, least, most = "approach_nm", "nm", 1e-9, 1e9
-    if by_load:
-        name, unit, least, most = "loads_nN", "nN", SMALLEST_FORCE_NN, LARGEST_FORCE_NN
-    steps = checked_array(name, np.atleast_1d(np.asarray(loads_nN if by_load else approach_nm)), unit)
-    for step in steps:
-        check_number(name, float(step), least, most, unit)
-    if steps.ndim != 1 or steps.size == 0 or (np.diff(steps) <= 0.0).any():
-        raise InputError(f"{name}: accepted are rising numbers in {unit}")
+    steps = _steps(loads_nN, approach_nm)
+    surface, spacing = _surface(heights, counterface, side_nm, bool(periodic), contact_at, steps.size)
     hardness = {"h_macro": 0.0 if h_macro is None else h_macro, "h_prime": h_prime}
     inputs = ContactInputs(hamaker=0.0, e_star=e_star, **hardness, q0=1.0, hurst=0.5, rms=0.0)
     settings = ContactSettings(model="elastic" if h_macro is None else "plastic").model_copy(
         update={"pixels": len(surface), "length_nm": spacing * len(surface)}
     )
+    check_hardness(inputs, settings)
     offset, lowest = float(surface.mean()), float(surface.min())
     contact = CoupledContact(surface, inputs, settings) if periodic else FreeContact(surface, inputs, settings)
     if by_load:
         _refuse_beyond(contact, steps[-1])
-    row, converged, at_loads = None, True, []
-    for step in steps:
+    forces, separations, pulls = (np.zeros(steps.size) for _ in range(3))
+    pressures, gaps = (np.empty((steps.size, *surface.shape)) for _ in range(2))
+    row, converged = None, True
+    for number, step in enumerate(steps):
         ends = {"stop_force": step} if by_load else {"stop_separation": -lowest - step}
         path = trace(contact, NUMERICS.force_steps if h_macro else 1, h_macro is not None, **ends, start=row)
         row = path.rows[-1]
@@ -150,34 +160,67 @@ def press(
         else:
             _refuse_beyond(contact, row.force)
         converged &= path.reached and path.unconverged == 0
-        pressure, gap = contact.fields()
-        pull = 0.0 if attraction is None else _pull(attraction, gap, contact)
-        at_loads.append((row.force, row.separation + offset, -lowest - row.separation, pull, pressure, gap))
+        forces[number] = row.force
+        separations[number] = row.separation
+        pressures[number], gaps[number] = contact.fields()
+        if attraction is not None:
+            pulls[number] = _pull(attraction, gaps[number], contact)
     sides = (spacing * surface.shape[0], spacing * surface.shape[1])
-    columns = (np.array(column) for column in zip(*at_loads, strict=True))
-    return PressedMap(*columns, lengths_nm=sides, converged=bool(converged))
+    from_mean, approach = separations + offset, -lowest - separations
+    return PressedMap(forces, from_mean, approach, pulls, pressures, gaps, lengths_nm=sides, converged=bool(converged))
+
+
+def _steps(loads_nN: Any, approach_nm: Any) -> np.ndarray:
+    """Loads or approaches, whichever are given, shape (k,)."""
+    if (loads_nN is None) == (approach_nm is None):
+        raise InputError("press: give either loads_nN or approach_nm, and None for the other")
+    if loads_nN is not None:
+        return _rising("loads_nN", loads_nN, "nN", SMALLEST_FORCE_NN, LARGEST_FORCE_NN)
+    return _rising("approach_nm", approach_nm, "nm", 1e-9, 1e9)
+
+
+def _rising(name: str, values: Any, unit: str, least: float, most: float) -> np.ndarray:
+    steps = checked_array(name, values, unit)
+    if steps.ndim != 1 or steps.size == 0 or (np.diff(steps) <= 0.0).any():
+        raise InputError(f"{name}: accepted are rising numbers in {unit}, one after the other")
+    for step in steps.tolist():
+        check_number(name, step, least, most, unit)
+    return steps
 
 
 def _surface(
-    heights: Any, counterface: Any, side_nm: float | tuple[float, float], periodic: bool, contact_at: ContactAt
+    heights: Any,
+    counterface: Any,
+    side_nm: float | tuple[float, float],
+    periodic: bool,
+    contact_at: ContactAt,
+    loads: int,
 ) -> tuple[np.ndarray, float]:
     """Heights of both surfaces together, contact at the lowest, and the spacing of the sites (nm)."""
-    length = side_nm if isinstance(side_nm, (int, float)) else max(side_nm)
-    maps = [checked_heights(values, length, square=False) for values in (heights, counterface) if values is not None]
-    shape = maps[0].shape
-    if maps[-1].shape != shape:
-        raise InputError(f"counterface: {maps[-1].shape} sites on {shape}; accepted are maps of one shape")
-    lengths = (side_nm, side_nm * shape[1] / shape[0]) if isinstance(side_nm, (int, float)) else tuple(side_nm)
-    spacing = lengths[0] / shape[0]
-    if len(lengths) != 2 or abs(lengths[1] / shape[1] / spacing - 1.0) > 1e-3:
+    sides = checked_array("side_nm", side_nm, "nm")
+    if sides.shape not in ((1,), (2,)):
+        raise InputError(f"side_nm = {side_nm!r:.60}: accepted is one length in nm, or the lengths along x and y")
+    surface = checked_heights(heights, float(sides.max()), square=False)
+    shape = surface.shape
+    if sides.size == 1:
+        sides = np.array([sides[0], sides[0] * shape[1] / shape[0]])
+    spacing = float(sides[0]) / shape[0]
+    if not abs(sides[1] / shape[1] / spacing - 1.0) <= 1e-3:
         raise InputError(f"side_nm = {side_nm}: sites of {shape} must be squares; interpolate the map on such")
     if periodic and shape[0] != shape[1]:
         raise InputError(f"heights: {shape[0]} x {shape[1]} sites; periodic maps are square: cut it, or periodic=False")
     if contact_at not in get_args(ContactAt):
         raise InputError(f"contact_at = {contact_at}: accepted are highest (measured maps) and lowest")
-    check_memory(shape[0] ** 2 if periodic else 4 * max(shape) ** 2, "coupled")
-    together = maps[0] + maps[1][::-1] if counterface is not None else maps[0]
-    return (-together if contact_at == "highest" else together.copy()), spacing
+    sites = shape[0] ** 2 if periodic else 4 * max(shape) ** 2
+    check_memory(sites, "coupled", MAP_MB * loads * surface.size)
+    if counterface is not None:
+        second = checked_heights(counterface, float(sides.max()), square=False, name="counterface")
+        if second.shape != shape:
+            raise InputError(f"counterface: {second.shape} sites on {shape}; accepted are maps of one shape")
+        surface = surface + second[::-1]
+    if periodic:
+        check_periodic(surface)
+    return (-surface if contact_at == "highest" else surface.copy()), spacing
 
 
 def _refuse_beyond(contact: CoupledContact, force: float) -> None:
@@ -192,7 +235,15 @@ def _pull(attraction: PressureOfGaps, gap: np.ndarray, contact: CoupledContact) 
     sites = np.arange(contact.heights.size, dtype=np.int32)
     weight = attracting(sites, contact.place, contact.pressure, contact.n, False)
     weight = weight.reshape(contact.n, contact.n)[: gap.shape[0], : gap.shape[1]]
-    stress = checked_array("attraction(gap)", attraction(gap), "GPa", missing=True)
-    if stress.shape != gap.shape or not np.isfinite(stress[weight > 0.0]).all():
-        raise InputError("attraction: accepted is a function of an array of gaps (nm) with finite pressures (GPa)")
-    return -float(weight[weight > 0.0] @ stress[weight > 0.0]) * contact.site_area
+    try:
+        stress = attraction(gap.copy())
+    except Exception as error:  # of a function that is not ours
+        raise InputError(f"attraction(gap): {type(error).__name__}: {error}; {ATTRACTION}") from error
+    stress = checked_array("attraction(gap)", stress, "GPa", missing=True)
+    if stress.shape != gap.shape:
+        raise InputError(f"attraction(gap): shape {stress.shape} for gaps of {gap.shape}; {ATTRACTION}")
+    pulled = weight > 0.0
+    least, most = (float(end) for end in (stress[pulled].min(initial=0.0), stress[pulled].max(initial=0.0)))
+    if not (least >= 0.0 and most <= STRONGEST_GPA):
+        raise InputError(f"attraction(gap): {least:.4g} .. {most:.4g} GPa where sites do not touch; {ATTRACTION}")
+    return -float(weight[pulled] @ stress[pulled]) * contact.site_area

@@ -2,9 +2,8 @@
 
 Each voltage is a regression over these switches, in the inputs and in all else that they differ by. What the inputs do
 is the response; the rest is scatter, shared by all measured switches (D0, what devices have in common, how places of
-the film differ, what the regression misses) or of each. A switch that sticks has a release below zero that is not
-known: its expected value is put in its place until the regression no longer changes (Dempster, Laird and Rubin, J. R.
-Statist. Soc. B 39, 1, 1977, section 4.2).
+the film differ, what the regression misses) or of each. A switch that sticks has a release below
+zero, and nothing else is known of it.
 """
 
 from dataclasses import dataclass, replace
@@ -16,8 +15,9 @@ from scipy.special import gammaln, log_ndtr, ndtr
 from mesoscale.device.points import PadModel
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.uncertainty.regression import refit, sparse_chaos
-from mesoscale.uncertainty.surrogate import Surrogate, scaled
+from mesoscale.uncertainty.censored import censored_chaos
+from mesoscale.uncertainty.regression import sparse_chaos
+from mesoscale.uncertainty.surrogate import Surrogate
 
 Array = NDArray[np.float64]
 
@@ -68,22 +68,12 @@ def fit_voltages(model: PadModel, prior: InputTable) -> dict[str, Voltage]:
 
 def _regressed(x: Array, volts: Array, ranges: Array, of_device: NDArray[np.bool_]) -> Voltage:
     """Regression in inputs and, behind them, in the probabilities of all else, of which some are of each device."""
-    stuck, values = volts == 0.0, volts.copy()
-    values[stuck], fit, missed_V = -volts.std(), Surrogate(ranges, np.zeros((1, len(ranges)), int), np.zeros(1)), 0.0
-    for step in range(300):  # where half of the switches stick, it takes a hundred
-        if step % 50 == 0:
-            fit = sparse_chaos(x, values, ranges, degree=2)
-        else:
-            fit = refit(scaled(x, ranges), values, ranges, fit.degrees, "identity")
-        off = values - fit(x)
-        missed_V = np.sqrt((off**2).sum() / max(len(x) - len(fit.degrees), 1))
-        expected = fit(x)[stuck]
-        depth = -expected / max(missed_V, 1e-9)
-        below = expected - missed_V * np.exp(-0.5 * depth**2 - 0.5 * np.log(2 * np.pi) - log_ndtr(depth))
-        settled = np.allclose(below, values[stuck], atol=1e-3 * volts.std())
-        values[stuck] = below
-        if settled and step % 50 == 0:  # terms that are selected anew change nothing
-            break
+    stuck = volts == 0.0
+    if stuck.any():
+        fit, missed_V = censored_chaos(x, volts, stuck, ranges)
+    else:
+        fit = sparse_chaos(x, volts, ranges, degree=2)
+        missed_V = np.sqrt(((volts - fit(x)) ** 2).sum() / max(len(x) - len(fit.degrees), 1))
     inputs = len(ranges) - len(of_device)
     of_others = fit.degrees[:, inputs:]
     variance = fit.coefficients**2 / np.prod(2 * fit.degrees + 1, axis=1)

@@ -10,6 +10,7 @@ from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.path import reopen, trace
 from mesoscale.contact.pressed import Contact, Row
 from mesoscale.contact.surface import ContactAt, given_surface, random_surface
+from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
@@ -92,6 +93,20 @@ class Cycle:
         return self.length_nm**2
 
 
+def check_hardness(inputs: ContactInputs, settings: ContactSettings) -> None:
+    """Refuse a material that yields at no pressure at all, of which no contact carries a force.
+
+    Raises
+    ------
+    InputError
+    """
+    if settings.model != "elastic" and inputs.hardness.pressure(settings.length_nm**2) <= 0.0:
+        raise InputError(
+            f"h_macro = {inputs.h_macro:g} GPa: the surface would carry nothing; give its hardness, or take "
+            "model: elastic (asp.press: h_macro=None)"
+        )
+
+
 MAX_FORCE_MISS = 0.01
 """Relative distance from the requested force beyond which a cycle is not converged."""
 
@@ -147,6 +162,7 @@ def run_cycle(
     check_number("max_force_nN", force, SMALLEST_FORCE_NN, LARGEST_FORCE_NN, "nN")
     surface, settings = given_surface(heights, length_nm, contact_at, settings)
     check_memory(settings.pixels**2, settings.mechanics)
+    check_hardness(inputs, settings)
     if surface is None:
         surface = random_surface(inputs, settings, seed)
     elif plastic:

@@ -6,19 +6,25 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from mesoscale.checks import check_number, checked_heights
+from mesoscale.checks import check_number, check_periodic, checked_heights
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 ContactAt = Literal["highest", "lowest"]
 """Which of given heights touch the flat first."""
+CUT_OUT = 10.0
+"""Longest roll-off over the cell: a cell without plateau is a part of a film; a longer one acts on no wave at all."""
 
 
 def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) -> np.ndarray:
     """Heights (pixels, pixels) in nm by the inputs' q0, hurst and rms and by `settings.surface`.
 
     Contact is at the minima of the heights, so a surface of positive skewness (tall peaks) has deep minima here.
+
+    Raises
+    ------
+    InputError : q0 or the cut-off beyond what the cell holds and the grid resolves.
     """
     from mesoscale.topography.synthesis import synthesize, synthesize_spectrum
 
@@ -31,8 +37,20 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
         psd = surface_spectrum(inputs, settings)
         return -synthesize_heights(pixels, length, psd, wanted.heights, inputs.rms, seed, q1)
     if wanted.spectrum is None:
+        _check_roll_off(inputs.q0, settings)
         return synthesize(pixels, length, inputs.q0, inputs.hurst, inputs.rms, seed, settings.reading.convention, q1)
     return synthesize_spectrum(pixels, length, surface_spectrum(inputs, settings), inputs.rms, seed, q1)
+
+
+def _check_roll_off(q0: float, settings: ContactSettings) -> None:
+    """Refuse a roll-off far beyond the waves of the cell, on which it does not act: it is in another unit."""
+    longest = 2.0 * math.pi / settings.length_nm
+    shortest = settings.nyquist_per_nm
+    if not longest / CUT_OUT <= q0 <= shortest * (1.0 + 1e-9):
+        raise InputError(
+            f"q0 = {q0:.4g} 1/nm: a cell of {settings.length_nm:g} nm and {settings.pixels} pixels has waves of "
+            f"{longest:.4g} .. {shortest:.4g} 1/nm; accepted are {longest / CUT_OUT:.4g} .. {shortest:.4g} 1/nm"
+        )
 
 
 def surface_spectrum(inputs: ContactInputs, settings: ContactSettings) -> Callable[[np.ndarray], np.ndarray]:
@@ -76,6 +94,7 @@ def given_surface(
             raise InputError("length_nm is the side of heights; give both, or settings.length_nm alone")
         return None, settings
     surface = checked_heights(heights, settings.length_nm if length_nm is None else length_nm)
+    check_periodic(surface)
     if contact_at not in get_args(ContactAt):
         raise InputError(
             f"contact_at = {contact_at}: say where heights touch the flat: highest, as an instrument measures them; "

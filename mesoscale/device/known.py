@@ -2,9 +2,8 @@
 
 An input is common to all devices, one unknown value U, or varies with each device, X. A sum of functions of single
 numbers is fitted to the solved switches, so that it splits in one part of U and one of X. It is the release, or its
-square, which the forces balance. Where the switch sticks, the fitted quantity lies below zero and is not known; its
-expected value is put in its place until the fit no longer changes (Dempster, Laird and Rubin, J. R. Statist. Soc. B 39
-(1977) 1, section 4.2).
+square, which the forces balance. Where the switch sticks, the fitted quantity lies below zero, and nothing else is
+known of it.
 """
 
 from dataclasses import dataclass
@@ -12,7 +11,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import log_ndtr, ndtr
+from scipy.special import ndtr
+
+from mesoscale.uncertainty.censored import Censored, most_likely
 
 Array = NDArray[np.float64]
 ENDS = (0.05, 0.5, 0.95)
@@ -73,33 +74,44 @@ def basis(units: Array, degree: int) -> Array:
 def fit_additive(units: Array, release_V: Array) -> Additive:
     """The sum that best predicts switches that are left out; numbers (m, k), releases (m,), 0 where it sticks.
 
-    Of the release and its square, linear and of second degree; the linear ones need more than k + 1 switches.
+    Of the release and its square, linear and of second degree. The linear ones need more than k + 1 switches that let
+    go, the others twice as many.
     """
     fits = [_fit(units, release_V, power, 1) for power in (1, 2)]
-    if len(units) > 2 * units.shape[1] + 2:
+    if np.count_nonzero(release_V) > 2 * units.shape[1] + 2:
         fits += [_fit(units, release_V, power, 2) for power in (1, 2)]
     return max(fits, key=lambda fit: fit.explained)
 
 
 def _fit(units: Array, release_V: Array, power: int, degree: int) -> Additive:
+    """Where too few switches let go to tell the numbers apart, the sum is its constant alone."""
     columns = basis(units, degree)
-    inverse, values, stuck = np.linalg.pinv(columns), release_V**power, release_V == 0.0
-    missed, tolerance = 0.0, 1e-3 * float(values.std())
-    values[stuck] = -values.std()
-    for _ in range(300):  # where half of the switches stick, it takes a hundred
-        fitted = columns @ (inverse @ values)
-        missed = float(np.sqrt(((values - fitted) ** 2).sum() / max(len(units) - columns.shape[1], 1)))
-        depth = -fitted[stuck] / max(missed, 1e-9)
-        below = fitted[stuck] - missed * np.exp(-0.5 * depth**2 - 0.5 * np.log(2.0 * np.pi) - log_ndtr(depth))
-        settled = np.allclose(below, values[stuck], rtol=0.0, atol=tolerance)
-        values[stuck] = below
-        if settled:
-            break
-    free, explained = 1.0 - np.einsum("pi,ip->p", columns, inverse), 0.0
+    terms = columns.shape[1]
+    stuck = release_V == 0.0
+    if stuck.any() and len(stuck) - stuck.sum() <= terms:
+        columns = columns[:, :1]
+    fit = _sum(columns, release_V**power, stuck)
+    free = 1.0 - np.einsum("pi,ip->p", columns, np.linalg.pinv(columns))
+    explained = 0.0
     if free.min() > 1e-9:  # else a switch is needed for the fit: without it, it is not predicted
-        left = (values - columns @ (inverse @ values)) / free
-        explained = 1.0 - float(np.mean(left**2)) / (values.var() or 1.0)
-    return Additive(power, degree, inverse @ values, inverse @ inverse.T * missed**2, missed, explained, values)
+        left = (fit.values - columns @ fit.coefficients) / free
+        explained = 1.0 - float(np.mean(left**2)) / (fit.values.var() or 1.0)
+    others = (0, terms - columns.shape[1])
+    coefficients = np.pad(fit.coefficients, others)
+    covariance = np.pad(fit.covariance, others)
+    return Additive(power, degree, coefficients, covariance, fit.scatter, explained, fit.values)
+
+
+def _sum(columns: Array, values: Array, stuck: NDArray[np.bool_]) -> Censored:
+    """Coefficients of the columns by values (m,), of which some are known only to lie below zero."""
+    if stuck.any() and not stuck.all():
+        return most_likely(columns, values, stuck)
+    values = np.where(stuck, -1.0, values)  # where all stick, nothing says how far below zero they are
+    inverse = np.linalg.pinv(columns)
+    coefficients = inverse @ values
+    missed = ((values - columns @ coefficients) ** 2).sum()
+    scatter = float(np.sqrt(missed / max(len(columns) - columns.shape[1], 1)))
+    return Censored(coefficients, inverse @ inverse.T * scatter**2, scatter, values)
 
 
 def known(

@@ -25,7 +25,11 @@ class ContactInputs:
     hurst : Hurst exponent of the surface.
     rms : RMS height of the surface, nm.
     h_film, t_film, k_film, m_film : hardness (GPa) and thickness (nm) of a film, and how the base softens it
-        (`HardnessLaw`); without thickness there is no film.
+        (`HardnessLaw`); a film needs all four.
+
+    Raises
+    ------
+    InputError : a number out of its range, a part of a film, or a film softer than its base.
     """
 
     hamaker: float
@@ -44,6 +48,15 @@ class ContactInputs:
         for field in fields(self):
             row = BY_NAME[field.name]
             check_number(row.name, getattr(self, row.name), row.low, row.high, row.unit, row.zero)
+        film = {name: getattr(self, name) for name in ("h_film", "k_film", "m_film")}
+        if self.t_film == 0 and any(film.values()):
+            stated = ", ".join(f"{name} = {value:g}" for name, value in film.items() if value)
+            raise InputError(f"{stated} without t_film: a film needs its thickness; give t_film, or leave them out")
+        if self.t_film > 0 and not (self.k_film or self.m_film):
+            raise InputError(
+                f"t_film = {self.t_film:.4g} nm without k_film and m_film: nothing says how the base softens the film; "
+                "give both, or without t_film the film's hardness as h_macro"
+            )
         if self.t_film > 0 and self.h_film < self.h_macro:  # contacts that harden as they grow have no one pressure
             raise InputError(
                 f"h_film = {self.h_film:.4g} GPa on h_macro = {self.h_macro:.4g} GPa: accepted are films at least as "

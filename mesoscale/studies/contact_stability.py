@@ -17,6 +17,7 @@ from mesoscale.settings.definitions import definition
 from mesoscale.studies.driver import HardCase
 
 CHECKS = "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow settled"
+WITHOUT_FILM = {"h_film": 0.0, "t_film": 0.0, "k_film": 0.0, "m_film": 0.0}
 FINER = 16  # force steps of the path that judges a gain of energy, over those of the cycle
 
 
@@ -110,12 +111,12 @@ def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case
         Case("central inputs", "medians of the scene's inputs", inputs),
         Case("stiffest", "E* = 2000 GPa: yields at once", with_(e_star=definition("e_star").high)),
         Case("E* / 1000", "soft: never yields", with_(e_star=1e-3 * inputs.e_star)),
-        Case("hard", "H = 1e6 GPa: elastic", with_(h_macro=1e6, t_film=0.0)),
-        Case("H' = 0", "constant hardness", with_(h_prime=0.0, t_film=0.0)),
+        Case("hard", "H = 1e6 GPa: elastic", with_(h_macro=1e6, **WITHOUT_FILM)),
+        Case("H' = 0", "constant hardness", with_(h_prime=0.0, **WITHOUT_FILM)),
         Case(
             "no hardness",
             "H = 1e-6 GPa: flows without carrying",
-            with_(h_macro=1e-6, h_prime=0.0, t_film=0.0),
+            with_(h_macro=1e-6, h_prime=0.0, **WITHOUT_FILM),
             {"max_force_nN": 1e-9 * area},
         ),
         Case("rms 0.01 nm", "nearly flat", with_(rms=0.01)),

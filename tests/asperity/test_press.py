@@ -97,16 +97,89 @@ def test_a_pressed_map_is_drawn_and_says_what_it_is():
     assert list(pressed.lines())[2].startswith("1000 nN: ")
 
 
-@pytest.mark.parametrize(("periodic", "needed"), [(True, "0.00229"), (False, "0.00918")])
+@pytest.mark.parametrize(("periodic", "needed"), [(True, "0.00256"), (False, "0.00944")])
 def test_a_map_beyond_memory_is_refused(monkeypatch, periodic, needed):
     monkeypatch.setattr("mesoscale.checks.machine_MB", lambda: 2)
     with pytest.raises(asp.InputError, match=f"needs {needed} GB of memory, this machine has 0.002; take a part"):
         asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=periodic)
 
 
+@pytest.mark.parametrize("periodic", [True, False])
+def test_maps_of_many_loads_are_counted_in_memory(monkeypatch, periodic):
+    """Pressure and gap: 16 bytes a site and load. Seen as the space that the result takes."""
+    loads = np.linspace(10.0, 100.0, 50)
+    pressed = asp.press(SPHERE, SIDE, loads, E_STAR, periodic=periodic)
+    kept = 16 * 50 * PIXELS**2
+    assert pressed.pressure_GPa.base is None  # no larger array is kept for it
+    assert pressed.pressure_GPa.nbytes + pressed.gap_nm.nbytes == kept
+    contact = 140 * PIXELS**2 * (1 if periodic else 4)
+    monkeypatch.setattr("mesoscale.checks.machine_MB", lambda: 1e-6 * (contact + 0.9 * kept))
+    with pytest.raises(asp.InputError, match=r"with 0\.0131 GB of maps, needs .* or fewer loads"):
+        asp.press(SPHERE, SIDE, loads, E_STAR, periodic=periodic)
+    assert asp.press(SPHERE, SIDE, loads[:10], E_STAR, periodic=periodic).converged
+
+
+@pytest.mark.parametrize("side", [np.float32(SIDE), np.int64(SIDE), np.array(SIDE), [SIDE, SIDE], np.full(2, SIDE)])
+def test_a_side_is_a_number_or_two_of_any_kind(side):
+    np.testing.assert_array_equal(
+        asp.press(SPHERE, side, 100.0, E_STAR).pressure_GPa, asp.press(SPHERE, SIDE, 100.0, E_STAR).pressure_GPa
+    )
+
+
+def test_an_attraction_that_writes_into_its_gaps_changes_no_result():
+    def spoiling(gap):
+        pull = 0.01 / (6 * np.pi * (gap + 0.3) ** 3)
+        gap[:] = 7.0
+        return pull
+
+    spoiled = asp.press(SPHERE, SIDE, 100.0, E_STAR, attraction=spoiling)
+    clean = asp.press(SPHERE, SIDE, 100.0, E_STAR, attraction=lambda gap: 0.01 / (6 * np.pi * (gap + 0.3) ** 3))
+    np.testing.assert_array_equal(spoiled.gap_nm, clean.gap_nm)
+    assert spoiled.attraction_nN.tolist() == clean.attraction_nN.tolist()
+
+
+def test_only_maps_that_repeat_have_no_tilt():
+    """A wave as long as the map seems tilted, a levelled map is not, and one that stands alone may be."""
+    wave = 3.0 * np.sin(2 * np.pi * X / SIDE)[:, None] + 0.0 * X
+    rough = np.random.default_rng(1).normal(0.0, 3.0, SPHERE.shape)
+    for levelled in (wave, rough, SPHERE):
+        assert asp.press(levelled, SIDE, 100.0, E_STAR).converged
+    tilted = rough + np.linspace(0.0, 500.0, PIXELS)
+    assert asp.press(tilted, SIDE, 100.0, E_STAR, periodic=False).converged
+    for heights, axis in ((tilted, "y"), (tilted.T, "x")):
+        with pytest.raises(asp.InputError, match=f"tilted by 5.. nm along {axis}, the roughness is [23]"):
+            asp.press(heights, SIDE, 100.0, E_STAR)
+        with pytest.raises(asp.InputError, match=f"tilted by 5.. nm along {axis}"):
+            asp.run_cycle(INPUTS, GRID, 1, 100.0, heights=heights, length_nm=SIDE, contact_at="highest")
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
+        ({"side_nm": None}, "side_nm"),
+        ({"side_nm": "200"}, "side_nm"),
+        ({"side_nm": (None, 200.0)}, "side_nm"),
+        ({"side_nm": (200.0, 200.0, 200.0)}, "one length in nm, or the lengths"),
+        ({"side_nm": np.ma.masked}, "side_nm"),
+        ({"side_nm": 1j}, "side_nm"),
+        ({"heights": None}, "heights"),
+        ({"heights": SPHERE[:3, :3]}, "at least 4 x 4 sites"),
+        ({"loads_nN": np.ones((2, 2))}, "loads_nN: accepted are rising"),
+        ({"loads_nN": [[1.0], [2.0, 3.0]]}, "loads_nN: rows of different length"),
+        ({"loads_nN": np.ma.array([1.0, 2.0], mask=[False, True])}, "loads_nN: 1 values are masked"),
+        ({"loads_nN": None, "approach_nm": np.ones((2, 2))}, "approach_nm: accepted are rising"),
+        ({"loads_nN": None, "approach_nm": np.ma.array([1.0, 2.0], mask=[0, 1])}, "approach_nm: 1 values are masked"),
+        ({"periodic": "False"}, "periodic = 'False': accepted are True and False"),
+        ({"periodic": 0}, "periodic = 0"),
+        ({"attraction": 0.2}, "attraction = 0.2: accepted is a function"),
+        ({"attraction": lambda: 1.0}, "takes 0 positional arguments"),
+        ({"attraction": lambda gap: None}, "attraction"),
+        ({"attraction": lambda gap: -np.ones_like(gap)}, r"-1 \.\. 0 GPa where sites do not touch"),
+        ({"attraction": lambda gap: np.full_like(gap, 1e6)}, r"0 \.\. 1e\+06 GPa where sites do not touch"),
+        ({"attraction": lambda gap: np.ones((2, 2))}, "shape"),
+        ({"h_prime": 8.0}, "without h_macro"),
+        ({"h_macro": 0.0}, "h_macro = 0 GPa: the surface would carry nothing"),
+        ({"counterface": "map"}, "counterface: values of type"),
         ({"heights": SPHERE[:, :64]}, "periodic=False"),
         ({"heights": SPHERE[0]}, "a map of at least 3 x 3"),
         ({"heights": np.where(R < 5, np.nan, SPHERE)}, "not finite"),

@@ -96,6 +96,13 @@ def test_a_film_softer_than_its_base():
     assert "films softer than their base are not modelled" in line
 
 
+def test_a_film_without_thickness():
+    rows = {"h_film": [7, 10], "t_film": [0, 0], "k_film": [0.1, 0.5], "m_film": [1, 2]}
+    inputs = {"hardness": "film", "h_prime": None, **{name: {"values": tuple(values)} for name, values in rows.items()}}
+    (line,) = mistakes(Scene.model_validate({"inputs": inputs}), {})
+    assert line.startswith("inputs.t_film = 0: without a film take inputs.hardness: paper")
+
+
 def test_points_that_cannot_tell_causes_apart_are_refused_before_anything_runs():
     scene = Scene.model_validate({"extends": "table1", "pad": {"points": 30}})
     (line,) = [line for line in mistakes(scene, {}) if line.startswith("pad.points")]

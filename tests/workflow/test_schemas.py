@@ -5,6 +5,22 @@ from pathlib import Path
 
 import pytest
 
+from evidence.pad.rare_failures import known_pad
+from mesoscale.circuit import switches
+from mesoscale.circuit.switches import spread_switches
+from mesoscale.device import points
+from mesoscale.device.points import (
+    Pad,
+    PadModel,
+    central_point,
+    cutoff_range,
+    plan_points,
+    solve_point,
+    solve_points,
+)
+from mesoscale.inputs.table import film_table
+from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
+from tests.mesoscale.device.test_release import cells_of, table
 from workflow.files.results import load_csv, write_csv
 from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page
@@ -97,3 +113,40 @@ def test_a_damaged_table_is_refused_in_one_line(tmp_path, change, words):
     path.write_text(change(path.read_text()))
     with pytest.raises(UnfitTable, match=rf"{words}; damaged or of another version: delete it and run again"):
         load_csv(path)
+
+
+AS_INPUTS = {
+    "humidity": InputRow(values=(0.1, 0.5)),
+    "gap_cutoff": InputRow(values=(0.2, 0.3)),
+    "q1": InputRow(values=(0.4, 0.5)),
+}
+FILM = {
+    "hardness": "film",
+    "h_prime": None,
+    "h_film": InputRow(values=(8.0, 10.0)),
+    "t_film": InputRow(values=(4.0, 5.0)),
+    "k_film": InputRow(values=(0.1, 0.5)),
+    "m_film": InputRow(values=(1.0, 2.0)),
+}
+
+
+@pytest.mark.parametrize(("rows", "scatter"), [({}, None), ({}, (0.1, 0.3)), (AS_INPUTS, None), (FILM, (0.1, 0.3))])
+def test_switches_for_circuits_fit_their_table_whatever_their_inputs(monkeypatch, tmp_path, rows, scatter):
+    """Own scans have places of unequal roughness: their switches were refused after all the work."""
+
+    def press_pad(point, contact, cells, first_seed, **_):
+        law = known_pad(point).law
+        return Pad(cells_of(law, 0.0), law.flats)
+
+    for module in (switches, points):
+        monkeypatch.setattr(module, "press_pad", press_pad)
+    contact, device = ContactSettings(mechanics="asperity"), DeviceSettings()
+    of_pad = film_table(table(**rows), {}, scatter)
+    cutoffs = cutoff_range(of_pad, contact)
+    design = plan_points(of_pad, contact, device, 8)
+    central = solve_point(central_point(of_pad, contact, device), contact, 2, 0)
+    model = PadModel(central, design, tuple(solve_points(list(enumerate(design.points, 1)), contact, 2)))
+    made = spread_switches(model, of_pad, contact, cutoffs, 8)
+    path = tmp_path / "results/mine/device/circuit.csv"
+    write_csv(path, [switch.row for switch in made])
+    assert set(of_pad.names) <= set(load_csv(path)[0])

@@ -45,6 +45,8 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
             f"inputs.h_film reaches down to {spans['h_film'][0]:g} GPa, inputs.h_macro of its base up to {base:g}: "
             "films softer than their base are not modelled; correct one of them"
         )
+    if spans.get("t_film", (1.0, 1.0))[1] == 0.0:
+        yield "inputs.t_film = 0: without a film take inputs.hardness: paper, and null for all numbers of the film"
     bodies, (least, most) = scene.contact.bodies, spans.get("e_star", (0.0, math.inf))
     if bodies and not least / 1.25 <= (bases := base_modulus(bodies)) <= 1.25 * most:
         yield (

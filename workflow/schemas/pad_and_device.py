@@ -1,5 +1,6 @@
 """Tables of pads and of the switch."""
 
+from mesoscale.settings.definitions import RMS_SCATTER
 from mesoscale.settings.device import SPREAD, unit_of
 from workflow.schemas.inputs_and_law import BRANCH, INPUT_VALUES
 from workflow.schemas.table import Table, boolean, number, text
@@ -49,6 +50,7 @@ TABLES = (
             text("switch", "name of its model in device/circuit"),
             number("deviations", "1", "standard deviations from the central inputs to a corner; 0 for a draw"),
             *INPUT_VALUES,
+            number(RMS_SCATTER.name, RMS_SCATTER.unit, f"{RMS_SCATTER.label} of the film", optional=True),
             number("gap_cutoff_nm", "nm", "D0 of its pad"),
             *(number(name, unit_of(name), f"device.{name} of its electrode") for name in SPREAD if name != "tilt_nm"),
             number("pull_in_V", "V", "pull-in voltage"),

@@ -68,7 +68,7 @@ class AdhesiveContact(CoupledContact):
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
-    UNMOVED_NM = 1e-4  # new pressures that displace no site by more displace only the known ones until the next step
+    UNMOVED = 6e-4  # of D0: pressures that displace no site by more displace only the known ones until the next step
     MIXED_PULL = 1e-3  # of the largest attraction: sites below are not mixed, energies of smaller steps not compared
 
     def __init__(
@@ -283,7 +283,7 @@ class AdhesiveContact(CoupledContact):
                 moved = self._bent(np.negative(wanted, dtype=np.float32), self.pressure)
                 before = self.displacement.copy()
                 continue
-            if np.abs(self.displacement - before).max(initial=0.0) > self.UNMOVED_NM:
+            if np.abs(self.displacement - before).max(initial=0.0) > self.UNMOVED * self.settings.gap_cutoff_nm:
                 moved += self._bent(np.zeros(moved.size, np.float32), self.pressure - pressure)
             before = self.displacement.copy()
             moved[sites] = shift[sites] + before

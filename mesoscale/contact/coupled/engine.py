@@ -42,10 +42,11 @@ class CoupledContact(Contact):
     # the whole grid cost less: pads of 128^2 sites take 0.8 of the time with 4 or 8 per pixel instead of 16.
     DENSE_PER_PIXEL, DENSE_TIMES_PIXELS = 8, 2**18
     LONGEST_GUESS = 2.0  # over the last step: so far pressures are taken to go on as in it
-    # nm, and largest displacements: sites nearer than both count with their displacement in the attraction, the others
+    # D0, and largest displacements: sites nearer than both count with their displacement in the attraction, the others
     # without. Errs by at most 1.2 % at a single step (128^2 and 256^2, elastic and plastic, RMS 2 to 15 nm, to 10 MPa);
     # without the second by 30 % on the roughest
-    NEAR_GAP, NEAR_DISPLACEMENTS = 2.0, 4.0
+    NEAR_CUTOFFS = 12.0
+    NEAR_DISPLACEMENTS = 4.0
     # share of the cell: so few sites near liquid count with their displacement. Where it fills more, its edge is far
     # from most contacts, and the others err by at most 0.5 % (128^2 and 256^2, 20 nN to 20 uN, RMS 2 and 5 nm)
     NEAR_LIQUID = 0.1
@@ -369,7 +370,7 @@ class CoupledContact(Contact):
         """Attractive force in nN, negative (eq. 1), at the current separation or before contact.
 
         The gap is the deformed one at sites whose undeformed gap is small; the others count undeformed, through the
-        histogram (`NEAR_GAP` states the error).
+        histogram (`NEAR_CUTOFFS` states the error).
         """
         law = self.adhesion
         if law is None:
@@ -378,9 +379,8 @@ class CoupledContact(Contact):
             return law.around(self.heights, separation, self.grid.field, self.sites, self.place, self.pressure)
         known = self.sites.size
         raised = self.rise * self.force + 2.0 * law.bin_width
-        near = max(
-            self.NEAR_GAP, self.NEAR_DISPLACEMENTS * self.displacement.max(initial=0.0), 2.0 * law.cutoff, raised
-        )
+        moved = self.NEAR_DISPLACEMENTS * self.displacement.max(initial=0.0)
+        near = max(self.NEAR_CUTOFFS * law.cutoff, moved, raised)
         far, edge = law.far_edge(near, separation)
         wet, wet_edge = law.far_edge(max(near, law.filled.reach + raised), separation)
         if self.force == 0.0 or law.share_before(wet) > self.NEAR_LIQUID:

@@ -65,6 +65,16 @@ def test_switches_that_stick_count_below_zero(prior):
     assert release(x) == pytest.approx([11.0, 0.0, -11.0], abs=1.2)
 
 
+@pytest.mark.parametrize("count", [150, 190, 250, 400])
+def test_switches_that_stick_do_not_bias_the_others(prior, count):
+    """Lines through known and sticking switches are those that made them, whatever their number."""
+    release = fit_voltages(pads(prior, count, middle_V=0.0), prior)["release"]
+    x = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, rms] for rms in (3.0, 8.5, 14.0)])
+    assert release(x) == pytest.approx([11.0, 0.0, -11.0], abs=0.05)  # the made-up switches have no other scatter
+    assert release.each_V == pytest.approx(EACH_V, rel=0.1)
+    assert release.shared_V == pytest.approx(SHARED_V, rel=0.1)
+
+
 def test_measured_releases_find_the_roughness(prior, switches):
     """Ten switches on one film: what they share stays, what each has of its own averages out."""
     data = measured("release", 22.0 + EACH_V * np.random.default_rng(1).standard_normal(10))

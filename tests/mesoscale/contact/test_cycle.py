@@ -1,9 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mesoscale.contact import attraction, run_cycle
 from mesoscale.contact.asperity import engine
+from mesoscale.contact.energy import pull_off
 from mesoscale.contact.numerics import Numerics
+from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
@@ -169,7 +173,7 @@ ROUGH = synthesize(256, 250.0, 0.025, 0.75, 8.5, 1)  # nm
     [
         (np.zeros((4, 5)), "square"),
         (np.zeros(9), "square"),
-        (np.zeros((2, 2)), "3 x 3"),
+        (np.zeros((2, 2)), "4 x 4"),
         (np.full((8, 8), np.nan), "finite"),
         (np.where(np.eye(256), np.inf, 0), "finite"),
         (np.ma.masked_greater(ROUGH, 10.0), "masked"),
@@ -281,3 +285,69 @@ def test_the_flag_is_the_largest_fall_below_an_earlier_value():
     worst = max(force[:k].max() - force[k] for k in range(1, len(force))) / force.max()
     assert worst > 0.01  # this surface loses repulsion
     assert cycle.flags["repulsion_drop"] == pytest.approx(worst)
+
+
+@pytest.mark.parametrize("q0", [1e-6, 0.0025, 3.3, 900.0])
+@pytest.mark.parametrize("pressed", [True, False])
+def test_a_roll_off_outside_cell_or_grid_is_refused(q0, pressed):
+    inputs = replace(INPUTS, q0=q0)
+    made = run_cycle if pressed else random_surface
+    with pytest.raises(InputError, match=rf"q0 = {q0:.4g} 1/nm: a cell of 250 nm .* 0\.02513 \.\. 3\.217 1/nm"):
+        made(inputs, settings_for(), 1)
+
+
+@pytest.mark.parametrize("q0", [0.2 * np.pi / 250.0, 256 * np.pi / 250.0])
+def test_a_roll_off_at_the_ends_of_the_cell_is_taken(q0):
+    assert random_surface(replace(INPUTS, q0=q0), settings_for(), 1).std() == pytest.approx(INPUTS.rms)
+
+
+@pytest.mark.parametrize("mechanics", ["asperity", "coupled", "adhesive"])
+def test_a_surface_without_hardness_is_refused(mechanics):
+    soft = replace(INPUTS, h_macro=0.0, h_prime=0.0, hamaker=0.0)
+    with pytest.raises(InputError, match="h_macro = 0 GPa: the surface would carry nothing"):
+        run_cycle(soft, settings_for(mechanics=mechanics), 1)
+    assert run_cycle(soft, settings_for(mechanics=mechanics, model="elastic", pixels=64), 1).converged
+
+
+@pytest.mark.parametrize("mechanics", ["asperity", "coupled"])
+@pytest.mark.parametrize("sites", [3, 4])
+def test_the_smallest_map_that_repeats_has_four_sites_a_side(mechanics, sites):
+    heights = np.random.default_rng(1).normal(0.0, 1.0, (sites, sites))
+    call = {"heights": heights, "length_nm": 20.0, "contact_at": "highest", "max_force_nN": 10.0}
+    if sites == 4:
+        assert run_cycle(INPUTS, settings_for(mechanics=mechanics), 1, **call).converged
+        return
+    with pytest.raises(InputError, match="a square array of at least 4 x 4 sites"):
+        run_cycle(INPUTS, settings_for(mechanics=mechanics), 1, **call)
+
+
+@pytest.mark.parametrize(
+    ("mechanics", "model"), [("asperity", "plastic"), ("coupled", "plastic"), ("adhesive", "elastic")]
+)
+@pytest.mark.parametrize("times", [0.25, 3.0, 16.0])
+def test_a_contact_that_is_larger_in_all_lengths_has_the_same_pressures(mechanics, model, times):
+    """No length is in the code: forces go with the square, to rounding; adhesive ones to where their iteration ends."""
+    inputs = replace(INPUTS, rms=5.0)
+    settings = settings_for(mechanics=mechanics, model=model, pixels=64, gap_cutoff_nm=0.5)
+    heights = random_surface(inputs, settings, 3)
+
+    def cycle(times):
+        larger = replace(
+            inputs, hamaker=inputs.hamaker * times**3, h_prime=inputs.h_prime * times**0.5, rms=inputs.rms * times
+        )
+        force = settings.max_force_nN * times**2
+        grid = settings.model_copy(update={"max_force_nN": force, "gap_cutoff_nm": settings.gap_cutoff_nm * times})
+        side = settings.length_nm * times
+        return run_cycle(larger, grid, 3, heights=heights * times, length_nm=side, contact_at="lowest")
+
+    whole, scaled = cycle(1.0), cycle(times)
+    within = 1e-6 if mechanics == "adhesive" else 1e-9
+    forces = ("repulsive_nN", "attractive_nN")
+    for branch, place in (("closing", -1), ("opening", 0)):
+        one, other = getattr(whole, branch), getattr(scaled, branch)
+        assert other.separation_nm[place] / times == pytest.approx(one.separation_nm[place], rel=within)
+        for name in forces:
+            wanted = getattr(one, name)[place]
+            assert getattr(other, name)[place] / times**2 == pytest.approx(wanted, rel=within)
+    pulls = (pull_off(whole.opening), pull_off(scaled.opening) / times**2)
+    assert pulls[1] == pytest.approx(pulls[0], rel=within)

@@ -259,7 +259,7 @@ def test_liquid_far_from_contacts_counts_undeformed(monkeypatch, humidity):
     pulls = {}
     for share in (0.0, CoupledContact.NEAR_LIQUID, 1.0):  # of the sites near liquid that count with displacements
         monkeypatch.setattr(CoupledContact, "NEAR_LIQUID", share)
-        inputs, settings = rough(air=AirSettings(humidity=humidity), max_force_nN=500.0)
+        inputs, settings = rough(air=AirSettings(humidity=humidity), max_force_nN=500.0, gap_cutoff_nm=0.165)
         pulls[share] = run_cycle(inputs, settings, 1).closing.attractive_nN
     ours, exact = pulls[0.1], pulls[1.0]
     assert ours == pytest.approx(exact, rel=0.005)

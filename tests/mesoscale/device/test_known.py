@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from mesoscale.device.known import fit_additive, known
+from mesoscale.device.known import _fit, fit_additive, known
 
 UNITS = qmc.LatinHypercube(3, rng=2).random(200)
 X = 2.0 * UNITS - 1.0
@@ -30,6 +30,35 @@ def test_a_square_that_is_a_sum_is_fitted_as_a_square_and_below_zero_the_switch_
     assert fit.values[stuck].max() < 0.0
     # what is fitted knows only that they lie below zero
     np.testing.assert_allclose(fit.coefficients[1:3] * np.sqrt(3.0), [15.0, 8.0], rtol=0.03)
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5, 0.75])
+def test_switches_that_stick_bias_neither_the_sum_nor_its_scatter(share):
+    """Means over 20 made-up populations, within four of their standard errors."""
+    coefficients, scatters = [], []
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        units = rng.random((128, 3))
+        x = 2.0 * units - 1.0
+        values = 10.0 * x[:, 0] + 5.0 * x[:, 1] + 2.0 * rng.normal(size=128)
+        release = np.maximum(values - np.quantile(values, share), 0.0)
+        fit = _fit(units, release, 1, 1)
+        coefficients.append(fit.coefficients[1:3] * np.sqrt(3.0))
+        scatters.append(fit.missed)
+    for found, truth in ((coefficients, [10.0, 5.0]), (scatters, 2.0)):
+        off = np.abs(np.mean(found, axis=0) - truth)
+        assert (off < 4.0 * np.std(found, axis=0) / np.sqrt(20)).all()
+
+
+@pytest.mark.parametrize("free", [0, 1, 3])
+def test_hardly_a_switch_that_lets_go_tells_nothing_of_causes(free):
+    release = np.zeros(200)
+    release[:free] = 1.0 + np.arange(free)
+    fit = fit_additive(UNITS, release)
+    assert fit.shares().tolist() == [0.0, 0.0, 0.0]
+    bands = known(fit, COMMON, 0.0)
+    assert bands["stuck_share"]["0.5"]["value"] > 0.9
+    assert bands["unknown_V"]["0.5"]["value"] == 0.0
 
 
 def test_bands_and_share_are_those_of_the_function():

@@ -7,7 +7,7 @@ from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.observables import NAMES, Cycles
 from mesoscale.calibration.posterior import Model
 from mesoscale.errors import InputError
-from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.hardness import HardnessLaw
 from mesoscale.inputs.table import PAPER_ROWS, collect, input_table
 from mesoscale.settings import ContactSettings, InputRow, InputsSettings
@@ -97,3 +97,16 @@ def test_a_film_softer_than_its_base_is_refused():
     table = input_table(hardness="film", **rows(h_film=0.5))
     with pytest.raises(InputError, match=r"h_film = 0.5 GPa on h_macro = 1.95 GPa: accepted are films"):
         contact_of(table.medians(), ContactSettings())
+
+
+@pytest.mark.parametrize(
+    ("film", "words"),
+    [
+        ({"k_film": 0.3}, "k_film = 0.3 without t_film: a film needs its thickness"),
+        ({"h_film": 9.0, "m_film": 1.0}, "h_film = 9, m_film = 1 without t_film"),
+        ({"h_film": 9.0, "t_film": 5.0}, "t_film = 5 nm without k_film and m_film"),
+    ],
+)
+def test_a_part_of_a_film_is_refused(film, words):
+    with pytest.raises(InputError, match=words):
+        ContactInputs(0.215, 91.0, 1.95, 0.0, q0=0.06, hurst=0.75, rms=3.0, **film)
