@@ -17,11 +17,20 @@ def of_run(pattern):
     return [f"{RESULTS}/hardness/{pattern.format(run=run)}" for run in CLOSINGS]
 
 
+def base_files(run):
+    """Files of what lies below the film of a closing run."""
+    return [] if run.asperity.film_nm is None else [BASE]
+
+
 def of_base(run):
     """As named inputs: what lies below a film, and the cell of it that fits the asperity."""
     if run.asperity.film_nm is None:
         return {}
     return {"base": f"{RESULTS}/hardness/base/{run.seed}_{run.asperity.tiles}.data", "base_material": BASE}
+
+
+BODY_FILES = [BODIES.material, BODIES.potential]
+BASE_FILES = [BASE] if BASE else []  # of what lies below films
 
 
 wildcard_constraints:
@@ -41,6 +50,7 @@ rule make_glass:
         f"{RESULTS}/logs/make_glass_{{glass}}.log",
     priority: 100
     params:
+        contents=contents(*BODY_FILES),
         glass=HARDNESS["glass"],
         seed=lambda wildcards: wildcards.glass,
         work=f"{RESULTS}/work/glass_{{glass}}",
@@ -60,6 +70,7 @@ rule make_base:
         f"{RESULTS}/logs/make_base_{{glass}}_{{tiles}}.log",
     priority: 95
     params:
+        contents=contents(*BASE_FILES),
         tiles=lambda wildcards: int(wildcards.tiles),
         seed=lambda wildcards: int(wildcards.glass),
         work=f"{RESULTS}/work/base_{{glass}}_{{tiles}}",
@@ -84,6 +95,7 @@ rule run_closing:
     priority: 90
     threads: HARDNESS["closing"]["processes"]
     params:
+        contents=lambda wildcards: contents(*BODY_FILES, *base_files(CLOSINGS[wildcards.run])),
         closing_run=lambda wildcards: CLOSINGS[wildcards.run].model_dump(mode="json"),
         closing=HARDNESS["closing"],
         protocol=PROTOCOL.model_dump(mode="json"),
@@ -110,6 +122,7 @@ rule hardness:
     log:
         f"{RESULTS}/logs/hardness.log",
     params:
+        contents=contents(*BODY_FILES, *BASE_FILES),
         potential=HARDNESS["potential"],
         energy_scales=HARDNESS["energy_scales"],
     message:

@@ -10,7 +10,10 @@ POINT_CHUNKS = {"central": (0, 1)} | {
 
 # what jobs that use the pad read, and the settings that they have
 PRESSED = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv", "model": f"{RESULTS}/pad/model.h5"}
+EFFECTS = str(CONFIG / "effects.yaml")
 ON_PADS = {section: settings(section) for section in ("contact", "device", "pad")}
+if SPREAD_FILES:
+    ON_PADS["departures"] = contents(*SPREAD_FILES)
 
 
 rule press_pads:
@@ -41,7 +44,7 @@ rule device:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
         chunks=[f"{RESULTS}/pad/points/chunk_{chunk}.h5" for chunk in POINT_CHUNKS],
-        effects=str(CONFIG / "effects.yaml"),
+        effects=EFFECTS,
     output:
         model=f"{RESULTS}/pad/model.h5",
         inputs=f"{RESULTS}/pad/inputs.csv",
@@ -55,6 +58,7 @@ rule device:
     priority: 2
     params:
         **ON_PADS,
+        contents=contents(EFFECTS),
     message:
         "assemble the pad, and say what the switch does"
     script:
