@@ -31,7 +31,7 @@ from mesoscale.settings import (
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.settings.definitions import definition
 from mesoscale.topography.measurements import files_in
-from mesoscale.topography.measurements.cleaning import Scan, clean
+from mesoscale.topography.measurements.cleaning import Scan, clean, without_missing
 from mesoscale.topography.measurements.loading import Measurement, load_measurements, with_limits
 from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import in_order, record
@@ -321,7 +321,7 @@ def pixels_for(cutoff: Mapping[str, float] | None, side_nm: float) -> int:
 
 def _load(source: str | Scan, number: int, settings: TopographySettings) -> list[Measurement]:
     if isinstance(source, Scan):
-        return [with_limits(source, settings)]
+        return [with_limits(without_missing(source), settings)]
     return load_measurements(source, f"{number:02d}_{Path(source).stem}", settings)
 
 
