@@ -27,6 +27,7 @@ ACROSS = re.compile(
     r"\b(l(?:eft)?)\W*(?:to|[-=]*>|\u2192)\W*r(?:ight)?\b|\br(?:ight)?\W*(?:to|[-=]*>|\u2192)\W*l(?:eft)?\b", re.I
 )
 """From left to right (a group), or back."""
+ANGSTROM = re.compile(r"[a\u00e5]ngstr[o\u00f6]ms?", re.I)  # has Strom in it, which is German for a current
 CAPITALS = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
@@ -46,6 +47,7 @@ def parts_of(name: str) -> list[str]:
 
 def says(kind: str, name: str) -> bool:
     """Has a name a word of this section?"""
+    name = ANGSTROM.sub(" ", name)
     found = parts_of(name)
     joined = " ".join(found)
     for word in words(kind):

@@ -29,6 +29,7 @@ from mesoscale.topography.measurements.opening import (
     converted,
     first_line,
     foreign,
+    opened,
     unpacked,
     why_not_read,
     with_unit,
@@ -146,7 +147,11 @@ def _alone(path: Path, file: Path, name: str, settings: TopographySettings) -> M
     instrument = _instrument(path.name, settings)
     where, head = str(path), _head_of(file)
     wanted = instrument.channel or settings.channel
+    if named := foreign(file, head, by_name=False):
+        raise InputError(named.replace(str(file), where, 1))
     text = None if _is_known(head) else read_text(file.read_bytes())
+    if text is None and (named := foreign(file, head, by_name=True)):
+        raise InputError(named.replace(str(file), where, 1))
     if text is not None and _is_table(text):
         columns = columns_of(where, text, wanted)
         return _of_table(where, name, columns, _word_steps(text), settings, instrument)
@@ -185,12 +190,11 @@ def _of_channels(
     instrument: InstrumentSettings,
 ) -> Measurement:
     """The measurement of the channel of heights that a reader of SurfaceTopography finds."""
-    from SurfaceTopography.IO import open_topography
-
     where, head = str(path), _head_of(file)
-    if named := foreign(file, head):  # before a reader that takes anything makes a map of it
-        raise InputError(named.replace(str(file), where))
-    reader = _tried(where, lambda: open_topography(str(file)), file, head)
+    try:
+        reader = opened(file, head)
+    except InputError as error:
+        raise InputError(str(error).replace(str(file), where, 1)) from None
     channels = _tried(where, lambda: list(reader.channels))
     _check_unit_of(where, file, channels, instrument)
     channel, note = height_channel(

@@ -23,20 +23,30 @@ from mesoscale.topography.measurements.channels import listed
 FORMATS = ROOT / "config" / "formats.yaml"
 PACKED = {b"\x1f\x8b": gzip.open, b"BZh": bz2.open, b"\xfd7zXZ\x00": lzma.open}
 LISTS = ("meta.yml", "index.json")  # of a container of contact.engineering
+WITHOUT_MARK = ("hgt", "nms")
+"""Formats whose readers take files of others, because they have no first bytes of their own."""
 LONGEST = 160  # characters of a reader's reason
-TELLING = re.compile(r"truncat|damag|ended|incomplete|corrupt|unsupported|not support|compress|missing|expected", re.I)
-"""Words of a reader that knows the format."""
+TELLING = re.compile(r"truncat|damaged|ended within|incomplete|corrupt|unsupported|not supported|compress", re.I)
+OF_OTHERS = re.compile(r"\bnot an? ", re.I)
+"""Words of a reader that knows the format, and of one that does not."""
 
 
-def foreign(path: Path, head: bytes) -> str | None:
-    """Name of a format that nothing here reads (config/formats.yaml), and what to do; None of other files."""
+def foreign(path: Path, head: bytes, by_name: bool) -> str | None:
+    """Name of a format that nothing here reads (config/formats.yaml), and what to do; None of other files.
+
+    Parameters
+    ----------
+    by_name : the end of its name counts, too; else its first bytes alone.
+    """
+    if not head:
+        return f"{path}: the file is empty; get it again"
     for item in _formats():
         begins = [text.encode() for text in item.get("begins", ())]
         begins += [bytes.fromhex(text) for text in item.get("hex", ())]
         if begins and head.startswith(tuple(begins)):
             return _named(path, item)
     ends = (item for item in _formats() if path.name.lower().endswith(tuple(item.get("ends", ("\0",)))))
-    return next((_named(path, item) for item in ends), None)
+    return next((_named(path, item) for item in ends), None) if by_name else None
 
 
 def _named(path: Path, item: Mapping[str, Any]) -> str:
@@ -204,6 +214,40 @@ def _unit(field: Any, part: str) -> str:
     return str((field.get(part) or {}).get("unitstr") or "")
 
 
+def opened(path: Path, head: bytes) -> Any:
+    """The reader of SurfaceTopography that takes a file.
+
+    Where the first bytes mean a format, no other reader is asked: some take any file for theirs.
+
+    Raises
+    ------
+    InputError : none takes it.
+    """
+    from SurfaceTopography.IO import CannotDetectFileFormat, MagicMatch, open_topography, readers
+
+    meant = [reader for reader in readers if reader.can_read(head) == MagicMatch.YES]
+    try:
+        if head.startswith(b"\x93NUMPY"):  # its reader fills what is cut off
+            np.lib.format.open_memmap(path, mode="r")
+    except ValueError as error:
+        raise InputError(f"{path}: cannot be read ({first_line(error)}); is the file complete?") from None
+    reasons = []
+    for reader in meant:
+        try:
+            return open_topography(str(path), format=reader.format())
+        except Exception as error:  # readers of foreign formats fail in many ways
+            reasons.append(f"tried {reader.__name__}: \n {error}\n\n")
+    try:
+        if meant:
+            raise CannotDetectFileFormat("".join(reasons))
+        found = open_topography(str(path))
+        if found.format() in WITHOUT_MARK and path.suffix.lower() != f".{found.format()}":
+            raise CannotDetectFileFormat("")
+    except CannotDetectFileFormat as error:
+        raise InputError(why_not_read(path, head, str(error))) from None
+    return found
+
+
 def why_not_read(path: Path, head: bytes, tried: str) -> str:
     """Why no reader takes a file: its format where it is known, else the reason of the reader that knows most of it.
 
@@ -213,16 +257,15 @@ def why_not_read(path: Path, head: bytes, tried: str) -> str:
     """
     from SurfaceTopography.IO import MagicMatch, readers
 
-    if not head:
-        return f"{path}: the file is empty; get it again"
-    if named := foreign(path, head):
+    if named := foreign(path, head, by_name=True):
         return named
     parts = re.split(r"tried (\w+): *\n", tried)
     said = {name: " ".join(text.split()) for name, text in zip(parts[1::2], parts[2::2], strict=False)}
     suffix = path.suffix.lower().lstrip(".")
     by_bytes = [item for item in readers if item.can_read(head) == MagicMatch.YES]
     by_name = [item for item in readers if suffix and suffix in (item.file_extensions() or ())]
-    by_words = [item for item in readers if TELLING.search(said.get(item.__name__, "")) and item not in by_name]
+    telling = [name for name, words in said.items() if TELLING.search(words) and not OF_OTHERS.search(words)]
+    by_words = [item for item in readers if item.__name__ in telling and item not in by_name]
     plain = ("AscReader", "XYZReader", "MatReader")  # say of every file that it is no text
     first = [item for item in (*by_bytes, *by_name) if item.__name__ in said]
     first += [item for item in by_words if item.__name__ not in plain]

@@ -171,7 +171,7 @@ def _understood(sample: Sequence[str], separator: str | None, comma: bool) -> fl
     for line in sample:
         words = _split(line, separator)[:SAMPLE_WORDS]
         numbers = sum(_as_number(word, comma) is not None for word in words)
-        score += numbers**2 / max(1, len(words))
+        score += numbers**2 / max(1, sum(bool(word) for word in words))  # empty places are missing points
     return score
 
 
@@ -190,7 +190,7 @@ def _rows(lines: Sequence[str], separator: str | None, comma: bool) -> tuple[lis
     for place, line in enumerate(lines):
         if separator in ("\t", None) and not line.translate(PLAIN) and not BARE_SIGNS.search(line):
             count = len(line.split())
-            if count and (separator is None or count == len(line.rstrip("\t ").split("\t"))):
+            if count and (separator is None or count == line.count("\t") + 1):
                 plain[place] = count
                 continue
         if line.strip():
