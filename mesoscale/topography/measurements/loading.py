@@ -38,7 +38,7 @@ from mesoscale.topography.measurements.opening import (
 )
 from mesoscale.topography.measurements.points import on_grid
 from mesoscale.topography.measurements.profiles import Profile, profile_of
-from mesoscale.topography.measurements.text import BROADEST_TABLE, Text, read_text
+from mesoscale.topography.measurements.text import BROADEST_TABLE, Text, decoded, read_text
 from mesoscale.topography.measurements.units import nm_of, teach_units
 
 MIN_SIDE = 32
@@ -149,7 +149,7 @@ def _alone(path: Path, file: Path, name: str, settings: TopographySettings) -> M
     wanted = instrument.channel or settings.channel
     if named := foreign(file, head, by_name=False):
         raise InputError(named.replace(str(file), where, 1))
-    text = None if _is_known(head) else read_text(file.read_bytes())
+    text = None if _is_known(head) or decoded(head) is None else read_text(file.read_bytes())
     if text is None and (named := foreign(file, head, by_name=True)):
         raise InputError(named.replace(str(file), where, 1))
     if text is not None and _is_table(text):

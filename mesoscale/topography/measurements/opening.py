@@ -26,9 +26,6 @@ LISTS = ("meta.yml", "index.json")  # of a container of contact.engineering
 WITHOUT_MARK = ("hgt", "nms")
 """Formats whose readers take files of others, because they have no first bytes of their own."""
 LONGEST = 160  # characters of a reader's reason
-TELLING = re.compile(r"truncat|damaged|ended within|incomplete|corrupt|unsupported|not supported|compress", re.I)
-OF_OTHERS = re.compile(r"\bnot an? ", re.I)
-"""Words of a reader that knows the format, and of one that does not."""
 
 
 def foreign(path: Path, head: bytes, by_name: bool) -> str | None:
@@ -249,7 +246,7 @@ def opened(path: Path, head: bytes) -> Any:
 
 
 def why_not_read(path: Path, head: bytes, tried: str) -> str:
-    """Why no reader takes a file: its format where it is known, else the reason of the reader that knows most of it.
+    """Why no reader takes a file: its format where it is known, else the reason of the reader that it is meant for.
 
     Parameters
     ----------
@@ -264,11 +261,7 @@ def why_not_read(path: Path, head: bytes, tried: str) -> str:
     suffix = path.suffix.lower().lstrip(".")
     by_bytes = [item for item in readers if item.can_read(head) == MagicMatch.YES]
     by_name = [item for item in readers if suffix and suffix in (item.file_extensions() or ())]
-    telling = [name for name, words in said.items() if TELLING.search(words) and not OF_OTHERS.search(words)]
-    by_words = [item for item in readers if item.__name__ in telling and item not in by_name]
-    plain = ("AscReader", "XYZReader", "MatReader")  # say of every file that it is no text
     first = [item for item in (*by_bytes, *by_name) if item.__name__ in said]
-    first += [item for item in by_words if item.__name__ not in plain]
     reason = f" ({first[0].name()}: {said[first[0].__name__][:LONGEST]})" if first else _begins(head)
     return (
         f"{path}: no reader understands this file{reason}; accepted are the formats of SurfaceTopography (gwy, ibw, "

@@ -169,9 +169,9 @@ def _understood(sample: Sequence[str], separator: str | None, comma: bool) -> fl
     """How many words of these lines are numbers, less where others are beside them."""
     score = 0.0
     for line in sample:
-        words = _split(line, separator)[:SAMPLE_WORDS]
+        words = [word for word in _split(line, separator) if word][:SAMPLE_WORDS]  # empty places are missing points
         numbers = sum(_as_number(word, comma) is not None for word in words)
-        score += numbers**2 / max(1, sum(bool(word) for word in words))  # empty places are missing points
+        score += numbers**2 / max(1, len(words))
     return score
 
 

@@ -1,4 +1,4 @@
-"""What stands in people's files for missing points, heights, directions, units and formats: kinds in several dresses."""
+"""What stands in people's files for missing points, heights, directions, units, formats: kinds in several dresses."""
 
 import bz2
 import gzip
@@ -211,7 +211,42 @@ def test_one_pixel_in_fifty_is_a_spike_of_any_height():
 
 @pytest.mark.parametrize(
     "name",
-    ["Deformation", "Indentation", "Zerr", "ZErr", "DeflectionTrace", "Adhesion", "Dissipation", "DMTModulus", "Amplitude", "AmplitudeRetrace", "Phase2Trace", "Friction", "vDeflection", "excitation_forward", "skeleton", "grain_masks/above", "ordered_traces/above", "Ablenkung", "Regelabweichung", "Amplitudenfehler", "Déflexion", "Deformación", "Fase", "Erreur", "Výchylka", "Отклонение", "たわみ", "变形", "위상", "Excitation", "Current", "Strom", "Erro", "thumbnail"],
+    [
+        "Deformation",
+        "Indentation",
+        "Zerr",
+        "ZErr",
+        "DeflectionTrace",
+        "Adhesion",
+        "Dissipation",
+        "DMTModulus",
+        "Amplitude",
+        "AmplitudeRetrace",
+        "Phase2Trace",
+        "Friction",
+        "vDeflection",
+        "excitation_forward",
+        "skeleton",
+        "grain_masks/above",
+        "ordered_traces/above",
+        "Ablenkung",
+        "Regelabweichung",
+        "Amplitudenfehler",
+        "Déflexion",
+        "Deformación",
+        "Fase",
+        "Erreur",
+        "Výchylka",
+        "Отклонение",
+        "たわみ",
+        "变形",
+        "위상",
+        "Excitation",
+        "Current",
+        "Strom",
+        "Erro",
+        "thumbnail",
+    ],
 )
 def test_what_is_no_height_is_known_by_its_name(name):
     assert not holds_heights(name)
@@ -219,7 +254,26 @@ def test_what_is_no_height_is_known_by_its_name(name):
 
 @pytest.mark.parametrize(
     "name",
-    ["Height", "HeightSensor", "Z", "ZSensor", "Topography", "Höhe", "Hauteur", "Altura", "高さ", "Высота", "Default", "layer0", "image", "measuredHeight", "z_forward", "Elevation", "Relief", "Z-AxisSensor"],
+    [
+        "Height",
+        "HeightSensor",
+        "Z",
+        "ZSensor",
+        "Topography",
+        "Höhe",
+        "Hauteur",
+        "Altura",
+        "高さ",
+        "Высота",
+        "Default",
+        "layer0",
+        "image",
+        "measuredHeight",
+        "z_forward",
+        "Elevation",
+        "Relief",
+        "Z-AxisSensor",
+    ],
 )
 def test_a_height_is_not_refused_by_its_name(name):
     assert holds_heights(name)
@@ -633,5 +687,9 @@ def test_a_cut_file_is_told_by_its_own_reader(tmp_path):
     np.save(tmp_path / "a.npy", surface())
     (tmp_path / "cut.npy").write_bytes((tmp_path / "a.npy").read_bytes()[:5000])
     assert "is the file complete?" in refusal(tmp_path / "cut.npy", size=(1.0, 1.0), unit="um")
-    (tmp_path / "cut.mat").write_bytes(b"MATLAB 5.0 MAT-file" + b" " * 105 + b"\0\1IM")
-    assert "cut.mat: no reader understands this file (" in refusal(tmp_path / "cut.mat")
+    import h5py
+
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["z"] = surface()
+    (tmp_path / "cut.h5").write_bytes((tmp_path / "a.h5").read_bytes()[:9000])
+    assert "(Hierarchical data format (HDF5): " in refusal(tmp_path / "cut.h5")
