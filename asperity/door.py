@@ -15,7 +15,7 @@ from mesoscale.inputs.table import PAPER_ROWS
 from mesoscale.settings import DeviceSettings, InputRow, InstrumentSettings, TopographySettings
 from mesoscale.settings.definitions import definition
 from mesoscale.settings.topography import LengthUnit
-from mesoscale.topography.measurements import files_in
+from mesoscale.topography.measurements import check_count, files_in
 from mesoscale.topography.measurements.loading import load_measurements
 
 NUMBERS_OF_DEVICE = [
@@ -82,7 +82,9 @@ def readable(names: Sequence[str], say: Callable[[str], None], topography: Mappi
         if not os.path.isdir(name):
             files.append(name)
             continue
-        for file in files_in(name):
+        inside = files_in(name)
+        check_count(name, inside)  # before the first is read
+        for file in inside:
             try:
                 load_measurements(file, settings=TopographySettings(**topography))
                 files.append(file)

@@ -30,7 +30,7 @@ from mesoscale.settings import (
 )
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.settings.definitions import definition
-from mesoscale.topography.measurements import files_in
+from mesoscale.topography.measurements import check_count, files_in
 from mesoscale.topography.measurements.cleaning import Scan, clean, without_missing
 from mesoscale.topography.measurements.loading import Measurement, load_measurements, with_limits
 from mesoscale.topography.pooling import pool
@@ -98,6 +98,7 @@ class Film(Shown):
         sources = [part for item in given for part in ([item] if isinstance(item, Scan) else files_in(item))]
         if not sources:
             raise InputError(f"{', '.join(map(str, given)) or 'files'}: nothing to read; give scans of a surface")
+        check_count(", ".join(str(item) for item in given[:3]), sources)
         names = tuple(item.name if isinstance(item, Scan) else item for item in sources)
         tip = {} if tip_nm is None else {"tip_radius_nm": tip_nm}
         self.settings = TopographySettings(scans=names, **tip, **settings)

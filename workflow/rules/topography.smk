@@ -16,7 +16,10 @@ def scan_files():
         names = [f"small_{k + 1:02d}" for k in range(synthetic.small_scans)]
         names += [f"large_{k + 1:02d}" for k in range(synthetic.large_scans)]
         return [f"{SCAN_FOLDER}/{name}.gwy" for name in names]
-    return named_files("topography.scans", *files_of(SCENE_GIVEN, TOPOGRAPHY.scans))
+    try:
+        return named_files("topography.scans", *files_of(SCENE_GIVEN, TOPOGRAPHY.scans))
+    except SceneError as error:
+        refuse(error)
 
 
 SCAN_FILES = scan_files() if needed("topography") or not TOPOGRAPHY.scans else list(TOPOGRAPHY.scans)

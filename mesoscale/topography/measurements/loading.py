@@ -494,7 +494,7 @@ def _filled(values: Any) -> np.ndarray:
 
 def _check_sized(where: str, item: Any, instrument: InstrumentSettings) -> None:
     lacks, keys = _lacking(Path(where).name, item, instrument)
-    if "size" in lacks:
+    if "--size" in keys:
         raise InputError(
             f"{where}: has no {lacks}; state them in topography.instruments {keys}, or save it with both (.gwy)"
         )
