@@ -82,7 +82,10 @@ def _parser() -> argparse.ArgumentParser:
     film.add_argument("--tip-nm", type=float, help="radius of the AFM tip where no file states it; default: 5")
     film.add_argument("--channel", help="name of the height channel, of files that have several")
     film.add_argument("--unit", help="length unit of a file that states none: um, or um,nm of positions and heights")
-    film.add_argument("--size", help="size of a map that states none, in --unit or the file's: 10 or 10x5")
+    film.add_argument("--size", help="size of a map or line that states none, in --unit or the file's: 10 or 10x5")
+    words = "cut maps to their largest rectangle without missing points, or to pixels along x and y: 10:500,0:480"
+    film.add_argument("--crop", nargs="?", const="largest", help=words)
+    film.add_argument("--points", help="places along x and y for points x, y, z on no regular grid: 64x64")
     film.add_argument("--detrend", choices=("plane", "quadratic", "none"), help="tilt and form to take off")
     words = "e_star=75, h_macro=1:1.6, e_star=75+-4 (GPa), hamaker=0.2 (1e-18 J); default: the paper's films"
     film.add_argument("--material", nargs="+", default=[], metavar="NAME=VALUE", help=words)

@@ -15,7 +15,7 @@ from mesoscale.inputs.table import PAPER_ROWS
 from mesoscale.settings import DeviceSettings, InputRow, InstrumentSettings, TopographySettings
 from mesoscale.settings.definitions import definition
 from mesoscale.settings.topography import LengthUnit
-from mesoscale.topography.measurements import files_in
+from mesoscale.topography.measurements import check_count, files_in
 from mesoscale.topography.measurements.loading import load_measurements
 
 NUMBERS_OF_DEVICE = [
@@ -25,7 +25,7 @@ NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 
 
 def topography_of(given: Namespace) -> dict[str, Any]:
-    """Keys of the section `topography` from the options --channel, --unit, --size and --detrend.
+    """Keys of the section `topography` from the options --channel, --unit, --size, --crop, --points and --detrend.
 
     Raises
     ------
@@ -42,10 +42,28 @@ def topography_of(given: Namespace) -> dict[str, Any]:
         sides = re.fullmatch(rf"({NUMBER})(?:x({NUMBER}))?", given.size)
         if sides is None:
             raise InputError(f"--size {given.size}: accepted is a number or two (10 or 10x5), in --unit or the file's")
-        if len(given.files) > 1 or os.path.isdir(given.files[0]):
-            raise InputError("--size: accepted for one file; for several, state topography.instruments in a scene")
-        added["size"] = float(sides[1]), float(sides[2] or sides[1])
+        _check_alone(given, "--size")
+        added["size"] = tuple(float(side) for side in sides.groups() if side)
+    if given.points:
+        places = re.fullmatch(r"(\d+)x(\d+)", given.points)
+        if places is None:
+            raise InputError(f"--points {given.points}: accepted are two numbers such as 64x64, places along x and y")
+        _check_alone(given, "--points")
+        added["points"] = int(places[1]), int(places[2])
+    if given.crop:
+        ends = re.fullmatch(r"(\d+):(\d+),(\d+):(\d+)", given.crop)
+        if ends is None and given.crop != "largest":
+            raise InputError(
+                f"--crop {given.crop}: accepted is nothing (the largest rectangle without missing points), or the "
+                "pixels to keep along x and y, such as 10:500,0:480; give files before it"
+            )
+        added["crop"] = tuple(int(end) for end in ends.groups()) if ends else "largest"
     return keys | ({"instruments": (InstrumentSettings(files="*", **added),)} if added else {})
+
+
+def _check_alone(given: Namespace, option: str) -> None:
+    if len(given.files) > 1 or os.path.isdir(given.files[0]):
+        raise InputError(f"{option}: accepted for one file; for several, state topography.instruments in a scene")
 
 
 def readable(names: Sequence[str], say: Callable[[str], None], topography: Mapping[str, Any]) -> list[str]:
@@ -64,7 +82,9 @@ def readable(names: Sequence[str], say: Callable[[str], None], topography: Mappi
         if not os.path.isdir(name):
             files.append(name)
             continue
-        for file in files_in(name):
+        inside = files_in(name)
+        check_count(name, inside)  # before the first is read
+        for file in inside:
             try:
                 load_measurements(file, settings=TopographySettings(**topography))
                 files.append(file)

@@ -30,8 +30,8 @@ from mesoscale.settings import (
 )
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.settings.definitions import definition
-from mesoscale.topography.measurements import files_in
-from mesoscale.topography.measurements.cleaning import Scan, clean
+from mesoscale.topography.measurements import check_count, files_in
+from mesoscale.topography.measurements.cleaning import Scan, clean, without_missing
 from mesoscale.topography.measurements.loading import Measurement, load_measurements, with_limits
 from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import in_order, record
@@ -98,6 +98,7 @@ class Film(Shown):
         sources = [part for item in given for part in ([item] if isinstance(item, Scan) else files_in(item))]
         if not sources:
             raise InputError(f"{', '.join(map(str, given)) or 'files'}: nothing to read; give scans of a surface")
+        check_count(", ".join(str(item) for item in given[:3]), sources)
         names = tuple(item.name if isinstance(item, Scan) else item for item in sources)
         tip = {} if tip_nm is None else {"tip_radius_nm": tip_nm}
         self.settings = TopographySettings(scans=names, **tip, **settings)
@@ -321,7 +322,7 @@ def pixels_for(cutoff: Mapping[str, float] | None, side_nm: float) -> int:
 
 def _load(source: str | Scan, number: int, settings: TopographySettings) -> list[Measurement]:
     if isinstance(source, Scan):
-        return [with_limits(source, settings)]
+        return [with_limits(without_missing(source), settings)]
     return load_measurements(source, f"{number:02d}_{Path(source).stem}", settings)
 
 

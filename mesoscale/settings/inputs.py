@@ -1,7 +1,7 @@
 """Settings of the uncertain inputs."""
 
 import math
-from typing import Annotated, Any, Literal, Self, cast
+from typing import Any, Literal, Self, cast
 
 from pydantic import Field, create_model, field_validator, model_validator
 
@@ -99,7 +99,6 @@ class InputRow(DistributionRow):
         return self
 
 
-Rank = Annotated[float, Field(gt=-1, lt=1)]
 HardnessLawName = Literal["constant", "paper", "film"]
 TABLE_1 = "Kim et al. (2013), Table 1"
 
@@ -144,8 +143,8 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
     accepted_gates: tuple[Literal["hardness", "elastic", "topography"], ...] = key(
         (), "stages whose inputs are taken although their gate failed: to test the chain, for no prediction"
     )
-    correlations: dict[str, dict[str, Rank]] = key(
-        {}, "rank correlations besides those that a stage reports, such as {rms: {q0: -0.4, hurst: 0.2}}"
+    correlations: dict[str, dict[str, float]] = key(
+        {}, "rank correlations besides those that a stage reports, such as {rms: {q0: -0.4, hurst: 0.2}}; -1 < each < 1"
     )
 
     @model_validator(mode="after")
@@ -179,6 +178,13 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
                 raise ValueError(f"correlations: {pair[0]} with itself; name two inputs")
             if len({self.rows()[name].varies for name in pair}) > 1:
                 raise ValueError(f"correlations: of {' and '.join(pair)} one is common and one varies with each device")
+            if pair[::-1] in self.pairs:
+                raise ValueError(f"correlations: {pair[0]} with {pair[1]} is stated twice; leave one of them out")
+            if not -1 < (rank := self.pairs[pair]) < 1:
+                raise ValueError(
+                    f"correlations: {pair[0]} with {pair[1]} = {rank:g}; accepted is more than -1 and less than 1; where "
+                    "one input follows from the other, give both the same file of joint samples"
+                )
         for name, row in self.rows().items():
             stage = BY_NAME[name].stage
             accepted = dict.fromkeys(("literature", stage, "calibration"))

@@ -1,10 +1,17 @@
 """Settings of the topography stage."""
 
-from typing import Literal
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le
 
 from asperity.guards.settings import Settings, key
 
 LengthUnit = Literal["m", "mm", "um", "nm", "Å", "pm"]
+
+
+Positive = Annotated[float, Gt(0)]
+Place = Annotated[int, Ge(0), Le(100_000)]
+Places = Annotated[int, Ge(2), Le(100_000)]
 
 
 class SyntheticScanSettings(Settings):
@@ -32,8 +39,20 @@ class InstrumentSettings(Settings):
     channel: str | None = key(None, "name of its height channel; null: topography.channel")
     unit: LengthUnit | None = key(None, "length unit of positions and heights, for files that state none")
     height_unit: LengthUnit | None = key(None, "length unit of heights, where it differs from that of positions")
-    size: tuple[float, float] | None = key(
-        None, "physical size of a map along x and y in `unit`, for files that state none", "> 0"
+    size: tuple[Positive, ...] | None = key(
+        None,
+        "physical size of a map along x and y in `unit`, or the length of a line of heights alone, for files that "
+        "state none",
+        min_length=1,
+        max_length=2,
+    )
+    crop: Literal["largest"] | tuple[Place, Place, Place, Place] | None = key(
+        None,
+        "part of a map to take: the largest rectangle without missing points, or [from, to, from, to] in pixels along "
+        "x and y",
+    )
+    points: tuple[Places, Places] | None = key(
+        None, "places along x and y into which points x, y, z are sorted that lie on no regular grid"
     )
 
 

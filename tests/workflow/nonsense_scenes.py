@@ -48,6 +48,11 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "source of 200 kB": (scene(rms="{values: [2, 15], source: " + 200_000 * "x" + "}"), "at most 500 characters"),
     "contradictory correlations": (f"inputs: {{correlations: {CYCLIC}}}", "correlation"),
     "correlation with itself": ("inputs: {correlations: {rms: {rms: 0.5}}}", "with itself"),
+    "correlation of 1": ("inputs: {correlations: {rms: {q0: 1.0}}}", "rms with q0 = 1; accepted is more than -1"),
+    "correlation stated twice": (
+        "inputs: {correlations: {e_star: {h_macro: 0.5}, h_macro: {e_star: -0.5}}}",
+        "e_star with h_macro is stated twice",
+    ),
     "correlation of nobody": ("inputs: {correlations: {rms: {x: 0.5}}}", "unknown input x"),
     "uniform q0 beyond the grid": (scene("contact: {pixels: 64}", q0="{values: [0.5, 0.9]}"), "beyond what the grid"),
     "normal q0 beyond the grid": (scene(q0="{distribution: normal, values: [5, 0.1]}"), "beyond what the grid"),

@@ -1,10 +1,12 @@
 """From measured files to a scene, and the Python object beside that scene: the same numbers, digit for digit."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import yaml
@@ -13,6 +15,7 @@ import asperity as asp
 from asperity.__main__ import main
 from asperity.door import NUMBERS_OF_DEVICE
 from mesoscale.topography.measurements.loading import load_measurements, write_gwy
+from mesoscale.topography.measurements.opening import write_channels
 from workflow.scene import load_scene
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -79,6 +82,69 @@ def test_options_on_a_file_reach_its_scene(scans, started, tmp_path, monkeypatch
     assert main(["bare.txt", *words[:-2]]) == 1  # the scene of other words stays
 
 
+def follow(said):
+    """Options that a refusal names, with its values; of several channels the first."""
+    options = []
+    for name, value in re.findall(r"--(size|unit|crop|points|channel)(?: ([\w:.x]+(?:,[\w:.]+)*))?", said):
+        if name == "channel":
+            value = re.search(r"several height channels: ([^,]+),", said)[1]
+        options += [f"--{name}", *([value] if value else [])]
+    return options
+
+
+def made_files(folder, heights):
+    """Files that leave something open, or that are not as they should be, by name."""
+    pixels, x = len(heights), np.arange(len(heights))
+    line = heights[:, 5]
+    aperture = np.hypot(*np.meshgrid(x - pixels / 2, x - pixels / 2)) < pixels / 2
+    scattered = np.random.default_rng(0).uniform(-0.5, 0.5, (pixels, pixels, 2))
+    points = np.stack([x[:, None] + scattered[..., 0], x[None, :] + scattered[..., 1], heights], axis=-1).reshape(-1, 3)
+    metres = {"Height": (heights * 1e-9, "m"), "ZSensor": (heights * 1e-9, "m")}
+    np.savetxt(folder / "line_alone.txt", line)
+    np.savetxt(folder / "line.txt", np.stack([x / 100, line], 1))
+    np.savetxt(folder / "matrix.txt", heights)
+    np.savetxt(folder / "points.xyz", points * (0.01, 0.01, 1.0))
+    np.save(folder / "array.npy", heights)
+    np.save(folder / "line.npy", line)
+    with h5py.File(folder / "two.h5", "w") as file:
+        file["first"], file["second"] = heights, heights
+    write_channels(folder / "no_unit.gwy", {"Height": (heights, "")}, (2.5e-6, 2.5e-6))
+    write_channels(folder / "two_channels.gwy", metres, (2.5e-6, 2.5e-6))
+    write_gwy(folder / "aperture.gwy", asp.Scan(np.where(aperture, heights, np.nan), (2500.0, 2500.0), "a"))
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "line_alone.txt",
+        "line.txt",
+        "matrix.txt",
+        "points.xyz",
+        "array.npy",
+        "line.npy",
+        "two.h5",
+        "no_unit.gwy",
+        "two_channels.gwy",
+        "aperture.gwy",
+    ],
+)
+def test_every_option_that_a_refusal_prints_works(scans, name, started, tmp_path, monkeypatch, capsys):
+    """Followed as printed, a refusal at a time, the film is described; no refusal comes twice."""
+    monkeypatch.chdir(tmp_path)
+    made_files(tmp_path, load_measurements(scans / "place_1.gwy")[0].data.heights_nm)
+    scene, options = Path(name).with_suffix(".yaml"), []
+    while True:
+        main([name, "--tip-nm", "0", *options])
+        said = capsys.readouterr().err
+        if scene.is_file():
+            break
+        assert len(said.splitlines()) == 1
+        more = follow(said)
+        assert {word for word in more if word.startswith("--")} - set(options), said
+        options += more
+    assert options
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -87,6 +153,12 @@ def test_options_on_a_file_reach_its_scene(scans, started, tmp_path, monkeypatch
         (["scans/place_1.gwy", "--size", "ten"], "--size ten: accepted is a number or two"),
         (["scans/place_1.gwy", "--size", "10"], "scans/place_1.gwy: states a size itself; leave out"),
         (["scans/place_1.gwy", "--unit", "um"], "scans/place_1.gwy: states a unit itself; leave out"),
+        (["scans", "--points", "64x64"], "--points: accepted for one file"),
+        (["scans/place_1.gwy", "--points", "64"], "--points 64: accepted are two numbers such as 64x64"),
+        (["scans/place_1.gwy", "--points", "64x64"], "scans/place_1.gwy: is no list of points x, y, z"),
+        (["scans/place_1.gwy", "--crop", "half"], "--crop half: accepted is nothing"),
+        (["scans/place_1.gwy", "--crop", "0:9999,0:64"], "scans/place_1.gwy: cut to 0:9999, 0:64 of"),
+        (["many"], "many: 201 files; at most 200 are described together: move those of this surface"),
         (["scans/place_1.gwy", "--channel", "Phase"], "scans/place_1.gwy: no height channel 'Phase'"),
         (["rnu"], "rnu: neither a file nor a command; did you mean run?"),
         (["empty"], "empty: nothing to read"),
@@ -98,6 +170,9 @@ def test_options_on_a_file_reach_its_scene(scans, started, tmp_path, monkeypatch
 def test_bad_input_of_the_door_is_one_line(scans, arguments, words, started, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("empty").mkdir()
+    Path("many").mkdir()
+    for number in range(201):
+        Path(f"many/{number}.gwy").touch()
     Path("scans").symlink_to(scans)
     assert main(arguments) == 1
     (line,) = capsys.readouterr().err.splitlines()

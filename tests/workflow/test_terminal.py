@@ -35,7 +35,11 @@ class Job(SimpleNamespace):
 
 
 def job(name, number=7):
-    return Job(rule=SimpleNamespace(name=name, norun=False), wildcards_dict={}, priority=0, jobid=number)
+    rule = SimpleNamespace(name=name, norun=False)
+    return Job(rule=rule, wildcards_dict={}, priority=0, jobid=number, params=[], output=[])
+
+
+RECORDED = SimpleNamespace(params=lambda path: None)  # nothing is known of former jobs
 
 
 def send(terminal, event, **about):
@@ -47,7 +51,7 @@ def send(terminal, event, **about):
 def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry):
     jobs = [job("fit_law"), job("fit_law", 8), job("unheard_of", 9)]
     dag = SimpleNamespace(needrun_jobs=lambda: jobs, job_dependencies=lambda job: [])
-    snakemake = SimpleNamespace(dryrun=dry, local_exec=True, cores=2, dag=dag)
+    snakemake = SimpleNamespace(dryrun=dry, local_exec=True, cores=2, dag=dag, persistence=RECORDED)
     costs = OneSecondEach()
     terminal = Terminal(snakemake, costs, "nothing to do", 12)
     send(terminal, "run_info")
@@ -65,7 +69,7 @@ def test_the_time_left_follows_what_jobs_take(capsys, monkeypatch, tmp_path):
     clock, chunks = [0.0], [job("compute_direct_runs", number) for number in range(8)]
     monkeypatch.setattr("workflow.run.progress.time.monotonic", lambda: clock[0])
     dag = SimpleNamespace(needrun_jobs=lambda: chunks, job_dependencies=lambda job: [])
-    snakemake = SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag)
+    snakemake = SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag, persistence=RECORDED)
     costs = Costs(load_scene("paper"), {}, tmp_path / "none.json")
     takes = 10 * costs.seconds("compute_direct_runs", {})
     terminal = Terminal(snakemake, costs, "nothing to do", 12)
@@ -88,11 +92,27 @@ def test_the_time_left_follows_what_jobs_take(capsys, monkeypatch, tmp_path):
 )
 def test_a_run_that_is_too_long_is_refused_unless_a_cluster_takes_it(local, hours, begin):
     dag = SimpleNamespace(needrun_jobs=lambda: [job("fit_law")], job_dependencies=lambda job: [])
-    snakemake = SimpleNamespace(dryrun=False, local_exec=local, cores=2, dag=dag)
+    snakemake = SimpleNamespace(dryrun=False, local_exec=local, cores=2, dag=dag, persistence=RECORDED)
     terminal = Terminal(snakemake, OneSecondEach(), "nothing to do", hours)
     send(terminal, "run_info")
     assert terminal.refusal.startswith(begin)
     assert bool(terminal.refusal) == bool(begin)
+
+
+def test_a_changed_file_comes_first_with_what_it_renews_and_asks_for_hours_as_long_runs_do(capsys):
+    glass, closing, other = job("make_glass", 1), job("run_closing", 2), job("pool_spectra", 3)
+    glass.params, glass.output = [{"mine.yaml": "b" * 64}], ["glass.data"]
+    recorded = SimpleNamespace(params=lambda path: [repr({"mine.yaml": "a" * 64})])
+    needs = {closing: [glass]}
+    dag = SimpleNamespace(needrun_jobs=lambda: [glass, closing, other], job_dependencies=lambda job: needs.get(job, []))
+    snakemake = SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag, persistence=recorded)
+    terminal = Terminal(snakemake, OneSecondEach(), "nothing to do", 1e-4)
+    send(terminal, "run_info")
+    first, second, third = capsys.readouterr().err.splitlines()
+    assert first == "mine.yaml: changed since results were made of it; renews make_glass, run_closing"
+    assert second.strip() == "(jobs: 2, about 2 s)"
+    assert third.startswith("3 jobs, about 3 s on 1 cores")
+    assert "--hours" in terminal.refusal
 
 
 def test_the_release_is_told_as_switches_are_solved(capsys, tmp_path):
@@ -105,7 +125,8 @@ def test_the_release_is_told_as_switches_are_solved(capsys, tmp_path):
             for point, value in enumerate(release_V, number):  # the first is the central one
                 file.create_group(f"point_{point:04d}").attrs["release_V"] = value
     dag = SimpleNamespace(jobs=jobs, needrun_jobs=lambda: jobs[1:], job_dependencies=lambda job: [])
-    terminal = Terminal(SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag), OneSecondEach(), "", 12)
+    snakemake = SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag, persistence=RECORDED)
+    terminal = Terminal(snakemake, OneSecondEach(), "", 12)
     send(terminal, "run_info")
     for number in (1, 2):
         send(terminal, "job_info", jobid=number, rule_name="press_pads", rule_msg="press")

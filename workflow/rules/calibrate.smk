@@ -34,6 +34,7 @@ rule collect_priors:
     log:
         f"{RESULTS}/logs/collect_priors.log",
     params:
+        contents=contents(*SAMPLES.values()),
         settings=PRIORS.model_dump(mode="json"),
         contact=settings("contact"),
     message:
@@ -94,6 +95,7 @@ rule calibrate:
         mem_mb=CONTACT_MB,
     params:
         **ON_PADS,
+        contents=contents(*MEASUREMENT_FILES.values()),
         settings=settings("measurements"),
     message:
         "sample the posterior of the inputs"

@@ -8,6 +8,7 @@ from asperity.guards.foreign_text import from_word, shown
 from asperity.guards.errors import InputError
 from atomistic.materials import load_materials, oxide_glasses
 from workflow.scene.memory import contact_MB, propagation_MB
+from workflow.files.checksums import content_checksums
 from workflow.scene import SceneError, files_of, load_scene, locate
 from asperity.guards.bundle import ROOT
 
@@ -45,7 +46,6 @@ CONTACT_MB = contact_MB(SCENE.contact)
 PROPAGATION_MB = propagation_MB(SCENE.uncertainty)
 
 CONFIG = ROOT / "config"  # data files that ship with the project
-RESOLVED = SCENE.model_dump(mode="json")
 try:
     MATERIALS = load_materials(CONFIG / "materials")
 except InputError as error:
@@ -60,12 +60,34 @@ def settings(section):
     return RESOLVED[section]
 
 
+def contents(*paths):
+    """Checksums of files that no job makes, for `params:`: what reads them follows their content, whatever the date."""
+    return content_checksums(paths)
+
+
 def named_files(key, *names):
     """Paths of files that the scene names under a key, sought here and beside the scene; missing ones are refused."""
     try:
         return locate(SCENE_GIVEN, key, names)
     except SceneError as error:
         refuse(error)
+
+
+def with_found_samples(scene):
+    """The scene with the paths at which its files of departures (device.spread) lie, and these paths."""
+    rows, found = {}, []
+    for name in scene.device.varied:
+        row = getattr(scene.device.spread, name)
+        if isinstance(row.values, str):
+            found += named_files(f"device.spread.{name}.values", row.values)
+            rows[name] = row.model_copy(update={"values": found[-1]})
+    spread = scene.device.spread.model_copy(update=rows)
+    device = scene.device.model_copy(update={"spread": spread})
+    return (scene.model_copy(update={"device": device}), found) if found else (scene, [])
+
+
+SCENE, SPREAD_FILES = with_found_samples(SCENE)
+RESOLVED = SCENE.model_dump(mode="json")
 
 
 def material_path(material):

@@ -35,6 +35,7 @@ rule make_amorphous:
         f"{RESULTS}/logs/make_amorphous_{{amorphous}}.log",
     priority: 90
     params:
+        contents=contents(MATERIAL),
         glass=ELASTIC["glass"],
         seed=ELASTIC["seed"],
         work=f"{RESULTS}/work/{{amorphous}}",
@@ -57,6 +58,7 @@ rule scan_glass:
         f"{RESULTS}/logs/scan_glass_{{amorphous}}.log",
     priority: 90
     params:
+        contents=contents(MATERIAL),
         dft=ELASTIC["dft"],
         functionals=lambda wildcards: ["GGA", "LDA"] if wildcards.amorphous in WITH_LDA else ["GGA"],
         store=f"{RESULTS}/work/scf/{{amorphous}}",
@@ -75,6 +77,7 @@ rule scan_crystal:
         f"{RESULTS}/logs/scan_crystal_{{crystal}}.log",
     priority: 80
     params:
+        contents=lambda wildcards: contents(CRYSTALS[wildcards.crystal]),
         dft=ELASTIC["dft"],
         store=f"{RESULTS}/work/scf/{{crystal}}",
     message:
@@ -100,6 +103,7 @@ rule elastic:
     log:
         f"{RESULTS}/logs/elastic.log",
     params:
+        contents=contents(MATERIAL, COUNTER_BODY),
         settings=ELASTIC,
     message:
         "fit equations of state, and combine E* with Poisson's ratio and the counter body"

@@ -15,6 +15,7 @@ except InputError as error:
 CLOSINGS = BODIES.closings
 BASE = BODIES.base
 H_MACRO = SCENE.inputs.priors().h_macro  # the runs give H' beside it
+H_MACRO_FILE = named_files("inputs.h_macro.values", H_MACRO.values) if isinstance(H_MACRO.values, str) else []
 
 
 def of_run(pattern):
@@ -22,11 +23,20 @@ def of_run(pattern):
     return [f"{RESULTS}/hardness/{pattern.format(run=run)}" for run in CLOSINGS]
 
 
+def base_files(run):
+    """Files of what lies below the film of a closing run."""
+    return [] if run.asperity.film_nm is None else [BASE]
+
+
 def of_base(run):
     """As named inputs: what lies below a film, and the cell of it that fits the asperity."""
     if run.asperity.film_nm is None:
         return {}
     return {"base": f"{RESULTS}/hardness/base/{run.seed}_{run.asperity.tiles}.data", "base_material": BASE}
+
+
+BODY_FILES = [BODIES.material, BODIES.potential]
+BASE_FILES = [BASE] if BASE else []  # of what lies below films
 
 
 wildcard_constraints:
@@ -47,6 +57,7 @@ rule make_glass:
         f"{RESULTS}/logs/make_glass_{{glass}}.log",
     priority: 100
     params:
+        contents=contents(*BODY_FILES),
         glass=HARDNESS["glass"],
         seed=lambda wildcards: wildcards.glass,
         work=f"{RESULTS}/work/glass_{{glass}}",
@@ -66,6 +77,7 @@ rule make_base:
         f"{RESULTS}/logs/make_base_{{glass}}_{{tiles}}.log",
     priority: 95
     params:
+        contents=contents(*BASE_FILES),
         tiles=lambda wildcards: int(wildcards.tiles),
         seed=lambda wildcards: int(wildcards.glass),
         work=f"{RESULTS}/work/base_{{glass}}_{{tiles}}",
@@ -90,6 +102,7 @@ rule run_closing:
     priority: 90
     threads: HARDNESS["closing"]["processes"]
     params:
+        contents=lambda wildcards: contents(*BODY_FILES, *base_files(CLOSINGS[wildcards.run])),
         closing_run=lambda wildcards: CLOSINGS[wildcards.run].model_dump(mode="json"),
         closing=HARDNESS["closing"],
         protocol=PROTOCOL.model_dump(mode="json"),
@@ -110,13 +123,14 @@ rule hardness:
         base_material=BASE or [],
         potential=BODIES.potential,
         glasses=[f"{RESULTS}/hardness/glass/{seed}.json" for seed in dict.fromkeys(SCENE.hardness.seeds)],
-        h_macro=named_files("inputs.h_macro.values", H_MACRO.values)[0] if isinstance(H_MACRO.values, str) else [],
+        h_macro=H_MACRO_FILE,
     output:
         points=f"{RESULTS}/hardness/points.csv",
         fit=f"{RESULTS}/hardness/fit.json",
     log:
         f"{RESULTS}/logs/hardness.log",
     params:
+        contents=contents(*BODY_FILES, *BASE_FILES, *H_MACRO_FILE),
         potential=HARDNESS["potential"],
         energies=HARDNESS["energies"],
         h_macro=H_MACRO.model_dump(mode="json"),

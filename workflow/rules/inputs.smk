@@ -28,6 +28,7 @@ rule inputs:
     log:
         f"{RESULTS}/logs/inputs.log",
     params:
+        contents=contents(*SAMPLES.values()),
         settings=settings("inputs"),
         contact=settings("contact"),
     message:

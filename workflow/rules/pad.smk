@@ -10,7 +10,10 @@ POINT_CHUNKS = {"central": (0, 1)} | {
 
 # what jobs that use the pad read, and the settings that they have
 PRESSED = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv", "model": f"{RESULTS}/pad/model.h5"}
+EFFECTS = str(CONFIG / "effects.yaml")
 ON_PADS = {section: settings(section) for section in ("contact", "device", "pad")}
+if SPREAD_FILES:
+    ON_PADS["departures"] = contents(*SPREAD_FILES)
 
 
 rule press_pads:
@@ -60,7 +63,7 @@ rule device:
     input:
         **PRESSED,
         hardness=INPUT_STAGES.get("hardness", []),
-        effects=str(CONFIG / "effects.yaml"),
+        effects=EFFECTS,
     output:
         switch=f"{RESULTS}/device/pad_switch.json",
         budget=f"{RESULTS}/device/budget.csv",
@@ -72,6 +75,7 @@ rule device:
     priority: 2
     params:
         **ON_PADS,
+        contents=contents(EFFECTS),
     message:
         "say what the switch does"
     script:

@@ -1,5 +1,7 @@
 from workflow.files.checksums import file_checksum
 
+STYLE = [str(ROOT / "workflow" / "report" / name) for name in ("template.html.j2", "style.css")]
+
 
 def studies_at_hand():
     """Tables of studies already present, with their checksums.
@@ -13,13 +15,14 @@ rule report:
     """the page, and all that it needs"""
     input:
         SHOWN,
-        style=[str(ROOT / "workflow" / "report" / name) for name in ("template.html.j2", "style.css")],
+        style=STYLE,
     output:
         page=f"{RESULTS}/report.html",
         record=f"{RESULTS}/scene.yaml",
     log:
         f"{RESULTS}/logs/report.log",
     params:
+        contents=contents(*STYLE),
         root=RESULTS,
         scene=RESOLVED,
         studies=lambda wildcards: studies_at_hand(),

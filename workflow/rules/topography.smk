@@ -4,6 +4,11 @@ TOPOGRAPHY = SCENE.topography
 SCAN_FOLDER = f"{RESULTS}/topography/scans"
 
 
+def measured(*scans):
+    """Those of these scans that no job makes."""
+    return scans if TOPOGRAPHY.scans else []
+
+
 def scan_files():
     """The scans to analyse: the user's own, or the synthetic ones that the workflow writes."""
     if not TOPOGRAPHY.scans:
@@ -11,7 +16,10 @@ def scan_files():
         names = [f"small_{k + 1:02d}" for k in range(synthetic.small_scans)]
         names += [f"large_{k + 1:02d}" for k in range(synthetic.large_scans)]
         return [f"{SCAN_FOLDER}/{name}.gwy" for name in names]
-    return named_files("topography.scans", *files_of(SCENE_GIVEN, TOPOGRAPHY.scans))
+    try:
+        return named_files("topography.scans", *files_of(SCENE_GIVEN, TOPOGRAPHY.scans))
+    except SceneError as error:
+        refuse(error)
 
 
 SCAN_FILES = scan_files() if needed("topography") or not TOPOGRAPHY.scans else list(TOPOGRAPHY.scans)
@@ -50,6 +58,7 @@ rule analyse_scans:
     log:
         f"{RESULTS}/logs/analyse_scans_{{chunk}}.log",
     params:
+        contents=lambda wildcards: contents(*measured(*SCAN_CHUNKS[int(wildcards.chunk)])),
         settings=settings("topography"),
         first=lambda wildcards: int(wildcards.chunk) * SCANS_PER_JOB,
     message:
@@ -100,6 +109,7 @@ rule judge_scans:
     log:
         f"{RESULTS}/logs/judge_scans.log",
     params:
+        contents=lambda wildcards: contents(*measured(*SCAN_FILES)),
         settings=settings("topography"),
         contact=settings("contact"),
     message:

@@ -27,15 +27,17 @@ rule compute_direct_runs:
         "../scripts/compute_direct_runs.py"
 
 
+PAPER_TABLES = {name: str(CONFIG / "paper" / f"{name}.csv") for name in ("table2", "table3")}
+
+
 rule uq:
     """what uncertain inputs do to the law, and which cause the spread"""
     input:
+        **PAPER_TABLES,
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
         direct=DIRECT,
         again=[f"{RESULTS}/uq/direct/chunk_again.csv"] if DIRECT else [],
-        table2=str(CONFIG / "paper" / "table2.csv"),
-        table3=str(CONFIG / "paper" / "table3.csv"),
     output:
         outputs=f"{RESULTS}/uq/outputs.csv",
         sensitivity=f"{RESULTS}/uq/sensitivity.csv",
@@ -48,6 +50,7 @@ rule uq:
     resources:
         mem_mb=PROPAGATION_MB,
     params:
+        contents=contents(*PAPER_TABLES.values()),
         settings=settings("uncertainty"),
         max_force_nN=SCENE.contact.max_force_nN,
         length_nm=SCENE.contact.length_nm,

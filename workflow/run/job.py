@@ -63,7 +63,9 @@ class Job:
     @cached_property
     def provenance(self) -> dict[str, Any]:
         """Rule, hash of the settings and input files, and package versions."""
-        digest = hashlib.sha256(json.dumps(self.params, sort_keys=True, default=str).encode())
+        # `contents` repeats what the input files hold, and names places of this machine
+        settings = {name: value for name, value in self.params.items() if name != "contents"}
+        digest = hashlib.sha256(json.dumps(settings, sort_keys=True, default=str).encode())
         for path in self.inputs:
             ours = record_of(path).is_file()  # a file of the user may have any encoding
             digest.update((result_checksum(path) if ours else file_checksum(path)).encode())

@@ -6,7 +6,7 @@ import sys
 import textwrap
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from shutil import disk_usage
 from typing import Any
@@ -14,6 +14,7 @@ from typing import Any
 from snakemake.exceptions import WorkflowError
 
 from asperity.guards.foreign_text import COLUMNS, did_you_mean, shown, wrapped
+from workflow.run.changed_files import change_lines, changed_files
 from workflow.run.cost import Costs, refusal, wall_seconds
 from workflow.run.job import last_line
 
@@ -79,6 +80,8 @@ class Terminal(logging.Handler):
         for job in self._left.values():
             seconds[job.rule.name] += self._seconds(job)
         wall_s = self._wall_s()
+        for line in self._changes():
+            _say(wrapped(line))
         if self._workflow.local_exec:
             self.refusal = refusal(seconds, wall_s, self._cores, self._hours)
         if self._workflow.dryrun:
@@ -94,6 +97,26 @@ class Terminal(logging.Handler):
         wall = f"about {duration(wall_s)}" if self._left else "no time"
         guessed = "" if self._costs.known(seconds) else ", a guess until jobs of this scene have run here"
         _say(wrapped(f"{self._jobs} jobs, {wall} on {self._cores} cores{guessed}"))
+
+    def _changes(self) -> Iterator[str]:
+        """Lines on files that changed since results were made of them, with what they renew and its time."""
+        changed = changed_files(self._left.values(), self._workflow.persistence.params)
+        if not changed:
+            return
+        rules = {number: job.rule.name for number, job in self._left.items()}
+        seconds = {number: self._seconds(job) for number, job in self._left.items()}
+        needs = self._needs()
+
+        def cost(numbers: Collection[int]) -> str:
+            part = {number: seconds[number] for number in numbers}
+            return f"about {duration(wall_seconds(part, needs, self._cores))}"
+
+        yield from change_lines(changed, needs, rules, cost)
+
+    def _needs(self) -> dict[int, list[int]]:
+        """Numbers of the jobs that each job that is left waits for."""
+        needed = self._workflow.dag.job_dependencies
+        return {number: [other.jobid for other in needed(job)] for number, job in self._left.items()}
 
     @property
     def _cores(self) -> int:
@@ -112,9 +135,7 @@ class Terminal(logging.Handler):
             if number in seconds:
                 spent = time.monotonic() - started
                 seconds[number] = max(seconds[number] - spent, 0.1 * spent)  # one that takes longer goes on
-        needed = self._workflow.dag.job_dependencies
-        needs = {number: [other.jobid for other in needed(job)] for number, job in self._left.items()}
-        return wall_seconds(seconds, needs, self._cores)
+        return wall_seconds(seconds, self._needs(), self._cores)
 
     def _finish(self, number: int) -> None:
         message, started = self._running.pop(number, ("", 0.0))

@@ -10,9 +10,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from asperity.guards.bundle import ROOT
+from asperity.guards.errors import InputError
 from asperity.guards.foreign_text import did_you_mean, shown
 from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
-from mesoscale.topography.measurements import files_in
+from mesoscale.topography.measurements import check_count, files_in
 from workflow.files.checksums import CLOCK_S
 from workflow.scene.accepted import accepted_values, field_at, model_at
 from workflow.scene.definition import Scene
@@ -162,12 +163,20 @@ def files_of(scene: str, names: Iterable[str]) -> list[str]:
     Parameters
     ----------
     scene : name or path of the scene
+
+    Raises
+    ------
+    SceneError : more files than are described together.
     """
     files: list[str] = []
     for name in names:
         places = [Path(name), *(folder / name for folder in _folders_of(scene))]
         folder = next((place for place in places if os.path.isdir(place)), None)
         files += [name] if folder is None else files_in(folder)
+    try:
+        check_count("topography.scans", files)
+    except InputError as error:
+        raise SceneError(f"{scene}: {error}") from None
     return files
 
 

@@ -35,7 +35,7 @@ with job(snakemake) as run:
     else:
         row = settings_from_job(InputRow, params.h_macro)
         if given.h_macro:
-            row = row.model_copy(update={"values": given.h_macro})
+            row = row.model_copy(update={"values": str(given.h_macro)})
         h_macro = stated_distribution("h_macro", row).quantile
         fit = fit_size_effect(points, glasses, area_error, h_macro, params.energies, measured)
     used = {

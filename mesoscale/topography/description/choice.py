@@ -12,7 +12,7 @@ from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import HeightTest, not_gaussian
 from mesoscale.topography.description.one_spectrum import OneSpectrum
 from mesoscale.topography.description.parameters import Topography
-from mesoscale.topography.measurements.cleaning import FORM_TAKEN, LINES_CUT, MARKED
+from mesoscale.topography.measurements.cleaning import FORM_TAKEN, LINES_CUT, MANY_SPIKES, MARKED, STAND_INS
 from mesoscale.topography.measurements.profiles import OVERHANG, THERE_AND_BACK
 
 DESCRIPTIONS = {
@@ -28,6 +28,8 @@ STEPS_TO_TELL = {
     THERE_AND_BACK: ("there_and_back", "give one of both directions a file"),
     OVERHANG: ("overhang", "the contact is on top: nothing to do where the heights are seen from above"),
     MARKED: ("marked_pixels", "if these pixels are wrong, replace them by data of their surroundings, and save again"),
+    STAND_INS: ("missing_points", "they were filled from their neighbours: if they are heights, measure again"),
+    MANY_SPIKES: ("spikes", "look at the map: dust, noise or a wrong number for missing points; measure again"),
 }
 """Steps of a measurement that a user should hear of: code of the doubt and remedy."""
 

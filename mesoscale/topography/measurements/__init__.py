@@ -2,7 +2,13 @@
 
 import glob
 import os
+from collections.abc import Sequence
 from pathlib import Path
+
+from mesoscale.errors import InputError
+
+MOST_FILES = 200
+"""Measurements of one surface that are described together: more take minutes, and say no more."""
 
 
 def files_in(path: str | Path) -> list[str]:
@@ -10,3 +16,17 @@ def files_in(path: str | Path) -> list[str]:
     if not os.path.isdir(path):  # unlike Path.is_dir, False for a name that is too long
         return [str(path)]
     return sorted(filter(os.path.isfile, glob.glob(f"{glob.escape(str(Path(path)))}/*")))
+
+
+def check_count(given: str, files: Sequence[object]) -> None:
+    """Refuse more files than are described together.
+
+    Raises
+    ------
+    InputError
+    """
+    if len(files) > MOST_FILES:
+        raise InputError(
+            f"{given}: {len(files)} files; at most {MOST_FILES} are described together: move those of this surface into "
+            "a folder of their own, or name some of them"
+        )

@@ -6,11 +6,9 @@ takes by PyYAML's full loader, must hold plain values and tuples alone.
 
 import os
 import re
-import tempfile
 import warnings
 import zipfile
-from collections.abc import Callable, Iterator
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatch
 from pathlib import Path
@@ -22,18 +20,34 @@ from asperity.guards.foreign_yaml import MistakenYaml, parse
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.settings import InstrumentSettings, TopographySettings
-from mesoscale.topography.measurements.cleaning import MARKED, Scan
+from mesoscale.topography.measurements.channels import height_channel, holds_heights
+from mesoscale.topography.measurements.cleaning import MARKED, STAND_INS, Scan, without_missing
+from mesoscale.topography.measurements.columns import Columns, columns_of
 from mesoscale.topography.measurements.guarded import guarded
+from mesoscale.topography.measurements.missing import cropped
+from mesoscale.topography.measurements.opening import (
+    converted,
+    first_line,
+    foreign,
+    opened,
+    unpacked,
+    why_not_read,
+    with_unit,
+    without_unit,
+    write_channels,
+)
+from mesoscale.topography.measurements.points import on_grid
 from mesoscale.topography.measurements.profiles import Profile, profile_of
+from mesoscale.topography.measurements.text import BROADEST_TABLE, Text, decoded, read_text
+from mesoscale.topography.measurements.units import nm_of, teach_units
 
 MIN_SIDE = 32
 FILE_NM = (10.0, 1e8)  # plausible sizes: the largest real map at hand has 12 mm; beyond, a reader mistakes the unit
-HEAD_BYTES = 8192  # of a text file, in which the heads of its columns stand
-MOST_NAMES = 10  # of channels in a message: a file may have hundreds
-NO_HEIGHT = re.compile(r"deflection|amplitude|error|phase|friction|lateral|thumb|preview|current|potential", re.I)
-DIRECTION = re.compile(r"\W*\b(forward|backward|fwd|bwd|trace|retrace|left|right)\b\W*", re.I)
-BACKWARD = re.compile(r"\b(backward|bwd|retrace|left)\b", re.I)
-"""Names of channels: what is no height, and the directions of one height."""
+HEAD_BYTES = 8192  # of a file, by which its format is told
+OWN_HEADS = (b"X;Y;valid", b"Scan Parameters")
+"""How tables begin whose heads a reader of SurfaceTopography knows: HFM and Dektak."""
+PLAIN_WORDS = ("nan", "bad")
+"""Words that say themselves that a value is missing."""
 NO_LIMITS = InstrumentSettings(files="*")
 
 
@@ -43,7 +57,7 @@ class Measurement:
 
     Attributes
     ----------
-    data : as loaded, before levelling.
+    data : as loaded, before levelling; missing points are NaN, also those that a number stood for.
     tip_radius_nm : 0 for an instrument without tip.
     radius_stated : whether the scene or the file states the radius; otherwise it is the scene's default.
     shortest_wave_nm, noise_nm : further limits; None where nothing is stated.
@@ -63,7 +77,7 @@ def load_measurements(
 
     Parameters
     ----------
-    path : file of any format that SurfaceTopography reads, or a container of contact.engineering (.zip).
+    path : file of any format that SurfaceTopography reads, packed or not, or a container of contact.engineering (.zip).
     name : what to call it; by default the file's name. Measurements of a container add their own.
     settings : the channel to take, and the limits of the instruments.
 
@@ -77,26 +91,18 @@ def load_measurements(
         raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
     with needs("scans"):  # imported here, so that the process that reads, a fork of this one, has the readers
         import SurfaceTopography.Container.IO
-        import SurfaceTopography.IO  # noqa: F401  4 s, because it loads all of that library
+        import SurfaceTopography.IO  # noqa: F401  loads all of that library
 
     def read() -> list[Measurement]:
-        _teach_units()
+        teach_units()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # readers warn of metadata that nothing here uses
-            if path.suffix.lower() == ".zip":
+            file = unpacked(path, _head_of(path))
+            if file.suffix.lower() == ".zip":
                 return list(_contained(path, name or path.stem, settings))
-            return [_alone(path, name or path.stem, settings)]
+            return [_alone(path, file, name or path.stem, settings)]
 
     return guarded(path, read)
-
-
-def _teach_units() -> None:
-    """Add spellings of lengths that instruments write and SurfaceTopography's table lacks."""
-    from SurfaceTopography.Support.UnitConversion import length_units
-
-    # the last one is UTF-8 that was read as Latin-1
-    length_units |= dict.fromkeys(("\u03bcm", "micron", "microns", "micrometer", "\u339b", "\u00c2\u00b5m"), 1e-6)
-    length_units |= dict.fromkeys(("Angstrom", "angstrom", "\u212b", "\u00c5ngstr\u00f6m", "Ang"), 1e-10)
 
 
 def with_limits(
@@ -122,69 +128,200 @@ def _instrument(name: str, settings: TopographySettings) -> InstrumentSettings:
     return next((item for item in settings.instruments if fnmatch(name, item.files)), NO_LIMITS)
 
 
-def _alone(path: Path, name: str, settings: TopographySettings) -> Measurement:
-    """The measurement of a file."""
-    from SurfaceTopography.IO import open_topography
-
-    instrument = _instrument(path.name, settings)
+def _head_of(path: Path) -> bytes:
     try:
         with path.open("rb") as stream:
-            head = stream.read(HEAD_BYTES)
+            return stream.read(HEAD_BYTES)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); make the file readable") from None
-    read = plain_text(path, head)
-    head = head if read == path else read.read_bytes()[:HEAD_BYTES]
-    reader = _tried(str(path), lambda: open_topography(str(read)), head)
-    channels = _tried(str(path), lambda: list(reader.channels))
-    channel, note = _height_channel(path, channels, instrument, settings.channel)
-    given = _given(str(path), channel, instrument)
-    _check_sized(str(path), channel, instrument)
-    topography = _tried(str(path), lambda: channel.topography(**given))
+
+
+def _alone(path: Path, file: Path, name: str, settings: TopographySettings) -> Measurement:
+    """The measurement of a file.
+
+    Parameters
+    ----------
+    path : what the user gave, for messages and for the instrument's limits.
+    file : what is read: the same, or what was packed in it.
+    """
+    instrument = _instrument(path.name, settings)
+    where, head = str(path), _head_of(file)
+    wanted = instrument.channel or settings.channel
+    if named := foreign(file, head, by_name=False):
+        raise InputError(named.replace(str(file), where, 1))
+    text = None if _is_known(head) or decoded(head) is None else read_text(file.read_bytes())
+    if text is None and (named := foreign(file, head, by_name=True)):
+        raise InputError(named.replace(str(file), where, 1))
+    if text is not None and _is_table(text):
+        columns = columns_of(where, text, wanted)
+        return _of_table(where, name, columns, _word_steps(text), settings, instrument)
+    if instrument.points is not None:
+        raise InputError(f"{where}: is no list of points x, y, z; leave out --points (topography.instruments, points)")
+    if text is not None and not text.plain:
+        file = text.copy(file.name)
+    file = converted(file, head)
+    if file.suffix.lower() == ".gwy" and instrument.unit and _tried(where, lambda: without_unit(file)):
+        file = with_unit(file, instrument.unit)
+        instrument = instrument.model_copy(update={"unit": None})
+    return _of_channels(path, file, name, text, settings, instrument)
+
+
+def _is_known(head: bytes) -> bool:
+    """Does a reader know the format by the first bytes, so that its text is no plain table?"""
+    from SurfaceTopography.IO import MagicMatch, readers
+
+    return head.startswith(OWN_HEADS) or any(reader.can_read(head) == MagicMatch.YES for reader in readers)
+
+
+def _is_table(text: Text) -> bool:
+    """Are these columns of positions and heights, and no map? A map has 32 pixels a side, or a header with its size."""
+    stated = any(re.search(r"[=:]", line) and re.search(r"\d", line) for line in text.header)
+    if text.width == 1:
+        return not stated
+    return text.width <= (3 if stated and not text.heads else BROADEST_TABLE)
+
+
+def _of_channels(
+    path: Path,
+    file: Path,
+    name: str,
+    text: Text | None,
+    settings: TopographySettings,
+    instrument: InstrumentSettings,
+) -> Measurement:
+    """The measurement of the channel of heights that a reader of SurfaceTopography finds."""
+    where, head = str(path), _head_of(file)
+    try:
+        reader = opened(file, head)
+    except InputError as error:
+        raise InputError(str(error).replace(str(file), where, 1)) from None
+    channels = _tried(where, lambda: list(reader.channels))
+    _check_unit_of(where, file, channels, instrument)
+    channel, note = height_channel(
+        where,
+        [item for item in channels if not _is_ampere(text, item)],
+        reader.format(),
+        instrument.channel or settings.channel,
+        lambda item: _also(path.name, item, instrument),
+    )
+    if min(getattr(channel, "nb_grid_pts", None) or [MIN_SIDE]) < MIN_SIDE and channel.dim == 2:
+        raise InputError(_too_small(where, channel.nb_grid_pts))
+    given = _given(where, channel, instrument)
+    _check_sized(where, channel, instrument)
+    topography = _tried(where, lambda: channel.topography(**given))
+    _check_whole(where, text, topography, channels)
     marked = None
     if masks := getattr(reader, "_masks", None):  # Gwyddion's mask is over what is missing, and over grains
-        lost = np.ma.getmaskarray(_tried(str(path), topography.heights))
+        lost = np.ma.getmaskarray(_tried(where, topography.heights))
         masks.clear()
-        whole = _tried(str(path), lambda: channel.topography(**given))
-        below = np.asarray(_tried(str(path), whole.heights))[lost]
+        whole = _tried(where, lambda: channel.topography(**given))
+        below = np.asarray(_tried(where, whole.heights))[lost]
         if len(np.unique(below[np.isfinite(below)])) > 1:  # what is missing has one value
             topography, marked = whole, f"{MARKED} {lost.mean():.1%} of the pixels, which have heights: kept them"
-    steps = (f"read channel {channel.name}", *note, *([marked] if marked else []))
-    return _measurement(str(path), name, topography, head, steps, settings, instrument)
+    steps = (f"read channel {channel.name}", *note, *([marked] if marked else []), *_word_steps(text))
+    return _measurement(where, name, topography, head, steps, settings, instrument)
 
 
-def plain_text(path: Path, head: bytes) -> Path:
-    """The file, or a copy with decimal points, tabs and UTF-8, of text as programs of many countries export it.
-
-    Text is what begins without signs that do not print, and has no byte 0.
-    """
-    if not head or any(byte < 9 or 13 < byte < 32 for byte in head) or b"\0" in (raw := path.read_bytes()):
-        return path
-    try:
-        text = raw.decode("utf-8")
-        encoded = False
-    except UnicodeDecodeError:
-        text, encoded = raw.decode("latin-1"), True
-    start = text[:HEAD_BYTES]
-    commas = re.search(r"(?<![\d.,])-?\d+,\d+(?:[eE][-+]?\d+)?[\t; ]+-?\d", start)
-    commas = commas and not re.search(r"\d\.\d", start)
-    if commas:
-        text = re.sub(r"(?<=\d),(?=\d)", ".", text)
-    if ";" in start:
-        text = text.replace(";", "\t")
-    if not (commas or encoded) and (";" not in start or _is_understood(path)):
-        return path
-    copy = Path(tempfile.mkdtemp()) / path.name
-    copy.write_text(text, encoding="utf-8")
-    return copy
+def _word_steps(text: Text | None) -> tuple[str, ...]:
+    """What words among the numbers of a text stand for; NaN and BAD say it themselves."""
+    said = {word: count for word, count in (text.words if text else {}).items() if word.lower() not in PLAIN_WORDS}
+    if text is None or not said:
+        return ()
+    most, count = max(said, key=lambda word: said[word]), sum(said.values())
+    share = count / (len(text.rows) * text.width)
+    return (f"{STAND_INS} {share:.2%} of the values ({count}), which are words such as {most[:20]!r}",)
 
 
-def _is_understood(path: Path) -> bool:
-    """Whether a reader takes the file as it is: some instruments write semicolons."""
-    from SurfaceTopography.IO import open_topography
+def _is_ampere(text: Text | None, channel: Any) -> bool:
+    """Is a channel of a text that Gwyddion exported in A, which is its ampere?"""
+    if text is None:
+        return False
+    raw = (getattr(channel, "info", None) or {}).get("raw_metadata", {})
+    exported = any(re.match(r"#\s*\S+\s*[:\uff1a]", line) for line in text.header)
+    return exported and raw.get("zunit") == "A"
 
-    with suppress(Exception):  # readers of foreign formats fail in many ways
-        return bool(open_topography(str(path)).channels)
-    return False
+
+def _check_unit_of(where: str, file: Path, channels: Sequence[Any], instrument: InstrumentSettings) -> None:
+    """Ask for a unit where a Gwyddion file has channels without one, and no other."""
+    if channels or file.suffix.lower() != ".gwy" or instrument.unit:
+        return
+    if names := [name for name in without_unit(file) if holds_heights(name)]:
+        raise InputError(
+            f"{where}: channel {names[0]} has no unit; state it in topography.instruments (files: "
+            f"{Path(where).name!r}, unit: nm; --unit nm), or save it with a unit of length"
+        )
+
+
+def _check_whole(where: str, text: Text | None, topography: Any, channels: Sequence[Any]) -> None:
+    """Refuse a map of a text of which a reader lost lines."""
+    if text is None or topography.dim != 2 or len(channels) != 1:
+        return
+    lines = topography.nb_grid_pts[1]
+    if text.odd or lines != len(text.rows):
+        raise InputError(
+            f"{where}: {lines} of {len(text.rows) + text.odd} lines of numbers were read; a map has as many values in "
+            "each line: save it again (.gwy)"
+        )
+
+
+def _of_table(
+    where: str,
+    name: str,
+    columns: Columns,
+    steps: tuple[str, ...],
+    settings: TopographySettings,
+    instrument: InstrumentSettings,
+) -> Measurement:
+    """A line or a map from columns of positions and heights."""
+    factors = _factors(where, columns, instrument)
+    taken = f"read columns {', '.join(columns.names)}" if columns.names else "read columns by their order"
+    steps = (taken, *steps)
+    places = columns.positions.shape[1]
+    if instrument.points is not None and places != 2:
+        raise InputError(f"{where}: is no list of points x, y, z; leave out --points (topography.instruments, points)")
+    if instrument.size and places:
+        raise InputError(f"{where}: states a size itself; leave out that of topography.instruments (--size)")
+    if places == 2:
+        x, y = columns.positions.T
+        grid, lengths, step = on_grid(where, x, y, columns.heights, instrument.points)
+        x_nm, y_nm = (factors[0] * length for length in lengths)
+        return _scan(where, name, factors[1] * grid, (x_nm, y_nm), (*steps, step), settings, instrument)
+    heights = columns.heights
+    if places == 1:
+        positions = columns.positions[:, 0]
+    else:
+        if not instrument.size:
+            raise InputError(
+                f"{where}: {len(heights)} heights alone, without positions; state the length of the line in "
+                f"topography.instruments (files: {Path(where).name!r}, size: [1], unit: um, height_unit: nm; "
+                "--size 1 --unit um,nm)"
+            )
+        positions = np.arange(len(heights)) * (instrument.size[0] / len(heights))
+    profile = _profile(where, name, factors[0] * positions, factors[1] * heights)
+    return with_limits(replace(profile, steps=(*steps, *profile.steps)), settings, instrument)
+
+
+def _factors(where: str, columns: Columns, instrument: InstrumentSettings) -> tuple[float, float]:
+    """Factors to nm of positions and heights, by the heads of the columns or by the user."""
+    across, up = columns.units
+    asked = instrument.unit, instrument.height_unit or instrument.unit
+    if across and up and (instrument.unit or instrument.height_unit):
+        stated = [nm_of(where, unit) for unit in (across, up)]
+        if stated != [nm_of(where, unit or "nm") for unit in asked]:
+            raise InputError(
+                f"{where}: states a unit itself, {across} and {up}; leave out that of topography.instruments (--unit)"
+            )
+    across = across or asked[0] or (up if not columns.positions.shape[1] else None)
+    up = up or asked[1]
+    if not across or not up:
+        size = "" if columns.positions.shape[1] or instrument.size else "size: [1], "
+        option = "" if not size else "--size 1 "
+        raise InputError(
+            f"{where}: {'points' if columns.positions.shape[1] == 2 else 'a profile'} without length unit; state it in "
+            f"topography.instruments (files: {Path(where).name!r}, {size}unit: um, height_unit: nm; {option}--unit "
+            "um,nm) or in the heads of its columns"
+        )
+    return nm_of(where, across), nm_of(where, up)
 
 
 def _given(where: str, channel: Any, instrument: InstrumentSettings) -> dict[str, Any]:
@@ -194,19 +331,19 @@ def _given(where: str, channel: Any, instrument: InstrumentSettings) -> dict[str
     ------
     InputError : the file states it itself.
     """
-    given: dict[str, Any] = {}
-    sized = channel.dim == 1 or channel.physical_sizes is not None
+    sized = channel.physical_sizes is not None
     for name, stated, added in (
         ("a unit", channel.unit, instrument.unit),
-        ("a size", channel.physical_sizes if channel.dim == 2 else True, instrument.size),
+        ("a size", sized, instrument.size),
     ):
         if stated and added:
             raise InputError(
                 f"{where}: states {name} itself; leave out that of topography.instruments (--unit, --size)"
             )
-    if not sized and instrument.size:
-        given["physical_sizes"] = instrument.size
-    return given
+    if sized or not instrument.size:
+        return {}
+    sides = instrument.size if channel.dim == 1 else (instrument.size[0], instrument.size[-1])
+    return {"physical_sizes": sides[: channel.dim] if channel.dim == 2 else sides[0]}
 
 
 def _contained(path: Path, name: str, settings: TopographySettings) -> Iterator[Measurement]:
@@ -221,7 +358,7 @@ def _contained(path: Path, name: str, settings: TopographySettings) -> Iterator[
     except MistakenYaml as error:
         raise InputError(f"{path}: meta.yml holds more than plain values ({error}); nothing was executed") from None
     except Exception as error:  # of damaged, encrypted and foreign archives, and of strange lists
-        raise InputError(f"{path}: this container cannot be read ({_first_line(error)}); get it again") from None
+        raise InputError(f"{path}: this container cannot be read ({first_line(error)}); get it again") from None
     if container.nb_containers != 1:
         raise InputError(f"{path}: holds {container.nb_containers} surfaces; give a container of one surface")
     if not container.members():
@@ -230,9 +367,24 @@ def _contained(path: Path, name: str, settings: TopographySettings) -> Iterator[
         where = f"{path}: {member.name[:80]}"
         label = re.sub(r"[^\w.-]+", "_", f"{name}_{number + 1}_{Path(member.name[:80]).stem}")
         head = _tried(where, lambda item=member: item.open().read(HEAD_BYTES))
-        topography = _tried(where, lambda k=number: container.container()[k], head)
-        steps = (f"read channel {topography.info.get('data_source', 0)}",)
+        topography = _tried(where, lambda k=number: container.container()[k], Path(member.name), head)
+        source = topography.info.get("data_source", 0)
+        _check_member(where, member, source, head)
+        steps = (f"read channel {source}",)
         yield _measurement(where, label, topography, head, steps, settings, _instrument(member.name, settings))
+
+
+def _check_member(where: str, member: Any, source: Any, head: bytes) -> None:
+    """Refuse a measurement of a container whose channel or column holds no heights."""
+    from SurfaceTopography.IO import open_topography
+
+    channels = _tried(where, lambda: list(open_topography(member.open).channels))
+    called = str(channels[source].name) if isinstance(source, int) and source < len(channels) else ""
+    if called and not holds_heights(called):
+        raise InputError(f"{where}: takes channel {called!r}, which holds no heights; remove it from the container")
+    text = read_text(head)
+    if text is not None and 1 < text.width <= BROADEST_TABLE and text.heads and not _is_known(head):
+        columns_of(where, replace(text, odd=0), None)
 
 
 def _measurement(
@@ -246,7 +398,7 @@ def _measurement(
 ) -> Measurement:
     """A topography of SurfaceTopography in nm, by the unit of the file, of its columns, or of the scene."""
     unit = topography.unit or instrument.unit
-    factors = (_nm(where, unit),) * 2 if unit else _column_units(head)
+    factors = (nm_of(where, unit),) * 2 if unit else _column_factors(where, head)
     if factors is None:
         raise InputError(
             f"{where}: a {'profile' if topography.dim == 1 else 'map'} without length unit; state it in "
@@ -254,21 +406,54 @@ def _measurement(
             "heads of its columns"
         )
     if instrument.height_unit and not topography.unit:
-        factors = factors[0], _nm(where, instrument.height_unit)
+        factors = factors[0], nm_of(where, instrument.height_unit)
+    radius = _stated_radius(where, topography.info)
     if topography.dim == 1:
         x, z = _tried(where, lambda: _points(*topography.positions_and_heights()))
-        data: Scan | Profile = _profile(where, name, x * factors[0], z * factors[1])
-        data = replace(data, bow=topography.info.get("detrend_mode") == "curvature")
-    else:
-        _check_sized(where, topography, instrument)
-        heights = factors[1] * _tried(where, lambda: _filled(topography.heights()))
-        if min(heights.shape) < MIN_SIDE:
-            raise InputError(f"{where}: {heights.shape[0]} x {heights.shape[1]} pixels; at least {MIN_SIDE} a side")
-        x_nm, y_nm = (factors[0] * float(size) for size in topography.physical_sizes)
-        _check_plausible(where, heights, x_nm, y_nm)
-        data = Scan(heights, (x_nm, y_nm), name)
-    data = replace(data, steps=(*steps, *data.steps))
-    return with_limits(data, settings, instrument, _stated_radius(where, topography.info))
+        data = _profile(where, name, x * factors[0], z * factors[1])
+        bow = topography.info.get("detrend_mode") == "curvature"
+        return with_limits(replace(data, bow=bow, steps=(*steps, *data.steps)), settings, instrument, radius)
+    _check_sized(where, topography, instrument)
+    heights = factors[1] * _tried(where, lambda: _filled(topography.heights()))
+    x_nm, y_nm = (factors[0] * float(size) for size in topography.physical_sizes)
+    return _scan(where, name, heights, (x_nm, y_nm), steps, settings, instrument, radius)
+
+
+def _scan(
+    where: str,
+    name: str,
+    heights_nm: np.ndarray,
+    lengths_nm: tuple[float, float],
+    steps: tuple[str, ...],
+    settings: TopographySettings,
+    instrument: InstrumentSettings,
+    radius_nm: float | None = None,
+) -> Measurement:
+    """A map with the limits of its instrument, cut as asked; numbers that stand for missing points are NaN."""
+    if min(heights_nm.shape) < MIN_SIDE:
+        raise InputError(_too_small(where, heights_nm.shape))
+    _check_size(where, *lengths_nm)
+    scan = without_missing(Scan(heights_nm, lengths_nm, name, steps))
+    if instrument.crop is not None:
+        scan = _cut(where, scan, instrument.crop)
+    _check_heights(where, scan.heights_nm)
+    return with_limits(scan, settings, instrument, radius_nm)
+
+
+def _cut(where: str, scan: Scan, asked: Any) -> Scan:
+    """The part of a map that the user asks for."""
+    heights, part = cropped(where, scan.heights_nm, asked)
+    if min(heights.shape) < MIN_SIDE:
+        raise InputError(_too_small(where, heights.shape))
+    pixels = scan.pixel_nm
+    lengths = heights.shape[0] * pixels[0], heights.shape[1] * pixels[1]
+    ranges = ", ".join(f"{side.start}:{side.stop}" for side in part)
+    step = f"cut to the pixels {ranges} of {scan.heights_nm.shape[0]} x {scan.heights_nm.shape[1]}"
+    return replace(scan, heights_nm=np.ascontiguousarray(heights), lengths_nm=lengths, steps=(*scan.steps, step))
+
+
+def _too_small(where: str, shape: Sequence[int]) -> str:
+    return f"{where}: {shape[0]} x {shape[1]} pixels; at least {MIN_SIDE} a side"
 
 
 def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profile:
@@ -276,78 +461,18 @@ def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profi
         profile = profile_of(x_nm, z_nm, name)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
-    _check_plausible(where, profile.heights_nm, profile.length_nm)
+    _check_size(where, profile.length_nm)
+    _check_heights(where, profile.heights_nm)
     return profile
 
 
-def _no_reader(where: str, head: bytes, tried: str) -> str:
-    """Why no reader takes a file: the reason of one that its first bytes or its name mean."""
-    from SurfaceTopography.IO import MagicMatch, readers
-
-    said = dict(re.findall(r"tried (\w+): \n (.*\S)", tried))
-    suffix = Path(where).suffix.lower().lstrip(".")
-    meant = [reader for reader in readers if reader.can_read(head) == MagicMatch.YES]
-    meant += [reader for reader in readers if suffix in (reader.file_extensions() or ())]
-    reasons = (f" ({item.name()}: {said[item.__name__][:120]})" for item in meant if item.__name__ in said)
-    return (
-        f"{where}: no reader understands this file{next(reasons, '')}; accepted are the formats of SurfaceTopography "
-        "(gwy, ibw, di, jpk, mi, nid, ps tiff, ...; all 40: docs/topography.md, Formats)"
-    )
-
-
-def _height_channel(
-    path: Path, channels: list[Any], instrument: InstrumentSettings, channel: str | None
-) -> tuple[Any, tuple[str, ...]]:
-    """The height channel, and a note when there was a choice."""
-    wanted = instrument.channel or channel
-    # some readers call a phase a height, but then its unit is no length
-    lengths = [c for c in channels if c.is_height_channel and (c.unit is None or isinstance(c.unit, str))]
-    pixels = {id(c): int(np.prod(getattr(c, "nb_grid_pts", None) or 1)) for c in lengths}
-    most = max(pixels.values(), default=0) / 16  # of a thumbnail
-    heights = [c for c in lengths if not NO_HEIGHT.search(str(c.name)) and pixels[id(c)] > most]
-    names = list(dict.fromkeys(str(c.name) for c in heights))
-    listed = ", ".join(names[:MOST_NAMES]) or "none"
-    listed += f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    if wanted is not None:
-        heights = [c for c in heights if str(c.name) == wanted]
-        if not heights and wanted in (str(c.name) for c in channels):
-            raise InputError(f"{path}: channel {wanted!r} holds no heights; those that do (--channel): {listed}")
-        if not heights:
-            raise InputError(f"{path}: no height channel {wanted!r} (--channel, topography.channel); it has: {listed}")
-    elif len({DIRECTION.sub("", name).strip() for name in names}) > 1:
-        lacks, keys = _lacking(path.name, heights[0], instrument)
-        also = f"; they have no {lacks}: state them, too, in topography.instruments {keys}" if lacks else ""
-        raise InputError(f"{path}: several height channels: {listed}; name one in topography.channel (--channel){also}")
-    if not heights:
-        raise InputError(
-            f"{path}: no channel of heights in a unit of length (m, um, nm, Å); save the topography too, or calibrate "
-            "heights that are in V"
-        )
-    forward = next((c for c in heights if not BACKWARD.search(str(c.name))), heights[0])
-    others = len(heights) - 1
-    return forward, (f"took {forward.name}, one of {others + 1} channels of heights",) if others else ()
-
-
-def _nm(where: str, unit: str) -> float:
-    """Length of a unit in nm."""
-    from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor, mangle_length_unit_utf8
-
-    try:
-        return float(get_unit_conversion_factor(mangle_length_unit_utf8(unit), "nm"))
-    except ValueError:
-        raise InputError(f"{where}: unit {unit!r} is not a length; save heights and size in nm, um or m") from None
-
-
-def _column_units(head: bytes) -> tuple[float, float] | None:
-    """Factors to nm of the last two columns, position and height, by the heads of a text's columns; None without."""
-    from SurfaceTopography.Support.UnitConversion import find_length_unit_in_string
-
-    encoding = "utf-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8"
-    for line in head[: len(head) // 2 * 2].decode(encoding, errors="replace").splitlines():
-        units = [find_length_unit_in_string(column) for column in re.split(r"[,;\t]", line.strip())]
-        if len(units) >= 2 and units[-2] and units[-1]:
-            return _nm(line, units[-2]), _nm(line, units[-1])
-    return None
+def _column_factors(where: str, head: bytes) -> tuple[float, float] | None:
+    """Factors to nm of positions and heights, by the heads of the columns of a text in a container; None without."""
+    text = read_text(head)
+    if text is None or not 1 < text.width <= BROADEST_TABLE or not text.heads:
+        return None
+    across, up = columns_of(where, replace(text, odd=0), None).units
+    return (nm_of(where, across), nm_of(where, up)) if across and up else None
 
 
 def _stated_radius(where: str, info: Any) -> float | None:
@@ -356,7 +481,7 @@ def _stated_radius(where: str, info: Any) -> float | None:
         info = info.get(key) if isinstance(info, dict) else None
     if not isinstance(info, dict) or not isinstance(info.get("value"), (int, float)) or info["value"] <= 0:
         return None
-    return float(info["value"]) * _nm(f"{where}: tip_radius", str(info.get("unit")))
+    return float(info["value"]) * nm_of(f"{where}: tip_radius", str(info.get("unit")))
 
 
 def _points(x: Any, z: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -369,37 +494,48 @@ def _filled(values: Any) -> np.ndarray:
 
 def _check_sized(where: str, item: Any, instrument: InstrumentSettings) -> None:
     lacks, keys = _lacking(Path(where).name, item, instrument)
-    if "size" in lacks:
+    if "--size" in keys:
         raise InputError(
             f"{where}: has no {lacks}; state them in topography.instruments {keys}, or save it with both (.gwy)"
         )
 
 
+def _also(name: str, item: Any, instrument: InstrumentSettings) -> str:
+    """What a file leaves open besides its channel, in words for a message."""
+    lacks, keys = _lacking(name, item, instrument)
+    return f"; they have no {lacks}: state them, too, in topography.instruments {keys}" if lacks else ""
+
+
 def _lacking(name: str, item: Any, instrument: InstrumentSettings) -> tuple[str, str]:
     """What neither a file nor its user says of the size and unit of a map, and the keys and options to fill."""
     sizes = item.physical_sizes or instrument.size
-    sized = item.dim == 1 or (sizes is not None and all(np.isfinite(size) and size > 0 for size in sizes))
+    sized = sizes is not None and all(np.isfinite(size) and size > 0 for size in np.atleast_1d(sizes))
     named = item.unit or instrument.unit
+    size_words = ("physical size", "size: [1, 1]", "--size 1x1")
+    if item.dim == 1:
+        size_words = ("length", "size: [1]", "--size 1")
     asked = [
         words
-        for words, stated in (
-            (("physical size", "size: [1, 1]", "--size 1x1"), sized),
-            (("length unit", "unit: um", "--unit um"), named),
-        )
+        for words, stated in ((size_words, sized), (("length unit", "unit: um", "--unit um"), named))
         if not stated
     ]
     lacks, keys, options = ([words[k] for words in asked] for k in range(3))
     return " and no ".join(lacks), f"({', '.join([f'files: {name!r}', *keys])}; {' '.join(options)})"
 
 
-def _check_plausible(where: str, heights_nm: np.ndarray, *lengths_nm: float) -> None:
-    """Refuse sizes and heights that no instrument measures."""
+def _check_size(where: str, *lengths_nm: float) -> None:
+    """Refuse sizes that no instrument measures."""
     low, high = FILE_NM
     if not all(low <= length <= high for length in lengths_nm):
         raise InputError(
             f"{where}: a size of {' x '.join(f'{length:.4g}' for length in lengths_nm)} nm; plausible is {low:g} .. "
             f"{high:g} nm, so its unit may be mistaken: save it again with the size in nm or um (.gwy)"
         )
+
+
+def _check_heights(where: str, heights_nm: np.ndarray) -> None:
+    """Refuse heights that no surface has."""
+    high = FILE_NM[1]
     if not np.isfinite(heights_nm).any():
         raise InputError(f"{where}: no pixel has a height; measure again")
     largest = float(np.nanmax(np.abs(heights_nm - np.nanmedian(heights_nm))))  # some instruments count from far away
@@ -410,38 +546,21 @@ def _check_plausible(where: str, heights_nm: np.ndarray, *lengths_nm: float) -> 
         )
 
 
-def _tried(where: str, read: Callable[[], Any], head: bytes = b"") -> Any:
+def _tried(where: str, read: Callable[[], Any], file: Path | None = None, head: bytes = b"") -> Any:
     """What a reader gives; readers of foreign formats fail in many ways."""
     from SurfaceTopography.IO import CannotDetectFileFormat
 
     try:
         return read()
     except CannotDetectFileFormat as error:
-        raise InputError(_no_reader(where, head, str(error))) from None
+        file = file or Path(where)
+        raise InputError(why_not_read(file, head, str(error)).replace(str(file), where, 1)) from None
     except Exception as error:
-        raise InputError(f"{where}: heights cannot be read ({_first_line(error)}); is the file complete?") from None
-
-
-def _first_line(error: Exception) -> str:
-    return (str(error).strip().splitlines() or [type(error).__name__])[0][:120]
+        raise InputError(f"{where}: heights cannot be read ({first_line(error)}); is the file complete?") from None
 
 
 def write_gwy(path: str | Path, scan: Scan) -> None:
     """Write heights to a Gwyddion file, in metres as Gwyddion wants them; missing pixels as its mask."""
-    with needs("scans"):
-        from gwyfile.objects import GwyContainer, GwyDataField
-
     metre = 1e-9
     x, y = (length * metre for length in scan.lengths_nm)
-
-    def field(values: np.ndarray, unit: str) -> GwyDataField:
-        rows = np.ascontiguousarray(values.T)  # Gwyddion stores scan lines as rows
-        return GwyDataField(rows, xreal=x, yreal=y, si_unit_xy="m", si_unit_z=unit)
-
-    missing = ~np.isfinite(scan.heights_nm)
-    content = GwyContainer()
-    content["/0/data/title"] = "Height"
-    content["/0/data"] = field(np.where(missing, 0.0, scan.heights_nm) * metre, "m")
-    if missing.any():
-        content["/0/mask"] = field(missing.astype(float), "")
-    content.tofile(str(path))
+    write_channels(path, {"Height": (scan.heights_nm * metre, "m")}, (x, y))

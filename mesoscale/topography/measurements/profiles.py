@@ -8,7 +8,8 @@ import numpy as np
 from mesoscale.checks import MAX_LENGTH_NM, MIN_LENGTH_NM, check_number, checked_array
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.measurements.cleaning import form_step
+from mesoscale.topography.measurements.cleaning import MAX_MISSING, form_step, stand_in_steps
+from mesoscale.topography.measurements.missing import without_stand_ins
 
 MIN_POINTS = 64
 THERE_AND_BACK = "measured there and back"
@@ -68,8 +69,10 @@ def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> P
     count = len(positions_nm)
     if not MIN_POINTS <= count <= MAX_POINTS:
         raise InputError(f"{name}: a line of {count} points; accepted are {MIN_POINTS} .. {MAX_POINTS}")
+    heights_nm, notes = _without_missing(positions_nm, heights_nm)
     known = np.isfinite(positions_nm) & np.isfinite(heights_nm)
-    x, z, notes = _from_above(positions_nm[known], heights_nm[known])
+    x, z, done = _from_above(positions_nm[known], heights_nm[known])
+    notes = (*notes, *done)
     if len(x) < MIN_POINTS or x[-1] <= x[0]:
         raise InputError(f"{name}: {len(x)} points with a position and a height; at least {MIN_POINTS} are needed")
     gaps = np.diff(x)
@@ -87,6 +90,24 @@ def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> P
     heights = np.interp(x[0] + step * np.arange(len(x)), x, z)
     note = f"read at even steps of {step:.3g} nm between {len(x)} uneven points"
     return Profile(heights, len(x) * step, name, resampled=True, steps=(*notes, note))
+
+
+def _without_missing(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Heights whose few missing points are filled from their neighbours along the line, and this in words.
+
+    Numbers that stand for missing points are told. Where more are missing, they stay NaN, and so do those at the ends.
+    """
+    z, found = without_stand_ins(z)
+    steps = stand_in_steps(found, len(z))
+    missing = ~np.isfinite(z)
+    forth = np.diff(x)
+    in_order = bool(np.isfinite(x).all() and (forth > 0).all())
+    if not missing.any() or not in_order or missing.mean() > MAX_MISSING:
+        return z, steps
+    first, last = np.flatnonzero(~missing)[[0, -1]]
+    inside = missing & (np.arange(len(z)) > first) & (np.arange(len(z)) < last)
+    z = np.where(inside, np.interp(x, x[~missing], z[~missing]), z)
+    return z, (*steps, f"filled {int(inside.sum())} missing points from their neighbours")
 
 
 def _from_above(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:

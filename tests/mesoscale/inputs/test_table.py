@@ -218,6 +218,10 @@ def test_mistakes_in_a_row(row, message):
 def test_mistakes_across_rows():
     with pytest.raises(InputError, match="unknown input hardness"):
         InputsSettings(correlations={"rms": {"hardness": 0.3}})
+    with pytest.raises(InputError, match="e_star with h_macro is stated twice; leave one of them out"):
+        InputsSettings(correlations={"e_star": {"h_macro": 0.5}, "h_macro": {"e_star": -0.5}})
+    with pytest.raises(InputError, match="rms with q0 = 1; accepted is more than -1 and less than 1"):
+        InputsSettings(correlations={"rms": {"q0": 1.0}})
     with pytest.raises(InputError, match="q0: origin elastic"):
         InputsSettings(q0=InputRow(origin="elastic"))
 

@@ -124,4 +124,8 @@ def test_what_is_no_archive_is_refused(tmp_path):
     refused(path, "cannot be read")
     with zipfile.ZipFile(tmp_path / "b.zip", "w") as archive:
         archive.writestr("notes.txt", "hello")
-    refused(tmp_path / "b.zip", "neither 'index.json' nor 'meta.yml'")
+    refused(tmp_path / "b.zip", "no reader understands this file")  # notes.txt, the only file in it
+    with zipfile.ZipFile(tmp_path / "c.zip", "w") as archive:
+        archive.writestr("notes.txt", "hello")
+        archive.writestr("more.txt", "hello")
+    refused(tmp_path / "c.zip", r"neither a container of contact\.engineering nor one file alone, it holds notes\.txt")

@@ -10,8 +10,9 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
+from mesoscale.topography.measurements.channels import height_channel
 from mesoscale.topography.measurements.cleaning import Scan, clean
-from mesoscale.topography.measurements.loading import _height_channel, load_measurements, write_gwy
+from mesoscale.topography.measurements.loading import load_measurements, write_gwy
 
 IN_NM = TopographySettings(instruments=(InstrumentSettings(files="*", unit="nm"),))
 AFM = Path(__file__).resolve().parents[5] / "shared" / "afm"
@@ -135,9 +136,9 @@ def test_of_hundreds_of_channels_some_are_listed():
         for k in range(300)
     ]
     with pytest.raises(InputError, match=r"Height 9 and 290 more; name one") as error:
-        _height_channel(Path("a.gwy"), channels, InstrumentSettings(files="*"), None)
+        height_channel("a.gwy", channels, "gwy", None, lambda item: "")
     assert len(str(error.value)) < 250
-    assert _height_channel(Path("a.gwy"), channels, InstrumentSettings(files="*"), "Height 299")[0] is channels[299]
+    assert height_channel("a.gwy", channels, "gwy", "Height 299", lambda item: "")[0] is channels[299]
 
 
 @pytest.mark.parametrize(
@@ -188,8 +189,8 @@ def test_cleaning_leaves_a_smooth_creased_scan_alone():
 
 def test_too_many_holes_are_refused():
     heights = np.random.default_rng(0).standard_normal((64, 64))
-    heights[:, :10] = np.nan
-    with pytest.raises(InputError, match=r"15\.6% of the pixels are missing"):
+    heights[:10, :] = np.nan
+    with pytest.raises(InputError, match=r"15\.6% of the pixels are missing.* \(--crop;"):
         clean(Scan(heights, (1.0, 1.0), "holes"), TopographySettings())
 
 
@@ -240,6 +241,7 @@ def _line_of_three():
 def test_a_reader_that_fails_after_opening_is_one_line(tmp_path, monkeypatch, read):
     class Reader:
         channels = property(lambda self: read())
+        format = staticmethod(lambda: "top")
 
     path = tmp_path / "cut.top"
     path.write_bytes(b"x" * 100)
