@@ -22,6 +22,7 @@ from atomistic.hardness.contact_area import Area, contact_area
 from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import make_glass
 from atomistic.hardness.pressing import lammps_seed, plan_closing, prepare_body, press_body
+from atomistic.hardness.readout import PressedCell
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
 from atomistic.hardness.stack import base_of
 from atomistic.lammps import Atoms, LammpsFolder, load_averages, load_dump
@@ -129,12 +130,18 @@ def pressed_layers(
     aside, place = LammpsFolder(work / "anneal", {}, "anneal.in"), (1, 0)
     annealed = prepare_body(run, slab.atoms, slab.formula, slab.force, closing, protocol, aside, place)
     workspace = LammpsFolder(work / "pressed", {}, "closing.in")
-    cell, _ = press_body(
-        run, annealed, slab.force, closing, protocol, plan, (1, 9), workspace, lambda cell, segments: False
-    )
     low, high = (run.energy_scale * stress for stress in STRESS_GPA)
+
+    def pressed_enough(cell: PressedCell, segments: int) -> bool:
+        """Stiff slabs would be crushed on the whole travel."""
+        force = load_averages(workspace / f"averages.{segments}")[-1, 2]
+        return force / cell.wavelength_A**2 * EV_PER_A3_IN_GPA > high
+
+    cell, reached = press_body(
+        run, annealed, slab.force, closing, protocol, plan, (1, 9), workspace, pressed_enough
+    )
     layers = []
-    for n in range(1, plan.segments + 1):
+    for n in range(1, reached.segments + 1):
         force = {int(row[0]): row[2] for row in load_averages(workspace / f"averages.{n}")}
         for step, near in load_dump(workspace / f"near.{n}"):
             if low < force.get(step, 0.0) / cell.wavelength_A**2 * EV_PER_A3_IN_GPA < high:
