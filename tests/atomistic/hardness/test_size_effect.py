@@ -106,7 +106,7 @@ def test_twins_are_compared_pair_by_pair():
 
 
 def test_intervals_of_twins_hold_the_truth_as_often_as_stated():
-    """Runs that scatter by 9 % about halved energies of half the hardness: 68 % of intervals hold 0.5."""
+    """Runs that scatter by 11 % about halved energies of half the hardness: 68 % of intervals hold 0.5."""
     rng = np.random.default_rng(5)
     held = 0
     for _ in range(400):

@@ -71,7 +71,7 @@ def _twin_notes(fit: dict[str, Any]) -> Iterator[str]:
         yield (
             f"With energies × {show(row['energy_scale'])} the hardness is {show(ratio['median'])} "
             f"[{show(ratio['low'])}, {show(ratio['high'])}] of that with full ones. The pairs of runs are "
-            f"{row['pairs']}; the 68 % interval is from the 9 % by which runs of one kind scatter."
+            f"{row['pairs']}; the 68 % interval is from the 11 % by which runs of one kind scatter."
         )
     for way, words in (("measured", "bounded by indentation"), ("scales", "as run, both alike")):
         if found := fit.get("hardness_GPa", {}).get(way):
