@@ -207,7 +207,8 @@ def _of_channels(
     if min(getattr(channel, "nb_grid_pts", None) or [MIN_SIDE]) < MIN_SIDE and channel.dim == 2:
         raise InputError(_too_small(where, channel.nb_grid_pts))
     given = _given(where, channel, instrument)
-    _check_sized(where, channel, instrument)
+    if channel.dim == 2 or getattr(channel, "is_uniform", False):  # uneven lines have positions instead
+        _check_sized(where, channel, instrument)
     topography = _tried(where, lambda: channel.topography(**given))
     _check_whole(where, text, topography, channels)
     marked = None
