@@ -2,8 +2,8 @@
 
 Honest maps are of twelve kinds: slopes of 2.2 to 5, with grains, steps of 8 bits, blunt tips, pixels that average,
 offsets of 1/f noise, a slow feedback, and surfaces stretched up to fivefold. Treated ones begin as one of these. Of a
-filter that is found, `restored` is C at the end of what is trusted, over C of the map before; `trusted` is that end over
-the Nyquist wave vector. Of missing points, `restored` is the RMS height over that of the whole map.
+filter that is found, `restored` is C at the end of what is trusted, over C of the map before; `trusted` is that end
+over the Nyquist wave vector. Of missing points, `restored` is the RMS height over that of the whole map.
 
 Gaussians below 0.8 pixels change less than pixels do. `points` are numbers that stand for missing points: spread, in
 patches or along lines. `dust` are honest maps with particles, pits and plateaus.
@@ -144,7 +144,7 @@ def _with_tip(blunt: float) -> Callable[[RoughSpectrum, int, float, Rng], Array]
     def seen(truth: RoughSpectrum, pixels: int, length: float, rng: Rng) -> Array:
         heights, step = surface_patch(truth, pixels, length, rng), length / pixels
         curvature = np.std(np.diff(heights, 2, axis=0)) / step**2
-        return dilate(heights, float(np.exp(rng.uniform(np.log(0.3), np.log(blunt)))) / curvature, step)
+        return dilate(heights, float(np.exp(rng.uniform(np.log(0.3), np.log(blunt))) / curvature), step)
 
     return seen
 
@@ -186,7 +186,7 @@ def dusty(heights: Array, rng: Rng) -> Array:
     x = np.arange(count)
     form = rng.integers(4)
     if form == 0:
-        return np.minimum(heights, np.quantile(heights, 0.995))
+        return np.asarray(np.minimum(heights, np.quantile(heights, 0.995)))
     changed = heights.copy()
     for _ in range(int(rng.integers(1, 30))):
         centre, wide = rng.uniform(0, count, 2), float(rng.uniform(2.0, 6.0))
@@ -209,7 +209,8 @@ def _enlarged(order: int) -> Callable[[Array, Rng], tuple[Array, float]]:
     def enlarge(heights: Array, rng: Rng) -> tuple[Array, float]:
         factor = float(rng.choice(FACTORS))
         part = int(len(heights) / factor)
-        return ndimage.zoom(heights[:part, :part], factor, order=order, mode="nearest"), factor
+        larger = ndimage.zoom(heights[:part, :part], factor, order=order, mode="nearest")
+        return np.asarray(larger), factor
 
     return enlarge
 

@@ -27,6 +27,7 @@ POWERS, WALL = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 40.0), 6.0  # from a Gaussi
 NEAR = 2.5  # times below its end a fall is compared with a straight one: a knee lies further away
 CREASED = 5.0  # -d ln C / d ln q of creases: a filter leaves less, all the way to the end
 SLOPES = (1.5, CREASED)  # of -d ln C / d ln q of roughness
+LEFT = 0.9  # of fourth differences over second ones: measured maps have 1.1 or more, Gaussians less than 0.5
 EQUAL = 0.02  # share of neighbours of equal height; medians leave 0.04 to 0.13
 MANY_LEVELS = 10.0  # steps of a digit that neighbours must differ by: else equal heights are chance
 MEDIAN_FALL = 4.1  # q_f times the side of a median's window, on made maps
@@ -69,13 +70,29 @@ def treatment_of(raw: Scan, cleaned: Scan, spectrum: Spectrum) -> Treatment | No
     spectrum : of `cleaned`.
     """
     step_nm = max(cleaned.pixel_nm)
-    found = [_fall(spectrum)]
+    found = [_fall(spectrum) if _is_smooth(cleaned.heights_nm) else None]
     if size := repeated_pixels(raw.heights_nm):
         q_f = MEDIAN_FALL / (size * step_nm)
         found.append(Treatment("median", q_f * np.log(1 / PASSED) ** 0.5, q_f))
     if period := rhythm(cleaned.heights_nm):
         found.append(Treatment("interpolated", LINEAR * np.pi / (period * step_nm)))
     return min(filter(None, found), key=lambda item: item.end, default=None)
+
+
+def _is_smooth(heights: np.ndarray) -> bool:
+    """Are most pixels smoother than their neighbourhood? Between tall particles a measured map is rough."""
+    return min(_roughness_left(heights), _roughness_left(heights.T)) < LEFT
+
+
+def _roughness_left(heights: np.ndarray) -> float:
+    """Fourth differences along the first axis over second ones, each by its median, where heights are not tall."""
+    second = heights[1:-1] - (heights[:-2] + heights[2:]) / 2
+    fourth = second[1:-1] - (second[:-2] + second[2:]) / 2
+    tall = np.abs(heights - np.median(heights))
+    usual = (tall < 4 * np.median(tall))[2:-2]
+    second, fourth = second[1:-1][usual], fourth[usual]
+    middle = float(np.median(np.abs(second - np.median(second))))
+    return float(np.median(np.abs(fourth - np.median(fourth)))) / middle if middle > 0 else np.inf
 
 
 def restored(spectrum: Spectrum, treated: Treatment, rms_nm: float) -> tuple[Spectrum, float]:
