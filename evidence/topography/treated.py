@@ -102,7 +102,7 @@ def lost_points(shape: tuple[int, ...], rng: Rng) -> Array:
     form = rng.integers(3)
     if form == 0:
         return rng.random(shape) < rng.uniform(0.002, 0.03)
-    for _ in range(int(rng.integers(2, 6))):
+    for _ in range(int(rng.integers(2, 5))):  # at most 5 % of the smallest map
         x, y = (int(rng.integers(0, side - 6)) for side in shape)
         if form == 1:
             lost[x : x + 5, y : y + 5] = True
