@@ -14,6 +14,12 @@ STUDIED = {  # what both studies of a stage read beside settings, and whether th
 }
 ALSO_READ = {  # by one study alone
     "accuracy/contact": PRESSED if "pad" in SCENE.tails else {},
+    "accuracy/elastic": {
+        "moduli": f"{RESULTS}/elastic/bulk_moduli.csv",
+        "reports": expand(f"{RESULTS}/elastic/structures/{{name}}.json", name=GLASSES),
+        "structures": expand(f"{RESULTS}/elastic/structures/{{name}}.xyz", name=GLASSES),
+        "scans": expand(f"{RESULTS}/elastic/scans/{{name}}.csv", name=GLASSES),
+    },
 }
 
 

@@ -12,6 +12,7 @@ from mesoscale.studies.driver import Progress, StudyRow, stability_rows
 from workflow.files.results import load_csv
 from workflow.run.contact_settings import contact_settings
 from workflow.run.pads import load_model, points_of_job
+from workflow.run.studies_of_atoms import accuracy_of_elastic, stability_of_elastic
 
 Study = Callable[[Any, Progress], Iterator[StudyRow]]
 """Takes Snakemake's job and the progress."""
@@ -44,4 +45,6 @@ def stability_of_contact(snakemake: Any, progress: Progress) -> Iterator[StudyRo
 STUDIES: dict[tuple[str, str], Study] = {
     ("accuracy", "contact"): accuracy_of_contact,
     ("stability", "contact"): stability_of_contact,
+    ("accuracy", "elastic"): accuracy_of_elastic,
+    ("stability", "elastic"): stability_of_elastic,
 }
