@@ -7,7 +7,7 @@ from typing import Any
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.settings import ContactSettings
-from mesoscale.studies import contact_accuracy, contact_stability
+from mesoscale.studies import contact_accuracy, contact_stability, pad_accuracy
 from mesoscale.studies.driver import Progress, StudyRow, stability_rows
 from workflow.files.results import load_csv
 from workflow.run.contact_settings import contact_settings
@@ -42,9 +42,17 @@ def stability_of_contact(snakemake: Any, progress: Progress) -> Iterator[StudyRo
     return stability_rows(contact_stability.hard_cases(*central_contact(snakemake)), progress)
 
 
+def accuracy_of_pad(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Of pads at central inputs, and of the number of points."""
+    points, pad = points_of_job(snakemake)
+    model = load_model([snakemake.input.model], points)
+    return pad_accuracy.accuracy_points(model, points.on_grid, pad.point_cells, progress)
+
+
 STUDIES: dict[tuple[str, str], Study] = {
     ("accuracy", "contact"): accuracy_of_contact,
     ("stability", "contact"): stability_of_contact,
     ("accuracy", "elastic"): accuracy_of_elastic,
     ("stability", "elastic"): stability_of_elastic,
+    ("accuracy", "pad"): accuracy_of_pad,
 }
