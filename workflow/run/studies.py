@@ -12,6 +12,7 @@ from mesoscale.settings import ContactSettings, TopographySettings, UncertaintyS
 from mesoscale.studies import (
     contact_accuracy,
     contact_stability,
+    pad_accuracy,
     topography_accuracy,
     topography_files,
     topography_stability,
@@ -107,6 +108,13 @@ def stability_of_uncertainty(_snakemake: Any, progress: Progress) -> Iterator[St
     return stability_rows(uncertainty_stability.hard_cases(), progress)
 
 
+def accuracy_of_pad(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Of pads at central inputs, and of the number of points."""
+    points, pad = points_of_job(snakemake)
+    model = load_model([snakemake.input.model], points)
+    return pad_accuracy.accuracy_points(model, points.on_grid, pad.point_cells, progress)
+
+
 STUDIES: dict[tuple[str, str], Study] = {
     ("accuracy", "topography"): accuracy_of_topography,
     ("stability", "topography"): stability_of_topography,
@@ -114,4 +122,5 @@ STUDIES: dict[tuple[str, str], Study] = {
     ("stability", "contact"): stability_of_contact,
     ("accuracy", "uncertainty"): accuracy_of_uncertainty,
     ("stability", "uncertainty"): stability_of_uncertainty,
+    ("accuracy", "pad"): accuracy_of_pad,
 }
