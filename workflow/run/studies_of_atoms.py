@@ -86,3 +86,9 @@ def _for_driver(compute: Callable[[], Any]) -> Callable[[], Any]:
         return Errors(found.error, found.own_error, Cost(found.cpu_s, found.cpu_s, cost.peak_rss_MB))
 
     return computed
+
+
+STUDIES_OF_ATOMS = {
+    ("accuracy", "elastic"): accuracy_of_elastic,
+    ("stability", "elastic"): stability_of_elastic,
+}
