@@ -14,19 +14,15 @@ STUDIED = {  # what both studies of a stage read beside settings, and whether th
 }
 IN_VOLTS = PRESSED if "pad" in SCENE.tails else {}
 ALSO_READ = {  # by one study alone
-<<<<<<< HEAD
-    "accuracy/contact": PRESSED if "pad" in SCENE.tails else {},
     "accuracy/elastic": {
         "moduli": f"{RESULTS}/elastic/bulk_moduli.csv",
         "reports": expand(f"{RESULTS}/elastic/structures/{{name}}.json", name=GLASSES),
         "structures": expand(f"{RESULTS}/elastic/structures/{{name}}.xyz", name=GLASSES),
         "scans": expand(f"{RESULTS}/elastic/scans/{{name}}.csv", name=GLASSES),
     },
-=======
     "accuracy/topography": IN_VOLTS,
     "accuracy/contact": IN_VOLTS,
     "accuracy/uncertainty": {"direct": DIRECT, "parameters": f"{RESULTS}/law/parameters.csv"},
->>>>>>> main
 }
 
 
