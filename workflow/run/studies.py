@@ -7,7 +7,7 @@ from typing import Any
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.settings import ContactSettings
-from mesoscale.studies import contact_accuracy, contact_stability, pad_accuracy
+from mesoscale.studies import answer_accuracy, answer_stability, contact_accuracy, contact_stability, pad_accuracy
 from mesoscale.studies.driver import Progress, StudyRow, stability_rows
 from workflow.files.results import load_csv
 from workflow.run.contact_settings import contact_settings
@@ -48,8 +48,23 @@ def accuracy_of_pad(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
     return pad_accuracy.accuracy_points(model, points.on_grid, pad.point_cells, progress)
 
 
+def accuracy_of_answer(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Of the beam, on pads of the scene."""
+    points, _ = points_of_job(snakemake)
+    return answer_accuracy.accuracy_points(load_model([snakemake.input.model], points), progress)
+
+
+def stability_of_answer(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Hard beams, and the scene's device at its extremes."""
+    points, _ = points_of_job(snakemake)
+    central = load_model([snakemake.input.model], points).central
+    return stability_rows(answer_stability.hard_cases(points.device, central.pressed.law), progress)
+
+
 STUDIES: dict[tuple[str, str], Study] = {
     ("accuracy", "contact"): accuracy_of_contact,
     ("stability", "contact"): stability_of_contact,
     ("accuracy", "pad"): accuracy_of_pad,
+    ("accuracy", "answer"): accuracy_of_answer,
+    ("stability", "answer"): stability_of_answer,
 }
