@@ -77,7 +77,7 @@ def law_quantities(inputs: ContactInputs) -> list[Quantity]:
     return [Quantity(name, "% of RMS", percent_of_rms) if name in LENGTHS else Quantity(name, "%") for name in OUTPUTS]
 
 
-def releases_on_pads(point: Point, grid: PadGrid, cells: int, contact: ContactSettings, numerics: Numerics) -> Array:
+def releases_on_pads(grid: PadGrid, cells: int, point: Point, contact: ContactSettings, numerics: Numerics) -> Array:
     """Release of a point's switch on pads of different surfaces, V, shape (pads,), NaN where it has no answer.
 
     Parameters
