@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from mesoscale.studies import answer_accuracy, answer_stability, pad_accuracy
+from mesoscale.studies import answer_accuracy, answer_stability, pad_accuracy, pad_stability
 from mesoscale.studies.driver import Progress, StudyRow, stability_rows
 from workflow.run.pads import load_model, points_of_job
 
@@ -13,6 +13,13 @@ def accuracy_of_pad(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
     points, pad = points_of_job(snakemake)
     model = load_model([snakemake.input.model], points)
     return pad_accuracy.accuracy_points(model, points.on_grid, pad.point_cells, progress)
+
+
+def stability_of_pad(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Hard cells and pads around central inputs."""
+    points, _ = points_of_job(snakemake)
+    inputs, contact = points.by_number[0].contact_of(points.on_grid)
+    return stability_rows(pad_stability.hard_cases(inputs, contact), progress)
 
 
 def accuracy_of_answer(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
@@ -30,6 +37,7 @@ def stability_of_answer(snakemake: Any, progress: Progress) -> Iterator[StudyRow
 
 STUDIES_OF_SWITCH: dict[tuple[str, str], Callable[[Any, Progress], Iterator[StudyRow]]] = {
     ("accuracy", "pad"): accuracy_of_pad,
+    ("stability", "pad"): stability_of_pad,
     ("accuracy", "answer"): accuracy_of_answer,
     ("stability", "answer"): stability_of_answer,
 }
