@@ -12,7 +12,6 @@ from mesoscale.settings import ContactSettings, TopographySettings, UncertaintyS
 from mesoscale.studies import (
     contact_accuracy,
     contact_stability,
-    pad_accuracy,
     topography_accuracy,
     topography_files,
     topography_stability,
@@ -29,6 +28,7 @@ from workflow.run.contact_settings import contact_settings
 from workflow.run.job import settings_from_job
 from workflow.run.pads import load_model, points_of_job
 from workflow.run.studies_of_atoms import STUDIES_OF_ATOMS
+from workflow.run.studies_of_switch import STUDIES_OF_SWITCH
 
 Study = Callable[[Any, Progress], Iterator[StudyRow]]
 """Takes Snakemake's job and the progress."""
@@ -109,20 +109,13 @@ def stability_of_uncertainty(_snakemake: Any, progress: Progress) -> Iterator[St
     return stability_rows(uncertainty_stability.hard_cases(), progress)
 
 
-def accuracy_of_pad(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
-    """Of pads at central inputs, and of the number of points."""
-    points, pad = points_of_job(snakemake)
-    model = load_model([snakemake.input.model], points)
-    return pad_accuracy.accuracy_points(model, points.on_grid, pad.point_cells, progress)
-
-
 STUDIES: dict[tuple[str, str], Study] = {
     **STUDIES_OF_ATOMS,
+    **STUDIES_OF_SWITCH,
     ("accuracy", "topography"): accuracy_of_topography,
     ("stability", "topography"): stability_of_topography,
     ("accuracy", "contact"): accuracy_of_contact,
     ("stability", "contact"): stability_of_contact,
     ("accuracy", "uncertainty"): accuracy_of_uncertainty,
     ("stability", "uncertainty"): stability_of_uncertainty,
-    ("accuracy", "pad"): accuracy_of_pad,
 }
