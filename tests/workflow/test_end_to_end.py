@@ -1,9 +1,8 @@
 """Scene `ci`, real codes from melt to report: complete, reproducible, resumable.
 
 One run is left alone; a second is killed with SIGKILL once in each stage and resumed. Both must end with the
-same results. The second run does without the melts and closings of the hardness stage, on which nothing else of this
-scene depends: `test_ownership` and `test_closing` kill those. It takes over the quenched cell of the first run, and
-has no points, whose pads are as the central one.
+same results. The second run takes over the melts and closings of the hardness stage, which `test_ownership` and
+`test_closing` kill, and the quenched cell of the first run. It has no points, whose pads are as the central one.
 """
 
 import json
@@ -124,9 +123,9 @@ def test_a_deleted_stage_is_made_again_with_what_depends_on_it(finished):
 def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_workflow, tmp_path):
     workflow = make_workflow(tmp_path)
     scene = tmp_path / "killed.yaml"
-    scene.write_text("extends: ci\nname: killed\ncompute: [elastic, topography]\npad: {points: 0}\n")
-    quenched = "elastic/quenched"
-    shutil.copytree(finished.folder / "results/ci" / quenched, tmp_path / "results/killed" / quenched)
+    scene.write_text("extends: ci\nname: killed\npad: {points: 0}\n")
+    for taken_over in ("hardness", "elastic/quenched"):
+        shutil.copytree(finished.folder / "results/ci" / taken_over, tmp_path / "results/killed" / taken_over)
     (tmp_path / "results/killed/.scene").touch()  # as of a scene that has moved
     logs = tmp_path / "results/killed/logs"
     for job in STAGES.values():
