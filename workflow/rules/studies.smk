@@ -2,7 +2,14 @@
 
 OF_CELL = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"}
 STUDIED = {  # what both studies of a stage read beside settings, and whether the scene uses the stage
-    "hardness": ({"material": BODIES.material, "potential": BODIES.potential}, needed("hardness")),
+    "hardness": (
+        {
+            "material": BODIES.material,
+            "potential": BODIES.potential,
+            "glass": f"{RESULTS}/hardness/glass/{SCENE.hardness.seeds[0]}.data",
+        },
+        needed("hardness"),
+    ),
     "elastic": ({"material": MATERIAL}, needed("elastic")),
     "topography": ({}, needed("topography")),
     "contact": (OF_CELL, bool(SCENE.tails)),
