@@ -137,9 +137,7 @@ def pressed_layers(
         force = load_averages(workspace / f"averages.{segments}")[-1, 2]
         return force / cell.wavelength_A**2 * EV_PER_A3_IN_GPA > high
 
-    cell, reached = press_body(
-        run, annealed, slab.force, closing, protocol, plan, (1, 9), workspace, pressed_enough
-    )
+    cell, reached = press_body(run, annealed, slab.force, closing, protocol, plan, (1, 9), workspace, pressed_enough)
     layers = []
     for n in range(1, reached.segments + 1):
         force = {int(row[0]): row[2] for row in load_averages(workspace / f"averages.{n}")}

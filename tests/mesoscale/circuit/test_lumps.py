@@ -18,10 +18,10 @@ from mesoscale.device.plate import GPA, NM, VACUUM_PERMITTIVITY, plate_from_sett
 from mesoscale.errors import InputError
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
+from mesoscale.studies.answer_stability import made_up_law
 from tests.mesoscale.circuit.motion import capacitance_F, gas_flow, held_Pa, move, pull_Pa, rates
 from tests.mesoscale.circuit.simulators import by_ngspice, compile_for_ngspice, needs_ngspice, needs_openvaf
 from tests.mesoscale.circuit.test_tables import pad
-from tests.mesoscale.device.test_beam import made_up_law
 
 BEAM = DeviceSettings()
 SPRING = plate_from_settings(DeviceSettings(spring_N_per_m=10.0))
