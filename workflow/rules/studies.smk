@@ -32,7 +32,11 @@ ALSO_READ = {  # by one study alone
     },
     "accuracy/topography": IN_VOLTS,
     "accuracy/contact": IN_VOLTS,
-    "accuracy/uncertainty": {"direct": DIRECT, "parameters": f"{RESULTS}/law/parameters.csv"},
+    "accuracy/uncertainty": {
+        "direct": DIRECT,
+        "again": rules.uq.input.again,
+        "parameters": f"{RESULTS}/law/parameters.csv",
+    },
 }
 
 

@@ -79,10 +79,12 @@ def accuracy_of_uncertainty(snakemake: Any, progress: Progress) -> Iterator[Stud
     settings = settings_from_job(UncertaintySettings, snakemake.params.uncertainty)
     table = from_rows(load_csv(snakemake.input.inputs))
     contact = contact_settings(snakemake.params.contact, snakemake)
-    rows = (row for path in snakemake.input.direct for row in load_csv(path))
-    direct = direct_runs_of_rows(rows, table.names, settings.direct_runs)
+    direct, again = (
+        direct_runs_of_rows((row for path in paths for row in load_csv(path)), table.names, settings.direct_runs)
+        for paths in (snakemake.input.direct, snakemake.input.again)
+    )
     nodes = nodes_of_rows(load_csv(snakemake.input.parameters))
-    return uncertainty_accuracy.accuracy_points(direct, nodes, table, contact, settings, progress)
+    return uncertainty_accuracy.accuracy_points(direct, again[1], nodes, table, contact, settings, progress)
 
 
 def stability_of_uncertainty(_snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
