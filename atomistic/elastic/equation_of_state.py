@@ -11,10 +11,10 @@ Vinet (PRB 35, 1945 (1987)),
     E = E0 + (9 B0 V0/c²) { 1 − [1 − c(1−η)] e^{c(1−η)} },  c = 3(B′−1)/2,  η = (V/V0)^{1/3}.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from asperity.guards.errors import InputError
 from atomistic.constants import EV_PER_A3_IN_GPA
@@ -55,7 +55,7 @@ def vinet(volume, V0, E0, B, B_prime):
     return E0 + 9 * B * V0 / c**2 * (1 - (1 - c * (1 - eta)) * np.exp(c * (1 - eta)))
 
 
-def fit_equation_of_state(volumes_A3: Sequence[float], energies_eV: Sequence[float]) -> EquationOfState:
+def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> EquationOfState:
     """Fit E(V) of one structure.
 
     Parameters

@@ -79,6 +79,14 @@ def shortest_wave(settings: ContactSettings) -> float:
     return min(settings.q1_per_nm or math.inf, settings.nyquist_per_nm)
 
 
+def shared_wave(settings: ContactSettings) -> float:
+    """Largest wave vector that finer grids show alike, 1/nm: as `shortest_wave`, but for waves of just two pixels.
+
+    Of these a grid holds no phase, so that they are others on a finer grid.
+    """
+    return min(shortest_wave(settings), settings.nyquist_per_nm * (1.0 - 1e-6))
+
+
 def given_surface(
     heights: np.ndarray | None, length_nm: float | None, contact_at: ContactAt | None, settings: ContactSettings
 ) -> tuple[np.ndarray | None, ContactSettings]:

@@ -54,18 +54,25 @@ class BeamStates:
     capacitance_fF: float
 
 
-def solve_beam(settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.elements) -> BeamStates:
+def solve_beam(
+    settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.elements, opening_nm: float = OPENING_NM
+) -> BeamStates:
     """Close the beam on a pad, hold it, and open it.
+
+    Parameters
+    ----------
+    elements : of the beam.
+    opening_nm : largest step of a place in contact on the way out.
 
     Raises
     ------
     NotComputed : the beam presses harder than the pad was computed for.
     InputError : the beam never lands, is not held, or is no beam.
     """
-    return solve_bent(beam_of(settings, elements), settings, law)
+    return solve_bent(beam_of(settings, elements), settings, law, opening_nm)
 
 
-def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw) -> BeamStates:
+def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw, opening_nm: float = OPENING_NM) -> BeamStates:
     """As `solve_beam`, of any beam."""
     moving = _Moving(beam, LocalPad(law), settings)
     pull_in = moving.snap_V()
@@ -80,7 +87,7 @@ def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw) -> BeamStates:
             "hold_voltage_V or dimple_nm, or lower stopper_nm, gap_um, bow_nm or tilt_nm"
         )
     capacitance = moving.capacitance_F()
-    return BeamStates(pull_in, hold, moving.open(hold), share, capacitance * 1e15)
+    return BeamStates(pull_in, hold, moving.open(hold, opening_nm), share, capacitance * 1e15)
 
 
 def free_pull_in_V(settings: DeviceSettings, elements: int = 64) -> float:
@@ -162,17 +169,20 @@ class _Moving:
         self.edge_per_nm = settings.fringe / (1e3 * settings.width_um)
         self.nodal = np.zeros((beam.elements + 1, 2))
         self.deepest = np.full(beam.rest_m.shape, np.inf)
-        self.touch_nm = self.contact_nm = 0.0
+        self.touch_nm = self.contact_nm = self.landed_GPa = 0.0
         if pad is None:
             return
         law = pad.law
-        touching = law.closing[0] > SWITCH.contact_GPa
+        self.landed_GPa = SWITCH.landed * beam.spring_Pa / GPA
+        touching = law.closing[0] > self.landed_GPa
         if not touching.any():
             raise NotComputed(
                 f"device: the pad carries {law.closing[0].max() * 1e3:.3g} MPa at {law.separation_nm[0]:.4g} nm, where "
                 "its curves end; raise pad.cells, whose first ones say how far they are closed"
             )
-        self.touch_nm = float(law.separation_nm[law.closing[0] > 0].max())
+        # the curve is of straight pieces: it repels up to the first separation at which it does not
+        last = int(np.flatnonzero(law.closing[0] > 0)[-1])
+        self.touch_nm = float(law.separation_nm[min(last + 1, law.separation_nm.size - 1)])
         self.contact_nm = float(law.separation_nm[touching].max())
 
     @property
@@ -202,7 +212,7 @@ class _Moving:
         """Electrostatic pull of 1 V."""
         s = self.separation_nm()
         pressure, slope, nowhere = np.zeros_like(s), np.zeros_like(s), np.ones_like(s)
-        add_loads(s, pressure, slope, self.electric(1.0), (self.beam.wired, nowhere, 0.0, 0.0))
+        add_loads(s, pressure, slope, self.electric(1.0), (self.beam.wired, nowhere, 0.0, 0.0, 0.0))
         return pressure * GPA
 
     def pressure_GPa(self) -> Array:
@@ -211,7 +221,7 @@ class _Moving:
 
     def landed_share(self) -> float:
         """Share of the contact part that is pushed."""
-        pushed = self.pressure_GPa() > SWITCH.contact_GPa
+        pushed = self.pressure_GPa() > self.landed_GPa
         return float((pushed * self.beam.weights_m).sum() / self.beam.contact_m)
 
     def capacitance_F(self) -> float:
@@ -291,6 +301,7 @@ class _Moving:
             self.beam.places,
             self.local.tables,
             self.electric(voltage**2),
+            self.beam.spring_Pa,
             self.contact_nm,
             min(self.touch_nm, free),
             free,
@@ -307,7 +318,7 @@ class _Moving:
             raise InputError(f"device: the beam finds no balance at {voltage:.4g} V; this is a fault of the solver")
         return ended == SETTLED
 
-    def open(self, hold_V: float) -> float:
+    def open(self, hold_V: float, opening_nm: float) -> float:
         """Lower the voltage until the beam lets go; the release voltage (0: stuck).
 
         The voltage is halved in the longer steps of closing until it opens. These may tear off a little more than they
@@ -327,7 +338,7 @@ class _Moving:
         low = None
         while low is None or high - low > SWITCH.release_tolerance * high:
             voltage = lower(high) if low is None else 0.5 * (low + high)
-            if self.creep(voltage, OPENING_NM):
+            if self.creep(voltage, opening_nm):
                 high, held = voltage, [self.nodal.copy(), self.deepest.copy()]
                 if voltage == 0.0:
                     return 0.0

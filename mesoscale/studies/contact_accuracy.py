@@ -14,6 +14,7 @@ import numpy as np
 from mesoscale.contact.cycle import Cycle, run_cycle
 from mesoscale.contact.energy import dissipated_energy, pull_off
 from mesoscale.contact.numerics import NUMERICS, Numerics
+from mesoscale.contact.surface import shared_wave
 from mesoscale.device.electrode import release_or_nan_V
 from mesoscale.device.points import Pad, Point
 from mesoscale.inputs.contact import ContactInputs
@@ -76,7 +77,7 @@ def law_quantities(inputs: ContactInputs) -> list[Quantity]:
     return [Quantity(name, "% of RMS", percent_of_rms) if name in LENGTHS else Quantity(name, "%") for name in OUTPUTS]
 
 
-def releases_on_pads(point: Point, grid: PadGrid, cells: int, contact: ContactSettings, numerics: Numerics) -> Array:
+def releases_on_pads(grid: PadGrid, cells: int, point: Point, contact: ContactSettings, numerics: Numerics) -> Array:
     """Release of a point's switch on pads of different surfaces, V, shape (pads,), NaN where it has no answer.
 
     Parameters
@@ -134,7 +135,7 @@ def _knobs(
 
 def _grids(settings: ContactSettings) -> Iterator[ContactSettings]:
     """Grids from a quarter of the scene's pixels on that resolve its cut-off, else the Nyquist limit of its grid."""
-    cutoff = settings.q1_per_nm or settings.nyquist_per_nm
+    cutoff = shared_wave(settings)
     # coupled cycles cost twenty times as much on twice the sites a side
     finer = (2, 4) if settings.mechanics == "asperity" and settings.pixels <= 1024 else (2,)
     for factor in (0.25, 0.5, 1, *finer):

@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from mesoscale.contact.numerics import NUMERICS
-from mesoscale.contact.surface import shortest_wave
+from mesoscale.contact.surface import shared_wave
 from mesoscale.device.electrode import release_or_nan_V
 from mesoscale.device.numerics import SWITCH
 from mesoscale.device.points import Point, press_pad, surfaces_of
@@ -31,7 +31,7 @@ def of_contact(inputs: ContactInputs, settings: ContactSettings) -> Iterator[Stu
     The finer grid shows the same surface. It is left out where attraction deforms the contact: there it takes minutes.
     """
     outputs = partial(cycle_outputs, inputs)
-    waves = settings.model_copy(update={"q1_per_nm": shortest_wave(settings)})
+    waves = settings.model_copy(update={"q1_per_nm": shared_wave(settings)})
     usual = outputs(waves, NUMERICS)
     finer_path = replace(NUMERICS, force_steps=4 * NUMERICS.force_steps)
     compared = [(FORCE_STEPS, NUMERICS.force_steps, "four times as many", (waves, finer_path))]
@@ -67,7 +67,7 @@ def of_switch(point: Point, contact: ContactSettings, cells: int, central: PadLa
         return Knob(name, [RELEASE], [Choice(value, lambda: _sample(in_use))], value, words, lambda: _sample(finer))
 
     half = contact.model_copy(update={"pixels": contact.pixels // 2})
-    half = half.model_copy(update={"q1_per_nm": shortest_wave(half)})
+    half = half.model_copy(update={"q1_per_nm": shared_wave(half)})
     smooth = contact.model_copy(update={"q1_per_nm": half.q1_per_nm})
     usual_step = min(PAD.step_rms * point.values["rms"], PAD.longest_step_nm)
     knobs = [

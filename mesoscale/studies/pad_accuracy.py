@@ -1,136 +1,249 @@
 """Error of the release on a pad against run time, one numerical choice at a time.
 
-Cells, steps, depths and grid are judged by the release on a pad of the same surfaces that is pressed again for each;
-the number of points by the quantiles of the release over all points.
+Cells, steps, depths and sites are judged by the release at central inputs on pads of several surfaces, which are the
+same for all values of a choice. The number of points is judged by the quantiles of the release over all points.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mesoscale.device.electrode import release_or_nan_V
-from mesoscale.device.points import PadModel, Point, on_pad_grid, press_pad
-from mesoscale.device.release import ENDS
-from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.memory import PadLaw
+from mesoscale.contact.surface import shared_wave, shortest_wave
+from mesoscale.device.electrode import presser, release_or_nan_V
+from mesoscale.device.known import ENDS
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.points import PadModel, Point, solve_point, surfaces_of
+from mesoscale.device.pressing import pressing, pressure_to_compute
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.pad.cells import Cell, PadGrid, plan_grid, sample_cells
+from mesoscale.pad.curves import press_cells
+from mesoscale.pad.memory import flats_of, law_of
 from mesoscale.pad.numerics import PAD
-from mesoscale.settings import ContactSettings, DeviceSettings
-from mesoscale.studies.driver import Array, Knob, Progress, StudyRow, Try, compared, rows_of, timed
+from mesoscale.settings import ContactSettings
+from mesoscale.studies.driver import (
+    RELEASE,
+    Array,
+    Choice,
+    Cost,
+    Errors,
+    Knob,
+    Progress,
+    Quantity,
+    StudyRow,
+    rows_of,
+    timed,
+)
 
-
-@dataclass(frozen=True)
-class Tried:
-    """What is tried.
-
-    Attributes
-    ----------
-    cells : of a pad, beside twice as many as the most.
-    others : pads of other surfaces, of each number of cells and on each grid.
-    sides : finer grids, so many times the pads' sites a side.
-    elements : of a beam, beside twice as many as the most.
-    """
-
-    cells: tuple[int, ...] = (4, 8, 16, 32)
-    others: int = 4
-    sides: tuple[int, ...] = (2, 4)
-    elements: tuple[int, ...] = (16, 32, 64, 128, 256)
+PADS = 4
+"""Pads of different surfaces on which a choice is tried."""
+CELL_PADS = 6
+"""The same for the number of cells: its error is chance, which few pads do not tell."""
+FIRST_PAD = 200_000
+"""Number of the first of these pads, beyond those of the points of an answer and of a failure rate."""
+STEPS, DEPTHS, SITES = "steps of separation, nm", "depths", "sites of the shortest wave"
+CELLS, POINTS = "cells of a point's pad", "points"
+RESAMPLES = 400
+GROUPS = 8
+"""Groups of points that are left out one at a time, for the error of a quantile's error."""
 
 
 def accuracy_points(
-    model: PadModel,
-    table: InputTable,
-    contact: ContactSettings,
-    cells: int,
-    progress: Progress | None = None,
-    tried: Tried | None = None,
+    model: PadModel, contact: ContactSettings, cells: int, progress: Progress | None = None
 ) -> Iterator[StudyRow]:
-    """Rows of accuracy/pad.csv.
+    """Rows of accuracy/pad.csv without the stage.
 
     Parameters
     ----------
-    contact : of the scene.
+    contact : on the grid of the pads.
     cells : of the pad of a point.
 
     Raises
     ------
     InputError : the pad at central inputs cannot be pressed.
     """
-    tried, central, coarse = tried or Tried(), model.central, on_pad_grid(contact, table)
-    press_pad(central.point, coarse, 2, PAD.first_seed)  # compiles
+    point = model.central.point
+    pads = _pads(point, contact, cells, PADS)
+    solve_point(point, contact, 2, surfaces_of(FIRST_PAD))  # compiles, so that no value pays for it
     knobs = [
-        *_pressed_again(central.point, coarse, cells, tried),
-        *_points(model, coarse, cells),
-        *_beam(central.pressed.law, central.point.device, tried.elements),
+        _cells(model, contact, cells),
+        _steps(pads, point.values["rms"]),
+        _depths(pads),
+        *_sites(point, contact, cells),
+        *_points(model, contact, cells),
     ]
     yield from rows_of(knobs, progress)
 
 
-def _pressed_again(point: Point, contact: ContactSettings, cells: int, tried: Tried) -> Iterator[Knob]:
-    """Cells, steps, depths and sites of a pad."""
+@dataclass(frozen=True)
+class SamplePad:
+    """A pad that is pressed again and again, with one numerical choice changed at a time."""
 
-    def release(cells: int = cells, on: ContactSettings = contact, seed: int = PAD.first_seed, **choices: Any) -> float:
-        return release_or_nan_V(point.device, press_pad(point, on, cells, seed, **choices).law)
+    point: Point
+    inputs: ContactInputs
+    settings: ContactSettings
+    cells: Sequence[Cell]
 
-    def releases(first: int, **choices: Any) -> Array:
-        return np.array(
-            [release(seed=PAD.first_seed + k * 10_000, **choices) for k in range(first, first + tried.others)]
-        )
+    def grid(self, depths: int = PAD.depths) -> PadGrid:
+        """Its separations, opened from so many depths."""
+        device = pressing(self.point.device)
+        wanted = pressure_to_compute(device)
+        return plan_grid(self.inputs, self.settings, self.cells, wanted, presser(device), depths=depths)
 
-    def rms(tried: Array, wanted: Array) -> float:
-        return float(np.sqrt(np.nanmean((tried - wanted) ** 2)))
+    def release_V(self, grid: PadGrid, settings: ContactSettings | None = None) -> float:
+        """Release of the point's switch on it (V); NaN where it has no answer."""
+        settings = settings or self.settings
+        pressed = press_cells(self.inputs, settings, grid, self.cells)
+        law = law_of(pressed, flats_of(self.inputs, settings))
+        # elements of the beam are another choice: half as many cost half, and move all values alike
+        return release_or_nan_V(self.point.device, law, SWITCH.coarse_elements)
 
-    most, others = 2 * tried.cells[-1], tried.others
-    fewer = [(count, partial(releases, 1, cells=count)) for count in tried.cells]
-    nearest = compared(lambda: np.array(release(cells=most)), fewer, rms, others)
-    yield Knob("cells", f"RMS deviation over {others} pads, V", f"{most} cells", nearest)
 
-    step = min(PAD.step_rms * point.values["rms"], PAD.longest_step_nm)
-    steps = [(step * times, partial(release, step_nm=step * times)) for times in (4.0, 2.0, 1.0)]
-    finest = compared(partial(release, step_nm=0.5 * step), steps)
-    yield Knob("steps of separation, nm", "deviation, V", f"steps of {0.5 * step:.2g} nm", finest)
+def _pads(point: Point, contact: ContactSettings, cells: int, count: int) -> list[SamplePad]:
+    """So many pads of a point, each of other surfaces."""
+    inputs, settings = point.contact_of(contact)
+    on_pad = point.device.pad_um2 * 1e6 / settings.length_nm**2
+    seeds = [surfaces_of(FIRST_PAD + number) for number in range(count)]
+    return [SamplePad(point, inputs, settings, sample_cells(inputs, cells, seed, on_pad)) for seed in seeds]
 
-    depths = [(count, partial(release, depths=count)) for count in (2, PAD.depths // 2, PAD.depths, 2 * PAD.depths)]
-    yield Knob("depths", "deviation, V", "32 depths", compared(partial(release, depths=32), depths))
 
-    # the same seeds draw other surfaces on a finer grid: the difference of pads counts beside their scatter
-    *coarser, finest_grid = (
-        (finer.pixels, partial(releases, 0, on=finer))
-        for times in (1, *tried.sides)
-        if (finer := contact.model_copy(update={"pixels": contact.pixels * times}))
-    )
-    means = compared(finest_grid[1], coarser, lambda some, wanted: abs(some.mean() - wanted.mean()), others)
-    yield Knob("sites a side", f"deviation of the mean of {others} pads, V", f"{finest_grid[0]} sites", means)
+def _releases(pads: Sequence[SamplePad], grids: Sequence[PadGrid], settings: ContactSettings | None = None) -> Array:
+    """Releases on pads, each at its separations, shape (pads, 1)."""
+    return np.array([[pad.release_V(grid, settings)] for pad, grid in zip(pads, grids, strict=True)])
+
+
+def _cells(model: PadModel, contact: ContactSettings, cells: int) -> Knob:
+    """Fewer or more cells, beside a pad of many."""
+    point = model.central.point
+    counts = sorted({max(cells // 2, 2), cells, 2 * cells})
+
+    def releases(count: int, pads: int) -> Array:
+        sampled = _pads(point, contact, count, pads)
+        return _releases(sampled, [pad.grid() for pad in sampled])
+
+    known = model.central.pressed.cells.count
+    many = max(2 * counts[-1], known)
+
+    def best() -> Array:
+        if many > known:
+            return releases(many, 1)
+        law = model.central.pressed.law
+        return np.array([[release_or_nan_V(point.device, law, SWITCH.coarse_elements)]])
+
+    choices = [Choice(count, partial(releases, count, CELL_PADS)) for count in counts]
+    return Knob(CELLS, [RELEASE], choices, cells, f"a pad of {many} cells", best, f"{CELL_PADS} pads")
+
+
+def _steps(pads: Sequence[SamplePad], rms_nm: float) -> Knob:
+    """Longer steps, beside half of that in use, at separations from which the pads are opened in any case."""
+    step = min(PAD.step_rms * rms_nm, PAD.longest_step_nm)
+    grids = [pad.grid() for pad in pads]
+
+    def releases(merged: int) -> Array:
+        return _releases(pads, [thinned(grid, merged) for grid in grids])
+
+    def best() -> Array:
+        return _releases(pads, [halved(grid) for grid in grids])
+
+    choices = [Choice(merged * step, partial(releases, merged)) for merged in (4, 2, 1)]
+    return Knob(STEPS, [RELEASE], choices, step, f"steps of {0.5 * step:.3g} nm", best, f"{PADS} pads")
+
+
+def thinned(grid: PadGrid, merged: int) -> PadGrid:
+    """A grid with so many steps as one; its ends and depths stay."""
+    last = grid.separation_nm.size - 1
+    kept = np.unique(np.concatenate([np.arange(0, last, merged), [last], grid.depths]))
+    return PadGrid(grid.separation_nm[kept], np.searchsorted(kept, grid.depths))
+
+
+def halved(grid: PadGrid) -> PadGrid:
+    """A grid with two steps for each."""
+    nearest = grid.separation_nm
+    both = np.empty(2 * nearest.size - 1)
+    both[::2] = nearest
+    both[1::2] = 0.5 * (nearest[1:] + nearest[:-1])
+    return PadGrid(both, 2 * grid.depths)
+
+
+def _depths(pads: Sequence[SamplePad]) -> Knob:
+    """Fewer or more depths from which the pads are opened, at loads in even ratios."""
+    most = 4 * (PAD.depths - 1) + 1  # holds the depths in use, those between them, and those between these
+    grids = [pad.grid(most) for pad in pads]
+
+    def releases(count: int) -> Array:
+        return _releases(pads, [opened_from(grid, count) for grid in grids])
+
+    counts = (2, PAD.depths // 2, PAD.depths, 2 * PAD.depths - 1)
+    choices = [Choice(count, partial(releases, count)) for count in counts]
+    best = partial(releases, most)
+    return Knob(DEPTHS, [RELEASE], choices, PAD.depths, f"{most} depths", best, f"{PADS} pads")
+
+
+def opened_from(grid: PadGrid, count: int) -> PadGrid:
+    """A grid with so many of its depths, the first and the last among them."""
+    chosen = np.linspace(0.0, grid.depths.size - 1.0, count).round().astype(int)
+    return PadGrid(grid.separation_nm, grid.depths[np.unique(chosen)])
+
+
+def _sites(point: Point, contact: ContactSettings, cells: int) -> Iterator[Knob]:
+    """Sites for a wave, on surfaces without the shortest waves: half of the sites then hold what is left.
+
+    All grids show these same surfaces. Twice as many sites a side take eight times as long, and twenty times where
+    asperities are coupled: these are not tried on more than the scene has.
+    """
+    half = contact.pixels // 2
+    if contact.pixels % 2 or half < 32:
+        return
+    on_half = contact.model_copy(update={"pixels": half})
+    # of the point: its inputs may hold a cut-off
+    waves = shortest_wave(point.contact_of(contact)[1])
+    cutoff = min(0.5 * waves, shared_wave(on_half))
+    sides = [half, 2 * half]
+    if contact.mechanics == "asperity":
+        sides.append(4 * half)
+    pads = [with_waves(pad, cutoff) for pad in _pads(point, contact, cells, PADS)]
+    on_sides = [pads[0].settings.model_copy(update={"pixels": side}) for side in sides]
+    finest = [SamplePad(pad.point, pad.inputs, on_sides[-1], pad.cells) for pad in pads]
+    grids = [pad.grid() for pad in finest]
+    sites = [round(2.0 * settings.nyquist_per_nm / cutoff, 3) for settings in on_sides]
+    *tried, best = [partial(_releases, pads, grids, settings) for settings in on_sides]
+    choices = [Choice(count, compute) for count, compute in zip(sites, tried, strict=False)]
+    words = f"{sites[-1]:.3g} sites, waves up to {cutoff:.3g} 1/nm"
+    yield Knob(SITES, [RELEASE], choices, sites[0], words, best, f"{PADS} pads")
+
+
+def with_waves(pad: SamplePad, cutoff_per_nm: float) -> SamplePad:
+    """The pad without the waves beyond a cut-off."""
+    settings = pad.settings.model_copy(update={"q1_per_nm": cutoff_per_nm})
+    return SamplePad(pad.point, pad.inputs, settings, pad.cells)
 
 
 def _points(model: PadModel, contact: ContactSettings, cells: int) -> Iterator[Knob]:
-    """Fewer points: quantiles of the release by random ones of them."""
+    """Fewer or more points: standard errors of quantiles of the release, by drawing so many of the solved points."""
     release = model.states("release_V") if model.points else np.empty(0)
-    if release.size < 4:
+    if release.size < 2 * GROUPS:
         return
-    resamples = 200
+    point = model.points[int(model.solved[0])].point
+    _, cost = timed(partial(solve_point, point, contact, cells, surfaces_of(1)))
 
-    def tries() -> Iterator[Try]:
-        rng, wanted = np.random.default_rng(0), np.quantile(release, ENDS)
-        _, cost = timed(partial(press_pad, model.points[int(model.solved[0])].point, contact, cells, PAD.first_seed))
-        count = 16
-        while count <= release.size // 2:
-            picks = rng.permuted(np.tile(release, (resamples, 1)), axis=1)[:, :count]
-            errors = np.sqrt(np.mean((np.quantile(picks, ENDS, axis=1).T - wanted) ** 2, axis=0))
-            yield Try(count, errors, count * cost)
-            count *= 2
+    def errors(count: int) -> Errors:
+        groups = np.arange(release.size) % GROUPS
+        without = [quantile_errors(release[groups != group], count) for group in range(GROUPS)]
+        spread = np.std(without, axis=0) * np.sqrt(GROUPS - 1)
+        of_count = Cost(count * cost.wall_s, count * cost.cpu_s, cost.peak_rss_MB)
+        return Errors(quantile_errors(release, count), spread, of_count)
 
-    cases = [f"{end:.0%} quantile of the release" for end in ENDS]
-    yield Knob("points", f"RMS deviation of {resamples} choices, V", f"{release.size} points", tries(), cases)
+    quantities = [Quantity(f"{end:.0%} quantile of the release", "V", volts=1.0) for end in ENDS]
+    counts = [round(factor * release.size) for factor in (0.25, 0.5, 1, 2, 4)]
+    choices = [Choice(count, partial(errors, count)) for count in counts]
+    words = f"quantiles of all {release.size} solved points"
+    yield Knob(POINTS, quantities, choices, release.size, words, samples=f"{RESAMPLES} draws of them")
 
 
-def _beam(law: PadLaw, device: DeviceSettings, elements: tuple[int, ...]) -> Iterator[Knob]:
-    """Elements of the bending electrode."""
-    if not device.bends:
-        return
-    finest = 2 * elements[-1]
-    tries = [(count, partial(release_or_nan_V, device, law, count)) for count in elements]
-    compare = compared(partial(release_or_nan_V, device, law, finest), tries)
-    yield Knob("elements of the beam", "deviation, V", f"{finest} elements", compare)
+def quantile_errors(values: NDArray[np.float64], count: int) -> Array:
+    """Standard errors of the quantiles `ENDS` of so many values that are drawn from those given."""
+    rng = np.random.default_rng(np.random.SeedSequence([0, 0xB007]))
+    picks = rng.integers(values.size, size=(RESAMPLES, count))
+    return np.quantile(values[picks], ENDS, axis=1).std(axis=1)

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from asperity.guards.bundle import ROOT
+from workflow.run.studies import STUDIES
 
 HARDNESS = {"make_glass", "run_closing", "hardness"}
 ELASTIC = {"make_amorphous", "scan_glass", "elastic"}
@@ -154,8 +155,14 @@ def test_studies_of_a_scene_leave_out_the_stages_it_does_not_use(plan):
 
 
 def test_studies_of_a_scene_cover_every_stage_it_uses(said):
-    """Accuracy of topography and pad; stability of the contact."""
-    assert re.search(r"^study +3 ", said("ci", "accuracy", "stability"), re.MULTILINE)
+    """Hardness, elastic, topography, contact, uncertainty, pad, answer and circuit, each in both."""
+    assert re.search(r"^study +16 ", said("ci", "accuracy", "stability"), re.MULTILINE)
+
+
+def test_every_study_that_a_rule_promises_exists():
+    rules = (ROOT / "workflow/rules/studies.smk").read_text(encoding="utf-8")
+    stages = re.findall(r'^    "(\w+)": \(', rules, re.MULTILINE)
+    assert set(STUDIES) == {(kind, stage) for kind in ("accuracy", "stability") for stage in stages}
 
 
 def test_every_file_that_a_scene_makes_is_asked_for_so_that_a_lost_one_is_made_again(make_workflow, tmp_path):

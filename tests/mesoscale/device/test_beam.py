@@ -11,24 +11,11 @@ from mesoscale.device.beam_switch import free_pull_in_V, solve_beam
 from mesoscale.device.plate import VACUUM_PERMITTIVITY, beam_stiffness_N_per_m
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.local import LocalPad
-from mesoscale.pad.memory import Flats, PadLaw
+from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
+from mesoscale.studies.answer_stability import made_up_law
 
 DEFAULT = DeviceSettings(gap_um=2.3)
-DEPTHS = (16.0, 18.0, 20.0, 22.0, 24.0, 26.0, 28.0, 30.0, 32.0)
-
-
-def made_up_law(adhesion_kPa=0.0):
-    """Closing 7 MPa at 24 nm, e-fold 2 nm; opening loses contact 4 nm above the depth, with a well 1 nm wide there."""
-    s = np.arange(15.0, 80.0, 0.05)
-    closing = np.stack([7e-3 * np.exp((24.0 - s) / 2.0) * (s < 40.0), np.full(s.size, -1e-12)])
-    opening = np.full((len(DEPTHS), 2, s.size), np.nan)
-    for k, depth in enumerate(DEPTHS):
-        above = s >= depth - 1e-9
-        risen = s[above] - depth
-        opening[k, 0, above] = 7e-3 * np.exp((24.0 - depth) / 2.0) * np.maximum(1.0 - risen / 4.0, 0.0)
-        opening[k, 1, above] = -1e-12 - adhesion_kPa * 1e-6 * np.exp(-((risen - 5.0) ** 2) / 0.5)
-    return PadLaw(s, closing, np.array(DEPTHS), opening, Flats(1e-6, 0.0))
 
 
 def deflection_of(settings, pressure_Pa):

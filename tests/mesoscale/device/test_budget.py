@@ -12,7 +12,7 @@ from mesoscale.device.points import Point, Solved
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.definitions import BY_NAME
-from tests.mesoscale.device.test_beam import made_up_law
+from mesoscale.studies.answer_stability import made_up_law
 
 SHIPPED = load_mapping(Path(__file__).parents[3] / "config" / "effects.yaml", "table of effects")
 ROW = {"how": "condition", "about": "10 °C more", "held": False, "settle": "heat it", "source": "a paper", "volts": 1.0}

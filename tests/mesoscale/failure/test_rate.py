@@ -22,7 +22,7 @@ from mesoscale.failure.rate import (
 )
 from mesoscale.pad.memory import attracting
 from mesoscale.settings import DeviceSettings, FailureSettings
-from tests.mesoscale.device.test_beam import made_up_law
+from mesoscale.studies.answer_stability import made_up_law
 
 BEAM = DeviceSettings(hold_voltage_V=80.0)
 PLATE = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)

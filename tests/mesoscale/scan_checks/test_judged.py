@@ -8,12 +8,12 @@ import pytest
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.scan_checks.judged import Described, _predicted, judge
 from mesoscale.settings import ContactSettings, TopographySettings
+from mesoscale.studies.topography_stability import trusted_scan
 from mesoscale.topography.description.one_spectrum import merge
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.height_synthesis import synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
-from tests.mesoscale.topography.hard_scans import trusted_scan
 from tests.mesoscale.topography.test_height_synthesis import SKEWED
 
 INPUTS = ContactInputs(hamaker=0.2, e_star=91, h_macro=2, h_prime=8, q0=0.05, hurst=0.5, rms=4)

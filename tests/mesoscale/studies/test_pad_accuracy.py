@@ -2,11 +2,28 @@
 
 import numpy as np
 import pytest
+from scipy.special import ndtri
 
-from mesoscale.device.points import PadModel, central_point, plan_points, solve_point, solve_points
+from mesoscale.contact.surface import random_surface, shared_wave
+from mesoscale.device.points import PadModel, central_point, plan_points, solve_point, solve_points, surfaces_of
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
+from mesoscale.pad.cells import PadGrid
+from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings, DeviceSettings
-from mesoscale.studies.pad_accuracy import Tried, accuracy_points
+from mesoscale.studies.pad_accuracy import (
+    CELLS,
+    DEPTHS,
+    POINTS,
+    SITES,
+    STEPS,
+    SamplePad,
+    accuracy_points,
+    halved,
+    opened_from,
+    quantile_errors,
+    thinned,
+    with_waves,
+)
 
 FIXED = {"e_star": 91.0, "h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75}
 RANGES = {"hamaker": (0.2, 0.23), "rms": (7.5, 9.5)}
@@ -18,36 +35,69 @@ TABLE = InputTable(
     np.eye(len(DISTRIBUTIONS)),
 )
 CONTACT = ContactSettings(mechanics="asperity", pixels=64)
-DEVICE = DeviceSettings()
+POINT = central_point(TABLE, CONTACT, DeviceSettings())
 
 
 @pytest.fixture(scope="module")
 def rows():
-    """The table, whose cells, grids and beams are few here."""
-    central = solve_point(central_point(TABLE, CONTACT, DEVICE), CONTACT, 8, 1000)
-    design = plan_points(TABLE, CONTACT, DEVICE, 32)
-    numbered = list(enumerate(design.points, 1))[:1]
-    (one,) = solve_points(numbered, CONTACT, 2)
-    model = PadModel(central, design, (one,) * 32)
-    tried = Tried(cells=(2, 4), others=2, sides=(2,), elements=(16, 32, 64, 128))
-    return list(accuracy_points(model, TABLE, CONTACT, 2, tried=tried))
+    """The table, for pads of two cells."""
+    central = solve_point(POINT, CONTACT, 8, surfaces_of(0))
+    design = plan_points(TABLE, CONTACT, DeviceSettings(), 32)
+    solved = solve_points(list(enumerate(design.points[:1], 1)), CONTACT, 2)
+    return list(accuracy_points(PadModel(central, design, tuple(solved) * 32), CONTACT, 2))
 
 
-def test_every_choice_has_errors_and_times(rows):
-    knobs = {row["knob"] for row in rows}
-    of_pad = {"cells", "steps of separation, nm", "depths", "sites a side", "points", "elements of the beam"}
-    assert knobs == of_pad
-    assert all(np.isfinite(row["cpu_s"]) and np.isfinite(row["error"]) for row in rows)
+def test_every_choice_has_errors_with_their_own_and_the_value_in_use(rows):
+    assert {row["knob"] for row in rows} == {CELLS, STEPS, DEPTHS, SITES, POINTS}
+    assert {row["unit"] for row in rows} == {"V"}
+    for row in rows:
+        assert np.isfinite([row["error"], row["own_error"], row["cpu_s"]]).all()
+        assert row["release_V"] == row["error"]
+    in_use = {row["knob"]: row["value"] for row in rows if row["shipped"]}
+    step = min(PAD.step_rms * POINT.values["rms"], PAD.longest_step_nm)
+    assert in_use == {CELLS: 2, STEPS: step, DEPTHS: PAD.depths, SITES: 2.0, POINTS: 32}
 
 
-def test_errors_fall_towards_the_finest(rows):
-    errors = [row["error"] for row in rows if row["knob"] == "elements of the beam"]
-    # towards 256 elements by some power
-    assert errors[-1] <= errors[0] + 1e-9
-    assert errors[-1] < 0.2
+def test_the_depths_converge(rows):
+    few, *_, most = [row["error"] for row in rows if row["knob"] == DEPTHS]
+    assert most < 0.5 * few
 
 
 def test_more_cells_take_more_time(rows):
-    cells = [row for row in rows if row["knob"] == "cells"]
+    cells = [row for row in rows if row["knob"] == CELLS]
     assert [row["value"] for row in cells] == [2, 4]
     assert cells[0]["cpu_s"] < cells[1]["cpu_s"]
+
+
+def test_finer_grids_show_the_same_surface():
+    inputs, settings = POINT.contact_of(CONTACT)
+    coarse = settings.model_copy(update={"pixels": 32})
+    pad = with_waves(SamplePad(POINT, inputs, settings, []), shared_wave(coarse))
+    heights = {
+        side: random_surface(inputs, pad.settings.model_copy(update={"pixels": side}), 7) for side in (32, 64, 128)
+    }
+    for side in (64, 128):
+        every = side // 32
+        np.testing.assert_allclose(heights[side][::every, ::every], heights[32], atol=1e-9)
+
+
+def test_other_steps_keep_what_pads_are_opened_from():
+    grid = PadGrid(np.array([30.0, 29.0, 27.0, 26.0, 24.0, 23.0, 22.5, 21.0]), np.array([3, 4, 7]))
+    finer = halved(grid)
+    coarser = thinned(grid, 4)
+    np.testing.assert_array_equal(finer.depth_nm, grid.depth_nm)
+    np.testing.assert_array_equal(coarser.depth_nm, grid.depth_nm)
+    np.testing.assert_array_equal(finer.separation_nm[::2], grid.separation_nm)
+    np.testing.assert_array_equal(coarser.separation_nm, [30.0, 26.0, 24.0, 21.0])
+    np.testing.assert_array_equal(opened_from(grid, 2).depth_nm, [26.0, 21.0])
+
+
+def test_errors_of_quantiles_are_those_of_a_normal_sample():
+    """Of the median sqrt(pi / 2) / sqrt(n), and of the 5 and 95 % quantiles sqrt(0.05 0.95) / density / sqrt(n)."""
+    values = ndtri((np.arange(20_000) + 0.5) / 20_000)
+    low, middle, high = quantile_errors(values, 400) * np.sqrt(400)
+    density = np.exp(-0.5 * 1.6449**2) / np.sqrt(2.0 * np.pi)
+    # 400 draws know a deviation to 3.5 %; here is three times that
+    assert middle == pytest.approx(np.sqrt(0.5 * np.pi), rel=0.11)
+    assert low == pytest.approx(np.sqrt(0.05 * 0.95) / density, rel=0.11)
+    assert high == pytest.approx(np.sqrt(0.05 * 0.95) / density, rel=0.11)

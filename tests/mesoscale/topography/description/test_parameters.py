@@ -8,6 +8,7 @@ import pytest
 from scipy.special import beta, betainc
 
 from mesoscale.settings import TopographySettings
+from mesoscale.studies.topography_stability import trusted_scan
 from mesoscale.topography.description import likelihood
 from mesoscale.topography.description.inputs import rms_scatter_row, rows_of
 from mesoscale.topography.description.parameters import MAX_MISFIT, analyse
@@ -16,7 +17,6 @@ from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, mean_square, slope_from_hurst
 from mesoscale.topography.spectrum import Spectrum
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
-from tests.mesoscale.topography.hard_scans import trusted_scan
 
 TRUTH = ScanSet(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from mesoscale.settings import TopographySettings
+from mesoscale.studies.topography_stability import trusted_scan
 from mesoscale.topography.description import surfaces
 from mesoscale.topography.description.overlaps import overlaps
 from mesoscale.topography.description.surfaces import best_cut, by_chance, several_surfaces
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
 from tests.mesoscale.topography.description.test_one_spectrum import measured
-from tests.mesoscale.topography.hard_scans import trusted_scan
 
 
 def doubts_of(spectra, files=None):

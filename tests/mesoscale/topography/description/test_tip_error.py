@@ -3,11 +3,11 @@
 import numpy as np
 
 from mesoscale.settings import TopographySettings
+from mesoscale.studies.topography_stability import trusted_scan
 from mesoscale.topography.description.one_spectrum import merge
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.description.tip import spectrum_with_radius_error, with_radius_error
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
-from tests.mesoscale.topography.hard_scans import trusted_scan
 
 
 def test_a_radius_told_too_large_leaves_the_truth_inside():

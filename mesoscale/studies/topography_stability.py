@@ -1,13 +1,15 @@
-"""Hard cases for the topography stage: each must recover known truth or say that it cannot."""
+"""Hard cases of the topography stage: each recovers known truth, doubts or refuses (target `stability`)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
+from mesoscale.studies.driver import HardCase
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, trusted_map
 from mesoscale.topography.measurements.cleaning import Scan, clean
@@ -164,6 +166,21 @@ CASES = (
     Case("H above 1", "slope 4.6, as grainy films have", lambda: _alone(_rough(4.6, 0.05)), "doubts", "H ="),
     Case("H below 0", "slope 0.8", lambda: _alone(_rough(0.8, 0.05)), "doubts"),
 )
+
+
+def hard_cases(settings: TopographySettings) -> list[HardCase]:
+    """The scans with their judges; the analysis has the scene's settings, the scans are the same in all scenes."""
+    return [
+        HardCase(case.name, case.description, _must(case.expected, case.word), partial(check, case, settings))
+        for case in CASES
+    ]
+
+
+def _must(expected: str, word: str) -> str:
+    """What an answer must be, in words."""
+    if expected == "recovers":
+        return "q0, slope and RMS height are recovered"
+    return f"{expected}: {word}" if word else expected
 
 
 def check(case: Case, settings: TopographySettings) -> tuple[bool, str]:

@@ -1,4 +1,4 @@
-"""Hard cases as files: measurements of every kind, and files that must be refused in one line."""
+"""Hard cases of the topography stage as files: read right, or refused in one line (target `stability`)."""
 
 import json
 import tempfile
@@ -12,6 +12,7 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
+from mesoscale.studies.driver import HardCase
 from mesoscale.topography.description.overlaps import overlaps, refuse_different_films
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import load_measurements, write_gwy
@@ -137,6 +138,19 @@ FILE_CASES = (
     FileCase("level", "a line without heights", partial(_changed, change=_level), "all heights are equal"),
     FileCase("short", "a line of 20 points", partial(_changed, change=lambda line: line[:20]), "a line of 20 points"),
 )
+
+
+def hard_cases() -> list[HardCase]:
+    """The files with their judges; each is written to a temporary folder."""
+    return [
+        HardCase(
+            f"file: {case.name}",
+            case.description,
+            f"refused: {case.word}" if case.word else "the RMS height is recovered",
+            partial(check_files, case),
+        )
+        for case in FILE_CASES
+    ]
 
 
 def check_files(case: FileCase) -> tuple[bool, str]:

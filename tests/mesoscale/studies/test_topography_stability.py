@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from mesoscale.settings import TopographySettings
-from tests.mesoscale.topography.hard_files import FILE_CASES, check_files
-from tests.mesoscale.topography.hard_scans import CASES, TRUTH, check
+from mesoscale.studies.topography_files import FILE_CASES, check_files
+from mesoscale.studies.topography_stability import CASES, TRUTH, check
 
 BY_NAME = {case.name: case for case in CASES}
 

@@ -1,0 +1,63 @@
+"""Error of a release against run time by the choices of the beam, on pads that the scene has pressed."""
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+
+import numpy as np
+
+from mesoscale.device.beam_kernels import OPENING_NM
+from mesoscale.device.beam_switch import solve_beam
+from mesoscale.device.electrode import with_pad
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.points import PadModel, Solved
+from mesoscale.errors import InputError
+from mesoscale.studies.driver import RELEASE, Array, Choice, Knob, Progress, Quantity, StudyRow, rows_of
+
+SWITCHES = 5
+"""Switches that are solved with each choice."""
+ELEMENTS, STEPS = "elements of the beam", "steps of opening, nm"
+QUANTITIES = (RELEASE, Quantity("pull-in", "V"))
+
+
+def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterator[StudyRow]:
+    """Rows of accuracy/answer.csv without the stage; none of a plate on a spring, which has no such choices."""
+    if not model.central.point.device.bends:
+        return
+    switches = samples_of(model)
+    solve = partial(states, switches)
+    solve(SWITCH.coarse_elements)  # compiles, so that no value pays for it
+
+    def knob(name: str, shipped: float, values: Sequence[float], best: float, compute: Callable[..., Array]) -> Knob:
+        choices = [Choice(value, partial(compute, value)) for value in values]
+        samples = f"{len(switches)} switches of the scene"
+        return Knob(name, QUANTITIES, choices, shipped, f"{name}: {best:g}", partial(compute, best), samples)
+
+    elements = [round(factor * SWITCH.elements) for factor in (0.125, 0.25, 0.5, 1, 2)]
+    steps = [factor * OPENING_NM for factor in (4, 2, 1, 0.5)]
+    knobs = [
+        knob(ELEMENTS, SWITCH.elements, elements, 4 * SWITCH.elements, solve),
+        knob(STEPS, OPENING_NM, steps, OPENING_NM / 4, partial(solve, SWITCH.elements)),
+    ]
+    yield from rows_of(knobs, progress)
+
+
+def samples_of(model: PadModel) -> list[Solved]:
+    """The central switch and some of the solved points, of all parts of the design."""
+    solved = model.solved
+    count = min(SWITCHES - 1, solved.size)
+    chosen = solved[np.linspace(0, solved.size - 1, count).round().astype(int)] if count else []
+    points = [model.points[k] for k in chosen]
+    return [switch for switch in (model.central, *points) if switch.pad is not None]
+
+
+def states(switches: Sequence[Solved], elements: int, opening_nm: float = OPENING_NM) -> Array:
+    """Release and pull-in (V) of switches, shape (switches, 2); NaN where one has no answer."""
+    found = np.full((len(switches), 2), np.nan)
+    for row, switch in zip(found, switches, strict=True):
+        device = switch.point.device
+        try:
+            beam, _ = with_pad(lambda law, of=device: solve_beam(of, law, elements, opening_nm), switch.pressed.law)
+        except InputError:
+            continue
+        row[:] = beam.release_V, beam.pull_in_V
+    return found

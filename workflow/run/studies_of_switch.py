@@ -1,0 +1,43 @@
+"""The studies of pad, answer, circuit and failure: rows of their tables of accuracy and stability."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from mesoscale.studies import answer_accuracy, answer_stability, pad_accuracy, pad_stability
+from mesoscale.studies.driver import Progress, StudyRow, stability_rows
+from workflow.run.pads import load_model, points_of_job
+
+
+def accuracy_of_pad(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Of pads at central inputs, and of the number of points."""
+    points, pad = points_of_job(snakemake)
+    model = load_model([snakemake.input.model], points)
+    return pad_accuracy.accuracy_points(model, points.on_grid, pad.point_cells, progress)
+
+
+def stability_of_pad(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Hard cells and pads around central inputs."""
+    points, _ = points_of_job(snakemake)
+    inputs, contact = points.by_number[0].contact_of(points.on_grid)
+    return stability_rows(pad_stability.hard_cases(inputs, contact), progress)
+
+
+def accuracy_of_answer(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Of the beam, on pads of the scene."""
+    points, _ = points_of_job(snakemake)
+    return answer_accuracy.accuracy_points(load_model([snakemake.input.model], points), progress)
+
+
+def stability_of_answer(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Hard beams, and the scene's device at its extremes."""
+    points, _ = points_of_job(snakemake)
+    central = load_model([snakemake.input.model], points).central
+    return stability_rows(answer_stability.hard_cases(points.device, central.pressed.law), progress)
+
+
+STUDIES_OF_SWITCH: dict[tuple[str, str], Callable[[Any, Progress], Iterator[StudyRow]]] = {
+    ("accuracy", "pad"): accuracy_of_pad,
+    ("stability", "pad"): stability_of_pad,
+    ("accuracy", "answer"): accuracy_of_answer,
+    ("stability", "answer"): stability_of_answer,
+}
