@@ -70,13 +70,13 @@ def treatment_of(raw: Scan, cleaned: Scan, spectrum: Spectrum) -> Treatment | No
     spectrum : of `cleaned`.
     """
     step_nm = max(cleaned.pixel_nm)
-    found = [_fall(spectrum) if _is_smooth(cleaned.heights_nm) else None]
+    signs = [_fall(spectrum) if _is_smooth(cleaned.heights_nm) else None]
     if size := repeated_pixels(raw.heights_nm):
         q_f = MEDIAN_FALL / (size * step_nm)
-        found.append(Treatment("median", q_f * np.log(1 / PASSED) ** 0.5, q_f))
+        signs.append(Treatment("median", q_f * np.log(1 / PASSED) ** 0.5, q_f))
     if period := rhythm(cleaned.heights_nm):
-        found.append(Treatment("interpolated", LINEAR * np.pi / (period * step_nm)))
-    return min(filter(None, found), key=lambda item: item.end, default=None)
+        signs.append(Treatment("interpolated", LINEAR * np.pi / (period * step_nm)))
+    return min(filter(None, signs), key=lambda item: item.end, default=None)
 
 
 def _is_smooth(heights: np.ndarray) -> bool:
@@ -181,8 +181,10 @@ def repeated_pixels(heights: np.ndarray) -> int:
     values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
     if len(values) < 1000:
         return 0
-    own = np.where(heights == values[np.argmax(counts)], np.nan, heights)  # a plateau at the end of a range is none
-    return min(_repeats(own), _repeats(own.T))
+    differing = np.where(
+        heights == values[np.argmax(counts)], np.nan, heights
+    )  # a plateau at the end of a range is none
+    return min(_repeats(differing), _repeats(differing.T))
 
 
 def _repeats(heights: np.ndarray) -> int:
@@ -210,9 +212,9 @@ def rhythm(heights: np.ndarray) -> float:
 
     A map that was enlarged less than twofold has the period of another, enlarged more: the larger distance counts.
     """
-    found = [_period(heights), _period(heights.T)]
-    powers = [power for power, _ in found]
-    frequencies = [frequency for _, frequency in found]
+    periods = [_period(heights), _period(heights.T)]
+    powers = [power for power, _ in periods]
+    frequencies = [frequency for _, frequency in periods]
     same = abs(frequencies[0] - frequencies[1]) < 1.5 / min(heights.shape)
     if same and min(powers) > RHYTHM:
         return 1 / min(frequencies)
@@ -225,11 +227,11 @@ def _period(heights: np.ndarray) -> tuple[float, float]:
     """Power over that of others, and frequency (1/pixel), of the rhythm of roughness along the first axis."""
     bends = heights[1:-1] - (heights[:-2] + heights[2:]) / 2
     common = np.mean(bends, axis=1)
-    own = np.var(bends, axis=1)
-    if own.sum() == 0 or np.sum(common**2) > PATTERN * own.sum():
+    roughness = np.var(bends, axis=1)
+    if roughness.sum() == 0 or np.sum(common**2) > PATTERN * roughness.sum():
         return 0.0, 0.0
-    count = len(own)
-    wave = np.abs(np.fft.rfft((own / own.mean() - 1) * np.hanning(count))) ** 2
+    count = len(roughness)
+    wave = np.abs(np.fft.rfft((roughness / roughness.mean() - 1) * np.hanning(count))) ** 2
     frequency = np.arange(len(wave)) / count
     short = frequency > 1 / LONGEST_PERIOD
     first = int(np.argmax(np.where(short, wave, 0.0)))

@@ -73,21 +73,21 @@ class Scan:
         return float(np.nanstd(self.heights_nm))
 
 
-def stand_in_steps(found: Sequence[StandIn], points: int) -> tuple[str, ...]:
+def stand_in_steps(stand_ins: Sequence[StandIn], points: int) -> tuple[str, ...]:
     """In words which numbers were taken for missing points, and the share of `points` that had them."""
     return tuple(
         f"{STAND_INS} {item.count / points:.2%} of the points ({item.count}), which lie "
         f"{'exactly at' if item.exact else 'far from all others, about'} {item.value_nm:.6g} nm"
-        for item in found
+        for item in stand_ins
     )
 
 
 def without_missing(scan: Scan) -> Scan:
     """A scan whose missing points are NaN: numbers that stand for them are found and told."""
-    heights, found = without_stand_ins(scan.heights_nm)
-    if not found:
+    heights, stand_ins = without_stand_ins(scan.heights_nm)
+    if not stand_ins:
         return scan
-    steps = stand_in_steps(found, heights.size)
+    steps = stand_in_steps(stand_ins, heights.size)
     return replace(scan, heights_nm=heights, steps=(*scan.steps, *steps))
 
 

@@ -47,7 +47,7 @@ def lowpass(heights):
 def enlarged(order, factor):
     def enlarge(heights):
         part = int(PIXELS / factor)
-        return ndimage.zoom(heights[:part, :part], factor, order=order, mode="nearest")
+        return np.asarray(ndimage.zoom(heights[:part, :part], factor, order=order, mode="nearest"))
 
     return enlarge
 
@@ -99,6 +99,7 @@ def test_what_a_gaussian_took_is_put_back_where_the_map_is_trusted(honest):
         clean(Scan(z, (SIDE, SIDE), "map"), SETTINGS) for z in (honest, ndimage.gaussian_filter(honest, sigma))
     )
     treated = found(ndimage.gaussian_filter(honest, sigma))
+    assert treated is not None
     assert treated.fall_q == pytest.approx(1 / (sigma * STEP), rel=0.1)
     spectrum, rms_nm = restored(hann_spectrum(after), treated, after.rms_nm)
     true = hann_spectrum(before)
