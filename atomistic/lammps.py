@@ -74,6 +74,10 @@ def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
     """Read a LAMMPS data file as `write_data` or the LAMMPS command `write_data ... nocoeff` makes it.
 
     Atoms come back in the order of their ids, wrapped into a cell that starts at 0.
+
+    Raises
+    ------
+    InputError : cut off, or no data file.
     """
     sections: dict[str, list[list[str]]] = {"": []}
     title = ""
@@ -84,16 +88,21 @@ def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
             sections[title] = []
         elif fields:
             sections[title].append(fields)
-    low, high = np.array(
-        [[float(fields[0]), float(fields[1])] for fields in sections[""] if fields[-1] in ("xhi", "yhi", "zhi")]
-    ).T
-    table = np.array([[float(value) for value in fields[:5]] for fields in sections["Atoms"]])
-    order = np.argsort(table[:, 0])
-    positions = np.mod(table[order, 2:5] - low, high - low)
-    velocities = None
-    if "Velocities" in sections:
-        table_v = np.array([[float(value) for value in fields] for fields in sections["Velocities"]])
-        velocities = table_v[np.argsort(table_v[:, 0]), 1:4]
+    try:
+        [count] = (int(fields[0]) for fields in sections[""] if fields[1:] == ["atoms"])
+        low, high = np.array(
+            [[float(fields[0]), float(fields[1])] for fields in sections[""] if fields[-1] in ("xhi", "yhi", "zhi")]
+        ).T
+        table = np.array([[float(value) for value in fields[:5]] for fields in sections["Atoms"]]).reshape(count, 5)
+        order = np.argsort(table[:, 0])
+        positions = np.mod(table[order, 2:5] - low, high - low)
+        velocities = None
+        if "Velocities" in sections:
+            rows = [[float(value) for value in fields] for fields in sections["Velocities"]]
+            table_v = np.array(rows).reshape(count, 4)
+            velocities = table_v[np.argsort(table_v[:, 0]), 1:4]
+    except (ValueError, KeyError, IndexError):
+        raise InputError(f"{path}: not a whole LAMMPS data file; delete it and run again") from None
     return Atoms(elements, table[order, 1].astype(int), positions, high - low, velocities)
 
 

@@ -11,11 +11,18 @@ import numpy as np
 from asperity.guards.errors import InputError
 
 
-class Errors(NamedTuple):
-    """Errors of one value of a choice, of each quantity, and processor seconds of one computation."""
+class Deviations(NamedTuple):
+    """How far one value of a choice lies from the reference, and what one computation takes.
 
-    error: Sequence[float]
-    own_error: Sequence[float]
+    Attributes
+    ----------
+    values : in the units of the quantities, shape (samples, quantities).
+    noise : standard error of each quantity's error by what the samples do not tell, shape (quantities,).
+    cpu_s : processor seconds.
+    """
+
+    values: np.ndarray
+    noise: np.ndarray
     cpu_s: float
 
 
@@ -25,21 +32,18 @@ class Variation(NamedTuple):
     Attributes
     ----------
     quantities : name and unit of each.
-    values : those tried, cheapest first, each with the function that computes the quantities on each sample, shape
-        (samples, quantities), or their errors.
+    values : those tried, cheapest first, each with the function that tells how far it is off.
     shipped : the value in use.
-    reference : what the errors are against, in words.
-    best : the quantities there, shape (samples, quantities); None: the values tell their errors.
+    reference : what they are compared with, in words.
     samples : what the samples are, in words.
     """
 
     name: str
     quantities: Sequence[tuple[str, str]]
-    values: Sequence[tuple[Any, Callable[[], np.ndarray | Errors]]]
+    values: Sequence[tuple[Any, Callable[[], Deviations]]]
     shipped: Any
     reference: str
-    best: Callable[[], np.ndarray] | None = None
-    samples: str = ""
+    samples: str
 
 
 Verdict = tuple[bool, str]

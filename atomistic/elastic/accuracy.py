@@ -22,9 +22,9 @@ from atomistic.elastic.energy_scans import STRAINS
 from atomistic.elastic.equation_of_state import fit_equation_of_state
 from atomistic.elastic.relaxation import relax_ions, strained
 from atomistic.settings import DftSettings
-from atomistic.studied import Errors, Variation
+from atomistic.studied import Deviations, Variation
 
-WIDTHS = (0.01, 0.02, 0.03, 0.05)
+WIDTHS = (0.05, 0.03, 0.02, 0.01)
 """Largest strains that are tried; Kim et al. (2013) strained by 5 %."""
 EVERY = 0.005
 """Strain between the points of the reference for the number of strains."""
@@ -197,12 +197,13 @@ def _ensembles(moduli_GPa: Sequence[float], scan_s: float) -> Variation:
     B = np.asarray(moduli_GPa, float)
     scatter = 100 * float(B.std(ddof=1) / B.mean())
 
-    def told(count: int) -> Errors:
-        error = scatter / np.sqrt(count)
-        return Errors([error], [error / np.sqrt(2 * (len(B) - 1))], count * scan_s)
+    def told(count: int) -> Deviations:
+        error = np.array([scatter / np.sqrt(count)])
+        return Deviations(error[None], error / np.sqrt(2 * (len(B) - 1)), count * scan_s)
 
     values = [(count, partial(told, count)) for count in range(1, len(B) + 1)]
-    return Variation("glasses", MODULUS, values, len(B), f"the mean of all possible ones, by the scatter of {len(B)}")
+    reference = f"the mean of all possible ones, by the scatter of {len(B)}"
+    return Variation("glasses", MODULUS, values, len(B), reference, "")
 
 
 def _each(
@@ -210,19 +211,16 @@ def _each(
     value: Callable[[ScannedGlass], Fitted],
     reference: Callable[[ScannedGlass], Fitted],
     seconds: Callable[[], float],
-) -> Callable[[], Errors]:
-    """The error of a value over some glasses; its own error is by their scatter and by the misfit of each fit."""
+) -> Callable[[], Deviations]:
+    """How far a value is off on some glasses; the misfit of each fit says how well that is known."""
 
-    def told() -> Errors:
+    def told() -> Deviations:
         fitted = np.array([value(glass) for glass in glasses])
         best = np.array([reference(glass) for glass in glasses])
         deviations = 100 * (fitted[:, 0] / best[:, 0] - 1)
         misfits = 100 * np.hypot(fitted[:, 1], best[:, 1]) / best[:, 0]
-        variance = np.mean(misfits**2)
-        if len(glasses) > 1:
-            variance += np.var(deviations, ddof=1)
-        error = float(np.sqrt(np.mean(deviations**2)))
-        return Errors([error], [float(np.sqrt(variance / len(glasses)))], seconds())
+        noise = np.sqrt(np.mean(misfits**2) / len(glasses))
+        return Deviations(deviations[:, None], np.array([noise]), seconds())
 
     return told
 

@@ -20,7 +20,8 @@ from atomistic.lammps import Progress
 from atomistic.settings import DftSettings
 
 STRAINS = (-0.03, -0.015, 0.0, 0.015, 0.03)
-"""Linear isotropic strains of a scan; commit 9151035b has the study that varied them (`accuracy/elastic.csv`)."""
+"""Linear isotropic strains of a scan. Kim et al. (2013) took 5 %, which makes B 0.2 to 0.5 % smaller and misses the
+curve by more (study `elastic.strains`); `accuracy/elastic.csv` has the errors of a scene's own glasses."""
 
 
 @dataclass(frozen=True)

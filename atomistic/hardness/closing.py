@@ -14,10 +14,10 @@ from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import cations
 from atomistic.hardness.plateau import RULES, may_stop
 from atomistic.hardness.pressing import Plan, base_thickness_nm, lammps_seed, plan_closing, prepare_body, press_body
-from atomistic.hardness.readout import OxideBond, PressedCell, Readout, Rows, witness_rows
+from atomistic.hardness.readout import Frame, OxideBond, PressedCell, Readout, Rows, Sample, witness_rows
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
 from atomistic.hardness.stack import Stack, check_film, cut_base, film_properties, lay
-from atomistic.hardness.top_attraction import attract_top, bulk_density_per_A3
+from atomistic.hardness.top_attraction import TopAttraction, attract_top, bulk_density_per_A3
 from atomistic.lammps import Atoms, LammpsFolder, Progress, run_lammps
 from atomistic.materials import Material
 from atomistic.potentials import ForceField, Potential
@@ -185,12 +185,25 @@ def _read(readout: Readout, plan: Plan, snapshots: list[int], held_A: float, cel
 def attraction_row(readout: Readout, segment: int, cell: PressedCell) -> dict[str, float]:
     """What `attract_top` says of the top after a segment, as columns of the witness; NaN while the contact is small."""
     if segment and (sample := readout.last_sample(segment)).area_A2 >= (10 * RULES.min_length_nm) ** 2:
-        side, axis = (cell.wavelength_A, cell.wavelength_A), (cell.axis_A, cell.axis_A)
-        places = readout.relaxed(segment).frame[:, 1:4]
-        in_contact = contact_map(sample.touching_A, side, readout.area, axis)
-        shares = shares_in_contact(places[:, :2], in_contact, side, axis)
-        density = bulk_density_per_A3(readout.relaxed(0).frame[:, 1:4], side[0] * side[1])
-        top = attract_top(places[:, 2], shares, sample.area_A2, density)
+        unpressed = readout.relaxed(0).frame
+        top = top_below(sample, readout.relaxed(segment).frame, unpressed, readout.area, cell)
         values = (top.area_A2 / 100, 10 * top.force_per_A, top.work)
         return dict(zip(NO_TOP, values, strict=True))
     return NO_TOP
+
+
+def top_below(sample: Sample, relaxed: Frame, unpressed: Frame, area: Area, cell: PressedCell) -> TopAttraction:
+    """Attraction of what lies below a contact once the flat is away.
+
+    Parameters
+    ----------
+    sample : the contact.
+    relaxed, unpressed : atoms without the flat, after this contact and of the body at rest.
+    """
+    side = (cell.wavelength_A, cell.wavelength_A)
+    axis = (cell.axis_A, cell.axis_A)
+    places = relaxed[:, 1:4]
+    in_contact = contact_map(sample.touching_A, side, area, axis)
+    shares = shares_in_contact(places[:, :2], in_contact, side, axis)
+    density = bulk_density_per_A3(unpressed[:, 1:4], side[0] * side[1])
+    return attract_top(places[:, 2], shares, sample.area_A2, density)

@@ -173,6 +173,8 @@ def find_hardness(
     on_base : a base, or a film on one: stress that changes with the contact is what its law describes, so that no
         plateau is asked for.
     """
+    if len(curve) < rules.min_points:
+        return Hardness(f"rejected: a curve of {len(curve)} averages; {rules.min_points} are needed")
     column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
     length, stress, travel = (column["contact_length_nm"], column["contact_stress_GPa"], column["displacement_nm"])
     elapsed_ps = column["time_ps"][-1] - column["time_ps"][0]
@@ -185,9 +187,10 @@ def find_hardness(
     apart = np.max(travel[np.cumsum(fraction) == 0], initial=approach_nm)
     onset = plastic_onset(witness, float(apart), rules, by_bonds=not on_base)
     measured: dict[str, Any] = {"drift_meV_atom_ps": drift, "warming_K": warming, "exchanges_before": onset.background}
-    if drift > rules.max_drift_meV_atom_ps:
+    # also where it is no number
+    if not drift <= rules.max_drift_meV_atom_ps:
         return Hardness(f"rejected: energy drifts by {drift:.2g} meV per atom and ps", **measured)
-    if warming > rules.max_warming_K:
+    if not warming <= rules.max_warming_K:
         return Hardness(f"rejected: warms by {warming:.0f} K", **measured)
     if np.sum(window) < rules.min_points:
         return Hardness("rejected: contact too small for the window of lengths", **measured)
@@ -228,7 +231,9 @@ def find_hardness(
         "plateau_exponent": exponent,
         "plateau_points": len(plateau),
     }
-    if exponent > rules.max_exponent and not on_base:
+    if np.any(plateau <= 0):
+        status = "rejected: the plateau has stresses that are not positive: adhesion pulls"
+    elif exponent > rules.max_exponent and not on_base:
         status = f"rejected: stress still rises as length^{exponent:.2f} beyond the onset"
     elif fraction[-1] < rules.stop_area_fraction:
         status = (

@@ -21,13 +21,13 @@ from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import run_segments
 from atomistic.hardness.metal import METAL, PLACES, Metal, crystal, electron_density, embedding_energy, pair_energy
+from atomistic.hardness.motion import drift_meV_atom_ps, free_motion, heated
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
 from atomistic.lammps import Atoms, LammpsFolder
 from atomistic.materials import Eam, load_material
 from atomistic.settings import AsperitySettings, ClosingSettings
 from evidence.hardness.choices import silica_and
-from evidence.hardness.motion import drift_meV_atom_ps, free_motion, heated
 from evidence.record import ROOT
 
 STRAIN = 4e-3

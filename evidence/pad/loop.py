@@ -109,7 +109,7 @@ def _by_ngspice(lumps: Lumps, law: PadLaw, top: float) -> dict[str, Any]:
     started = getrusage(RUSAGE_CHILDREN).ru_utime
     voltages = " ".join(f"{at} {share * top:.9g}" for at, share in zip(TIMES_S, SHARES, strict=True))
     with tempfile.TemporaryDirectory() as folder:
-        netlist = spice_switch(lumps, LumpErrors(lumps.count, *[0.0] * 6), law, 1)
+        netlist = spice_switch(lumps, LumpErrors(lumps.count, *[0.0] * 6), law, 1, top / OVER)
         (Path(folder) / "switch.sub").write_text(netlist, encoding="utf-8")
         (Path(folder) / "loop.cir").write_text(NGSPICE.format(voltages=voltages), encoding="utf-8")
         subprocess.run(["ngspice", "-b", "loop.cir"], cwd=folder, check=True, capture_output=True)

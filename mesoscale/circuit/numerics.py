@@ -9,11 +9,14 @@ class CircuitNumerics:
 
     Attributes
     ----------
-    start_nm : separation from which closing counts; a pad is not in contact so far out.
+    start_nm : separation from which closing counts in Verilog-A; a pad is not in contact so far out.
+    begins : in SPICE it counts from so many times the separation at which a pad begins to repel.
     follow_s : time constant with which the state of a pad follows its deepest closing: much shorter than any motion.
     following_S : conductance of following in Verilog-A: large beside the 1e-12 S that simulators add to every node.
     memory_F : capacitance of the state in SPICE, whatever its time constant. With a slow memory a capacitance of its
         conductance drew kiloamperes at the landing, and ngspice shrank its steps to nothing.
+    onset_nm : way over which following begins in SPICE. Where it began with a corner, ngspice ended as soon as a second
+        lump came below `start_nm`: no step was small enough. A way of 0.1 nm forgets 0.05 nm of an impact.
     leak : its conductance over that of following: the state falls by this part of itself per time constant.
     of_well, of_net, of_pull : error that tables may have beside the curves: of the well and of the net pressure; far
         out, of the pull.
@@ -43,9 +46,11 @@ class CircuitNumerics:
     """
 
     start_nm: float = 200.0
+    begins: float = 1.5
     follow_s: float = 1e-9
     following_S: float = 1e3
     memory_F: float = 1e-6
+    onset_nm: float = 0.01
     leak: float = 1e-15
     of_well: float = 0.003
     of_net: float = 0.0005

@@ -15,14 +15,14 @@ from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.tables import Piece, note, tables_of
 from mesoscale.device.beam_kernels import NM, least_gap_nm
 from mesoscale.device.plate import VACUUM_PERMITTIVITY
-from mesoscale.pad.memory import FLOOR_GPa, PadLaw
+from mesoscale.pad.memory import PadLaw
 
 LUMP = "top bottom moved drawn charge"
 """Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge (fC), a
 current into 1 Ohm."""
 
 
-def spice_switch(lumps: Lumps, errors: LumpErrors, law: PadLaw, cells: int) -> str:
+def spice_switch(lumps: Lumps, errors: LumpErrors, law: PadLaw, cells: int, pull_in_V: float) -> str:
     """SPICE netlist (ngspice) of the subcircuits `rough_switch`, `rough_lump` and `rough_pad`."""
     force, slope = CIRCUIT.force_A, CIRCUIT.slope_per_V
     springs = force * lumps.stiffness_N_m * NM / lumps.area_m2[:, None]
@@ -63,6 +63,8 @@ Blonger{k} 0 longer I = {0.5 * slope:g} * (V(bent{k}) + {-heights[k]:.9g}) * V(s
 * drag: 0; a large one (3e4 Pa us/nm) lands the electrode softly, for loops so slow that nothing else matters.
 * follow: s, until the pad remembers; 1e-6 for such loops.
 * fringe: of the field at the sides; 0.6366 for a thin strip over a plane.
+* pull_in_V: of this switch, for decks that include this file: a step of {{1.2*pull_in_V}} closes it.
+.param pull_in_V={pull_in_V:.6g}
 .subckt rough_switch top bottom middle params: fringe={lumps.fringe:.9g} gas={lumps.gas_Pa:.9g}
 +   viscosity={CIRCUIT.viscosity_Pa_s:g} mass={lumps.mass_kg_m2:.9g} loss={lumps.loss_us:.9g} drag=0
 +   follow={CIRCUIT.follow_s:g}
@@ -98,7 +100,10 @@ def spice_pad(law: PadLaw, cells: int) -> str:
     """SPICE subcircuit `rough_pad` (ngspice): node s 1 V = 1 nm, node force 1 V = 1 nN, positive = pushed away."""
     tables = tables_of(law, cubic=False)
     depths = tables.depth_nm
-    deepest, far = f"{CIRCUIT.start_nm:g} - V(near)", [piece.y[-1] for piece in tables.closing]
+    # closing counts from a little farther out than the pad repels: a lump that begins to count is a corner for ngspice
+    repels = law.separation_nm[law.closing[0] > 0.0]
+    start = CIRCUIT.begins * float(repels.max(initial=depths[-1] + CIRCUIT.fade_nm))
+    deepest, far = f"{start:g} - V(near)", [piece.y[-1] for piece in tables.closing]
     push, pull = (Piece(piece.x, piece.y - piece.y[-1]) for piece in tables.closing)
     weights, places = [], np.append(depths, depths[-1] + CIRCUIT.fade_nm)
     for k in range(depths.size):
@@ -114,7 +119,7 @@ def spice_pad(law: PadLaw, cells: int) -> str:
 * {note(tables, cells)}
 * nodes     s      mean separation less rest, 1 V = 1 nm
 *           force  force on the moving electrode, 1 V = 1 nN, positive = pushed away
-* closed    by how much (nm) the pad has been closed so far below {CIRCUIT.start_nm:g} nm; a state
+* closed    by how much (nm) the pad has been closed so far below {start:g} nm; a state
 * follow    time constant (s) of that state: much shorter than any motion; integrate by backward Euler
 *           (.options method=gear maxord=1), because what overshoots is remembered
 * Nodes are 0 for a pad that is far away, where simulators begin.
@@ -122,18 +127,22 @@ def spice_pad(law: PadLaw, cells: int) -> str:
 +   hamaker={law.flats.hamaker:.12g} offset_nm={law.flats.offset_nm:.12g} rest=0
 Cclosed closed 0 {CIRCUIT.memory_F:g}
 Rleak closed 0 {{follow/{CIRCUIT.memory_F * CIRCUIT.leak:g}}}
-Bclosed 0 closed I = {{{CIRCUIT.memory_F:g}/follow}} * max({{{CIRCUIT.start_nm:g}-rest}} - V(s) - V(closed), 0)
+Rdeeper deeper 0 1
+Bdeeper 0 deeper I = {{{start:g}-rest}} - V(s) - V(closed)
+Rbegun begun 0 1
+Bbegun 0 begun I = min(max(V(deeper), 0), {CIRCUIT.onset_nm:g})
+Bclosed 0 closed I = {{{CIRCUIT.memory_F / CIRCUIT.onset_nm:g}/follow}} * V(begun) * (V(deeper) - 0.5*V(begun))
 Rnear near 0 1
-Bnear 0 near I = max(V(closed), {{{CIRCUIT.start_nm:g}-rest}} - V(s))
+Bnear 0 near I = max(V(closed), {{{start:g}-rest}} - V(s))
 Rrisen risen 0 1
-Brisen 0 risen I = V(s) + V(near) + {{rest-{CIRCUIT.start_nm:g}}}
+Brisen 0 risen I = V(s) + V(near) + {{rest-{start:g}}}
 Rpush push 0 1
 Bpush 0 push I = {sums[0]}
 Rpull pull 0 1
 Bpull 0 pull I = {sums[1]}
 Rforce force 0 1
 Bforce 0 force I = {{area}} * (exp(min(V(push) + {far[0]:.7g}, {most[0]:.4g})) - {tables.faint_GPa:.7g}
-+   - ({{hamaker/(6*3.14159265358979324)}} / pow(max(V(s) + {{rest}}, 1) + {{offset_nm}}, 3) + {FLOOR_GPa:g})
++   - ({{hamaker/(6*3.14159265358979324)}} / pow(max(V(s) + {{rest}}, 1) + {{offset_nm}}, 3) + {tables.floor_GPa:g})
 +   * exp(min(V(pull) + {far[1]:.7g}, {most[1]:.4g})))
 .ends rough_pad
 """

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.pad.memory import FLOOR_GPa, PadLaw, rows_at
+from mesoscale.pad.memory import FLOOR, PadLaw, rows_at
 
 Array = NDArray[np.float64]
 
@@ -46,6 +46,7 @@ class Tables:
     depth_nm: Array
     opening: list[tuple[Piece, Piece]]
     faint_GPa: float
+    floor_GPa: float
     of_well: float
     of_net: float
 
@@ -58,24 +59,25 @@ def tables_of(law: PadLaw, cubic: bool, looser: float = 1.0) -> Tables:
     looser : so many times the usual errors are allowed beside the curves.
     """
     wells = np.array([-min(np.nanmin(opened.sum(axis=0)), 0.0) for opened in law.opening])
-    faint = max(CIRCUIT.faint * float(wells.min()), 1e2 * FLOOR_GPa)
+    floor = law.floor_GPa
+    faint = max(CIRCUIT.faint * float(wells.min()), 1e2 * floor)
     s = law.separation_nm
 
     def logarithms(pressures: Array, at_nm: Array) -> Array:
-        pull = (FLOOR_GPa - pressures[1]) / (FLOOR_GPa + law.flats.pull_GPa(at_nm))
-        return np.log(np.stack([pressures[0] + faint, np.maximum(pull, FLOOR_GPa)]))
+        pull = (floor - pressures[1]) / (floor + law.flats.pull_GPa(at_nm))
+        return np.log(np.stack([pressures[0] + faint, np.maximum(pull, FLOOR)]))
 
     def fitted(
         x: Array, values: Array, at_nm: Array, start: Array, well: float, nodes: Sequence[int] = ()
     ) -> tuple[tuple[Piece, Piece], float, float]:
-        flats = law.flats.pull_GPa(at_nm) + FLOOR_GPa
+        flats = law.flats.pull_GPa(at_nm) + floor
         push, pull = np.exp(values[0]) - faint, flats * np.exp(values[1])
         net = push - pull
 
         def missed(made: Array) -> Array:
             return abs(np.exp(made[0]) - faint - flats * np.exp(made[1]) - net)
 
-        allowed = np.minimum(CIRCUIT.of_well * well, CIRCUIT.of_pull * pull) + CIRCUIT.of_net * abs(net) + FLOOR_GPa
+        allowed = np.minimum(CIRCUIT.of_well * well, CIRCUIT.of_pull * pull) + CIRCUIT.of_net * abs(net) + floor
         at, made = _nodes(x, values, lambda made: missed(made) / (looser * allowed), nodes, cubic)
         near = abs(net) < CIRCUIT.near_wells * well
         of_well, of_net = missed(made) / well, missed(made) / np.maximum(abs(net), faint)
@@ -94,7 +96,7 @@ def tables_of(law: PadLaw, cubic: bool, looser: float = 1.0) -> Tables:
         opening.append(pieces)
         errors.append(missed)
     of_well, of_net = np.max(errors, axis=0)
-    return Tables(closing, law.depth_nm, opening, faint, float(of_well), max(float(of_net), of_closing))
+    return Tables(closing, law.depth_nm, opening, faint, floor, float(of_well), max(float(of_net), of_closing))
 
 
 def _nodes(
@@ -122,7 +124,7 @@ def law_of_tables(tables: Tables, law: PadLaw, cubic: bool) -> PadLaw:
         return np.stack([np.interp(at_nm, *pair) for pair in pairs])
 
     def pressures(logarithms: Array, at_nm: Array) -> Array:
-        pull = (law.flats.pull_GPa(at_nm) + FLOOR_GPa) * np.exp(logarithms[1]) - FLOOR_GPa
+        pull = (law.flats.pull_GPa(at_nm) + tables.floor_GPa) * np.exp(logarithms[1]) - tables.floor_GPa
         return np.stack([np.maximum(np.exp(logarithms[0]) - tables.faint_GPa, 0.0), -np.maximum(pull, 0.0)])
 
     s = law.separation_nm

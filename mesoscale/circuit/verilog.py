@@ -9,7 +9,7 @@ from mesoscale.circuit.spice import LUMP
 from mesoscale.circuit.tables import Piece, Tables, note, tables_of
 from mesoscale.device.beam_kernels import least_gap_nm
 from mesoscale.device.plate import VACUUM_PERMITTIVITY
-from mesoscale.pad.memory import FLOOR_GPa, PadLaw
+from mesoscale.pad.memory import PadLaw
 
 
 def verilog_pad(law: PadLaw, cells: int) -> str:
@@ -83,7 +83,7 @@ def verilog_pressure(tables: Tables) -> str:
             push = closing_push(deepest);
             pull = closing_pull(deepest);
             {" else ".join(between)}
-            flats = hamaker / (6.0 * `M_PI * pow(max(separation, 1.0) + offset, 3.0)) + {FLOOR_GPa:g};
+            flats = hamaker / (6.0 * `M_PI * pow(max(separation, 1.0) + offset, 3.0)) + {tables.floor_GPa:g};
             pressure = exp(push) - {tables.faint_GPa:.7g} - flats * exp(pull);
         end
     endfunction

@@ -6,8 +6,6 @@ from numba import njit
 from mesoscale.device.plate import GPA, NM
 from mesoscale.pad.local import pad_pressure
 
-STOPPER_GPa_nm = 1e-2
-"""Stiffness of a stopper: it gives way by a tenth of a nanometre under 1 MPa."""
 CLOSING_NM, OPENING_NM = 1.0, 0.25
 """Largest step of a place in contact. Where a pad of few cells tears off, longer steps overshoot: with 0.5 and 1 nm
 that of `ci` (16 cells) lets go 0.9 and 1.8 % too early."""
@@ -33,14 +31,14 @@ def add_loads(separation_nm, pressure, slope, electric, places):
     places : see `mesoscale.device.beam.Beam.places`.
     """
     dielectric_nm, squared_V2, permittivity, edge_per_nm = electric
-    wired, lands, _, stopper_nm = places
+    wired, lands, _, stopper_nm, stopper_GPa_nm = places
     least = least_gap_nm(dielectric_nm)
     for e in range(separation_nm.shape[0]):
         for g in range(separation_nm.shape[1]):
             s = separation_nm[e, g]
             if lands[e, g] == 0.0:
-                pressure[e, g] = STOPPER_GPa_nm * max(stopper_nm - s, 0.0)
-                slope[e, g] = -STOPPER_GPa_nm if s < stopper_nm else 0.0
+                pressure[e, g] = stopper_GPa_nm * max(stopper_nm - s, 0.0)
+                slope[e, g] = -stopper_GPa_nm if s < stopper_nm else 0.0
             electric_nm = max(s + dielectric_nm, least)
             pull = wired[e, g] * permittivity * squared_V2 / (2.0 * (electric_nm * NM) ** 2) / GPA
             pressure[e, g] -= pull * (1.0 + edge_per_nm * electric_nm)
@@ -194,7 +192,7 @@ def deflect(nodal, shape):
 
 
 @njit(cache=True, nogil=True)  # switches are solved side by side
-def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, off_nm, free_nm, most_nm):
+def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, spring_Pa, contact_nm, off_nm, free_nm, most_nm):
     """Let a beam move to balance at one voltage, every place remembering how deep it came; both changed in place.
 
     The beam is held back by an added stiffness that grows where steps are too large: an overdamped motion.
@@ -202,16 +200,20 @@ def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, of
     Parameters
     ----------
     beam, places, pad, electric : what `newton_step`, `add_loads` and `pad_pressure` take last.
+    spring_Pa : pull of the spring, the scale of all pressures; see `mesoscale.device.beam.Beam.spring_Pa`.
     contact_nm : separation at which a place is about to land.
     off_nm : in balance above it, no place is in contact.
     free_nm : a rising beam is off the pad where no place is below this separation.
     most_nm : largest step of a place in contact.
     """
-    inertia, least, turns, lowest = 1e9, 0.0, 0, np.inf
+    # stiffnesses (Pa/m) that hold the beam back: where it begins and after a turn, the least, and that of a step which
+    # is gone whatever it does: 1e9, 1e6 and 1e25 of the default switch
+    begun, weakest, strongest = 6.6e4 * spring_Pa, 66.0 * spring_Pa, 6.6e20 * spring_Pa
+    inertia, least, turns, lowest = begun, 0.0, 0, np.inf
     last = np.zeros(nodal.shape[0])
     pressure, slope = np.empty_like(rest_m), np.empty_like(rest_m)
     nothing = np.zeros_like(rest_m)
-    _, lands, dimple_nm, stopper_nm = places
+    _, lands, dimple_nm, stopper_nm, _ = places
     s = (rest_m + deflect(nodal, beam[0])) / NM
     for _ in range(60000):
         pad_pressure(s - dimple_nm, deepest_nm, pressure, slope, *pad)
@@ -226,8 +228,8 @@ def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, of
                 excess = max(excess, abs(moved[e, g]) / allowed)
                 most = max(most, abs(moved[e, g]))
         if excess > 1.0 or work < 0.0:
-            inertia = max(min(max(1.2 * excess, 1.5), 10.0) * inertia, 1e6)
-            if inertia < 1e25:
+            inertia = max(min(max(1.2 * excess, 1.5), 10.0) * inertia, weakest)
+            if inertia < strongest:
                 continue
         nodal += change
         s += moved
@@ -246,10 +248,10 @@ def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, of
         # the curves are of straight pieces, between which plain steps may cycle: hold back more after each turn, and
         # forget it the later the more turns there were: after ten half as fast
         turns += back
-        least = max(10.0 * least, 1e9) if back else least * (1.0 - 3.0 / (10 + turns))
+        least = max(10.0 * least, begun) if back else least * (1.0 - 3.0 / (10 + turns))
         if excess < 0.5 or back:
             inertia = max(0.3 * inertia, least)
-        # a thousandth of the length over which a pad's pressure changes (nm), a ten-thousandth of the spring's (Pa)
-        if most < 1e-3 and most * NM * inertia < 1.0:
+        # a thousandth of the length over which a pad's pressure changes (nm), 1 Pa of the default switch
+        if most < 1e-3 and most * NM * inertia < 6.6e-5 * spring_Pa:
             return SETTLED if lowest < off_nm else FREE
     return UNSETTLED

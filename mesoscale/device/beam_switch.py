@@ -169,17 +169,20 @@ class _Moving:
         self.edge_per_nm = settings.fringe / (1e3 * settings.width_um)
         self.nodal = np.zeros((beam.elements + 1, 2))
         self.deepest = np.full(beam.rest_m.shape, np.inf)
-        self.touch_nm = self.contact_nm = 0.0
+        self.touch_nm = self.contact_nm = self.landed_GPa = 0.0
         if pad is None:
             return
         law = pad.law
-        touching = law.closing[0] > SWITCH.contact_GPa
+        self.landed_GPa = SWITCH.landed * beam.spring_Pa / GPA
+        touching = law.closing[0] > self.landed_GPa
         if not touching.any():
             raise NotComputed(
                 f"device: the pad carries {law.closing[0].max() * 1e3:.3g} MPa at {law.separation_nm[0]:.4g} nm, where "
                 "its curves end; raise pad.cells, whose first ones say how far they are closed"
             )
-        self.touch_nm = float(law.separation_nm[law.closing[0] > 0].max())
+        # the curve is of straight pieces: it repels up to the first separation at which it does not
+        last = int(np.flatnonzero(law.closing[0] > 0)[-1])
+        self.touch_nm = float(law.separation_nm[min(last + 1, law.separation_nm.size - 1)])
         self.contact_nm = float(law.separation_nm[touching].max())
 
     @property
@@ -209,7 +212,7 @@ class _Moving:
         """Electrostatic pull of 1 V."""
         s = self.separation_nm()
         pressure, slope, nowhere = np.zeros_like(s), np.zeros_like(s), np.ones_like(s)
-        add_loads(s, pressure, slope, self.electric(1.0), (self.beam.wired, nowhere, 0.0, 0.0))
+        add_loads(s, pressure, slope, self.electric(1.0), (self.beam.wired, nowhere, 0.0, 0.0, 0.0))
         return pressure * GPA
 
     def pressure_GPa(self) -> Array:
@@ -218,7 +221,7 @@ class _Moving:
 
     def landed_share(self) -> float:
         """Share of the contact part that is pushed."""
-        pushed = self.pressure_GPa() > SWITCH.contact_GPa
+        pushed = self.pressure_GPa() > self.landed_GPa
         return float((pushed * self.beam.weights_m).sum() / self.beam.contact_m)
 
     def capacitance_F(self) -> float:
@@ -298,6 +301,7 @@ class _Moving:
             self.beam.places,
             self.local.tables,
             self.electric(voltage**2),
+            self.beam.spring_Pa,
             self.contact_nm,
             min(self.touch_nm, free),
             free,

@@ -17,8 +17,8 @@ class SwitchNumerics:
         lands when the beam pulls in.
     rest_steps, rests_nm : Newton steps of a beam that heat or its stress moves to rest, and the last of them.
     rounding_nm : steps below this that do not shrink any more are rounding: of 48 lumps they stay at 2e-4 nm.
-    contact_GPa : a place has landed where it is pushed with more than 1 kPa, a tenth of the pull of the default
-        switch's spring.
+    landed : a place has landed where it is pushed with more than this part of the pull of the spring
+        (`mesoscale.device.beam.Beam.spring_Pa`), 1 kPa of the default switch.
     release_tolerance : relative error of a release.
     little : of the hold voltage: a beam that is closed at less is tried without any.
     free_steps : steps to the balance of a free beam, each from that of the voltage before.
@@ -47,7 +47,7 @@ class SwitchNumerics:
     rest_steps: int = 200
     rests_nm: float = 1e-6
     rounding_nm: float = 1e-3
-    contact_GPa: float = 1e-6
+    landed: float = 0.066
     release_tolerance: float = 1e-3
     little: float = 0.05
     free_steps: int = 12

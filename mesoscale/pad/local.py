@@ -53,7 +53,8 @@ class LocalPad:
 
 def _reach_nm(law: PadLaw) -> float:
     """Largest rise above a computed depth at which opening and closing still differ."""
-    apart = np.abs(law.opening.sum(axis=1) - law.closing.sum(axis=0)) > PAD.same_GPa  # not a number below the depth
+    same_GPa = PAD.same * float(law.closing[0].max())
+    apart = np.abs(law.opening.sum(axis=1) - law.closing.sum(axis=0)) > same_GPa  # not a number below the depth
     last = apart.shape[1] - 1 - apart[:, ::-1].argmax(axis=1)
     return float(np.max(np.where(apart.any(axis=1), law.separation_nm[last] - law.depth_nm, 0.0)))
 

@@ -18,8 +18,9 @@ from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
 
-FLOOR_GPa = 1e-13
-"""Repulsion of 0.1 mPa counts as none; it keeps the logarithm finite beyond the last contact."""
+FLOOR = 1e-11
+"""A repulsion of this part of the largest, 0.1 mPa of 10 MPa, counts as none: it keeps logarithms finite beyond the
+last contact."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,11 @@ class PadLaw:
     opening: Array
     flats: Flats
 
+    @property
+    def floor_GPa(self) -> float:
+        """Pressure that counts as none; positive also where nothing repels, as in cells of a pad that others carry."""
+        return max(FLOOR * float(self.closing[0].max()), float(np.finfo(float).tiny))
+
     def closing_GPa(self, separation_nm: ArrayLike) -> Array:
         """Net pressure while closing (GPa, positive: pushed apart), any shape.
 
@@ -116,7 +122,7 @@ class PadLaw:
         shallow, deep = (np.array([curves[number] for number in of]) for of in (upper.tolist(), lower.tolist()))
         share = share.reshape(-1, *[1] * (deep.ndim - 1))
         rows = np.exp((1.0 - share) * deep + share * shallow)
-        rows[:, 0][rows[:, 0] <= 2.0 * FLOOR_GPa] = 0.0
+        rows[:, 0][rows[:, 0] <= 2.0 * self.floor_GPa] = 0.0
         rows[:, 1] *= -1.0
         return rows
 
@@ -125,7 +131,7 @@ class PadLaw:
         """Separations, and logarithms of repulsion and attraction there, while opening from each depth."""
         ways = [np.isfinite(opening[0]) for opening in self.opening]
         return [
-            (self.separation_nm[way], np.log(np.maximum(opening[:, way] * [[1.0], [-1.0]], FLOOR_GPa)))
+            (self.separation_nm[way], np.log(np.maximum(opening[:, way] * [[1.0], [-1.0]], self.floor_GPa)))
             for way, opening in zip(ways, self.opening, strict=True)
         ]
 

@@ -41,7 +41,8 @@ class PadNumerics:
         8 nm in steps of 0.1 nm, and separations above them.
     highest_rise_nm : beyond, closing and opening are the same attraction, but for coarse films.
     coarse_nm : shallowest depth of a coarse film. Those of scene `paper` are 90 nm at most: its tables stay so.
-    same_GPa : difference of closing and opening below which they are the same, the accuracy of a beam's balance.
+    same : difference of closing and opening, over the largest repulsion, below which they are the same: 1 Pa of 10 MPa,
+        the accuracy of a beam's balance.
     """
 
     first_seed: int = 1000
@@ -68,7 +69,7 @@ class PadNumerics:
     memory_rises: int = 1200
     highest_rise_nm: float = 60.0
     coarse_nm: float = 120.0
-    same_GPa: float = 1e-9
+    same: float = 1e-7
 
 
 PAD = PadNumerics()

@@ -15,10 +15,10 @@ import pytest
 from asperity.guards.errors import InputError
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import glass_properties, make_glass
+from atomistic.hardness.motion import free_motion, heated
 from atomistic.hardness.runs import PROTOCOL, planned_runs
 from atomistic.lammps import Atoms, LammpsFolder, load_data, write_data
 from atomistic.settings import GlassSettings, HardnessSettings
-from evidence.hardness.motion import free_motion, heated
 
 CONFIG = Path(__file__).parents[3] / "config"
 PMMCS, SILICA = CONFIG / "potentials" / "pmmcs.yaml", CONFIG / "materials" / "silicon_dioxide.yaml"
@@ -42,7 +42,7 @@ def glass(potential, oxides, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def closing(glass, potential, oxides, tmp_path_factory):
-    [full, _] = planned_runs(SETTINGS)
+    [full] = planned_runs(SETTINGS)
     work = tmp_path_factory.mktemp("closing") / "work"
     return run_closing(full, oxides["SiO2"], glass, potential, SETTINGS.closing, work, THIN)
 
@@ -219,33 +219,9 @@ def test_halved_energies_move_as_full_ones_at_twice_the_temperature_in_longer_ti
     assert np.abs(apart).max() < 1e-5  # Å, after 0.1 ps
 
 
-HARD_CASES = {
-    "hot": ({}, {"temperature_K": 1200.0}),
-    "cold": ({}, {"temperature_K": 10.0}),
-    "fast": ({"speed_m_s": 1000}, {}),
-}
-
-
-@pytest.mark.parametrize("case", HARD_CASES)
-def test_a_hard_case_loses_no_atom_and_keeps_its_energy(case, glass, potential, oxides, tmp_path):
-    """LAMMPS stops if it loses an atom; a cut surface has hardly come to rest, so 1 meV per atom and ps may come.
-
-    The energy of a start scatters by as much, which a closing of less than 1 ps does not average out.
-    """
-    changed, protocol = HARD_CASES[case]
-    closing = SETTINGS.closing.model_copy(update={"anneal_ps": 0.5, **changed})
-    [run, _] = planned_runs(SETTINGS)
-    curve = run_closing(
-        run, oxides["SiO2"], glass, potential, closing, tmp_path, THIN.model_copy(update=protocol)
-    ).curve
-    elapsed_ps = max(curve[-1]["time_ps"] - curve[0]["time_ps"], 1.0)
-    drift = (curve[-1]["energy_drift_meV_per_atom"] - curve[0]["energy_drift_meV_per_atom"]) / elapsed_ps
-    assert abs(drift) < 1.0
-
-
 def test_names_of_runs_differ():
     runs = planned_runs(HardnessSettings())
-    assert len(runs) == len({run.name for run in runs}) == 12
+    assert len(runs) == len({run.name for run in runs}) == 8  # twins of the two small ones
 
 
 def test_atoms_take():

@@ -12,12 +12,12 @@ from atomistic.hardness.asperity import cut_asperity
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, closing_seconds
 from atomistic.hardness.glass import glass_properties, make_glass, write_forcefield
+from atomistic.hardness.motion import free_motion
 from atomistic.hardness.pressing import plan_closing
 from atomistic.hardness.runs import PROTOCOL, planned_runs
 from atomistic.lammps import LammpsFolder, load_data, load_dump, run_lammps, write_data
 from atomistic.potentials import contact_energy_and_force, load_potential
 from atomistic.settings import GlassSettings, HardnessSettings
-from evidence.hardness.motion import free_motion
 
 FORCES = str(Path(__file__).with_name("forces.in"))
 POTENTIALS = Path(__file__).parents[3] / "config" / "potentials"

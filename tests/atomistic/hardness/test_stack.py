@@ -13,6 +13,7 @@ from atomistic.hardness.closing import cut_body, oxide_bond, run_closing
 from atomistic.hardness.cost import closing_seconds
 from atomistic.hardness.glass import make_glass
 from atomistic.hardness.metal import METAL, Metal, MetalNumerics, polycrystal
+from atomistic.hardness.motion import free_motion
 from atomistic.hardness.network import Network, SlowQuench
 from atomistic.hardness.plateau import film_fault, plastic_onset, point
 from atomistic.hardness.readout import OxideBond, bonds_of
@@ -21,7 +22,6 @@ from atomistic.hardness.stack import GAP_A, Stack, base_of, check_film, cut_base
 from atomistic.lammps import Atoms
 from atomistic.materials import load_material
 from atomistic.settings import AsperitySettings, ClosingSettings, GlassSettings, HardnessSettings
-from evidence.hardness.motion import free_motion
 
 MATERIALS = Path(__file__).parents[3] / "config" / "materials"
 TITANIUM, NITRIDE = MATERIALS / "titanium.yaml", MATERIALS / "silicon_nitride.yaml"

@@ -154,7 +154,7 @@ Nlump {LUMP} lump
 
 def stepped(folder, lumps, volts, end_us, compiled_lump=False, **parameters):
     """Time (us) after a step of the voltage, way of mid-span (nm) and charge (fC), by ngspice."""
-    netlist = spice_switch(lumps, EXACT, LAW, 256)
+    netlist = spice_switch(lumps, EXACT, LAW, 256, EXACT.pull_in_V)
     (folder / "central.sub").write_text(with_compiled_lump(netlist, folder, lumps) if compiled_lump else netlist)
     time_s, middle, charge = by_ngspice(
         folder,
@@ -226,8 +226,12 @@ def test_ngspice_closes_the_switch_as_fast_and_as_deep(tmp_path, compiled_lump):
 @needs_ngspice
 def test_the_example_of_the_docs_runs_in_batch(tmp_path):
     example = re.search(r"```\n(\* a step.*?)```", Path("docs/switch.md").read_text(), re.DOTALL)[1]
-    (tmp_path / "central.sub").write_text(spice_switch(PLATE, EXACT, LAW, 256))
+    lumps, closes_V = lumps_of(BEAM, 12), solve_beam(BEAM, LAW).pull_in_V
+    (tmp_path / "central.sub").write_text(spice_switch(lumps, EXACT, LAW, 256, closes_V))
     assert "reltol=1e-5" in example  # 1e-3 allows 3 nm in the depth that the pad remembers
     (tmp_path / "step.cir").write_text(example)
     subprocess.run(["ngspice", "-b", "step.cir"], cwd=tmp_path, check=True, capture_output=True, timeout=300)
-    assert np.loadtxt(tmp_path / "step.txt")[-1, 0] == pytest.approx(250e-6)
+    time_s, middle_nm, _, _ = np.loadtxt(tmp_path / "step.txt").T
+    assert time_s[-1] == pytest.approx(250e-6)
+    assert middle_nm.max() > lumps.rest_nm[-1] - PAD.at_nm[-1]  # on the pad
+    assert abs(middle_nm[-1]) < 0.5 * lumps.rest_nm[-1]  # and off it after the step

@@ -130,7 +130,8 @@ def apart(net, pull):
 
 def by_spice(text, separation, deepest):
     """Pressure (GPa) of the SPICE subcircuit, by its tables alone."""
-    at = {f"{CIRCUIT.start_nm:g} - V(near)": deepest, "V(risen)": separation - deepest}
+    (depth,) = set(re.findall(r"pwl\((\S+ - V\(near\)),", text))
+    at = {depth: deepest, "V(risen)": separation - deepest}
 
     def logarithm(name):
         (sums,) = re.findall(rf"^B{name} 0 {name} I = (.*?)^R", text, re.M | re.S)

@@ -33,9 +33,9 @@ def free_motion(
     return record, end
 
 
-def heated(atoms: Atoms, potential: ForceField, temperature_K: float) -> Atoms:
+def heated(atoms: Atoms, potential: ForceField, temperature_K: float, seed: int = 17) -> Atoms:
     """The same atoms with Maxwell velocities."""
-    rng = np.random.default_rng(np.random.SeedSequence([17]))
+    rng = np.random.default_rng(np.random.SeedSequence([seed]))
     masses = np.array([potential.masses_u[ion] for ion in atoms.elements])[atoms.types - 1]
     speeds = np.sqrt(k * temperature_K / (atomic_mass * masses)) / 100  # from m/s to Å/ps
     velocities = rng.normal(size=(len(atoms), 3)) * speeds[:, None]

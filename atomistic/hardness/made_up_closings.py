@@ -1,0 +1,72 @@
+"""Made-up curves and witnesses of closings, of which the hardness is known: for hard cases and tests."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+APPROACH_NM = 0.3
+TRAVEL_NM = np.arange(0.0125, 1.2, 0.025)
+CELL_AREA_NM2 = 36.0
+HARDNESS_GPA = 10.0
+Rows = list[dict[str, Any]]
+
+
+def contact_length_nm(travel_nm: np.ndarray = TRAVEL_NM) -> np.ndarray:
+    """A contact that grows from 0.25 nm of travel on."""
+    return np.maximum(0, 3.2 * (travel_nm - 0.25))
+
+
+def curve(
+    stress: Callable[[float], float], length: np.ndarray | None = None, temperature: float = 300.0, drift: float = 0.0
+) -> Rows:
+    """Rows of a curve.
+
+    Parameters
+    ----------
+    stress : GPa, by the contact length.
+    length : contact length of each row, nm.
+    temperature : K; above 300 it rises by 100.
+    drift : of the energy between rows, meV per atom.
+    """
+    length = contact_length_nm() if length is None else length
+    return [
+        {
+            "time_ps": 0.5 * (k + 1),
+            "displacement_nm": float(TRAVEL_NM[k]),
+            "contact_length_nm": float(length[k]),
+            "contact_area_nm2": float(length[k] ** 2),
+            "contact_stress_GPa": float(stress(length[k])),
+            "temperature_K": temperature + (100.0 * k / len(TRAVEL_NM) if temperature > 300 else 0),
+            "energy_drift_meV_per_atom": drift * k,
+        }
+        for k in range(len(TRAVEL_NM))
+    ]
+
+
+def witness(onset: float = 0.8, background: int = 2, after: int = 40, lowering: float = 0.1) -> Rows:
+    """Rows of a witness: a snapshot every 0.1 nm.
+
+    Parameters
+    ----------
+    onset : travel from which bonds are exchanged and the top stays lower, nm.
+    background, after : bonds exchanged between snapshots before the onset, and how many more after it.
+    lowering : of the top, nm.
+    """
+    rows = []
+    for k in range(1, 12):
+        travel = 0.1 * k
+        new = background if travel < onset else background + after
+        rows.append(
+            {
+                "displacement_nm": travel,
+                "new_exchanges": 0 if k == 1 else new,
+                "lowering_nm": lowering if travel >= onset else 0.0,
+            }
+        )
+    return rows
+
+
+def plateau(length_nm: float) -> float:
+    """Stress that rises with the contact and then stays, GPa."""
+    return HARDNESS_GPA if length_nm > 1.6 else 6 * length_nm
