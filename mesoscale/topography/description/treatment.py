@@ -37,7 +37,8 @@ RHYTHM, RHYTHM_ALONE = 25.0, 400.0
 STRAIGHT, TWOFOLD_LEFT = 0.43, 0.6  # of bends, and of roughness (`LEFT`): maps enlarged twofold or more have less
 LONGEST_PERIOD = 12.0  # pixels
 MODULATION = 0.15  # of the roughness of pixels by that period; the smoothest interpolation leaves 0.2
-PATTERN = 0.3  # share of the roughness of pixels that all lines have in common, from which a surface has a pattern
+PATTERN = 3.0  # of what all lines have in common over what differs, from which on a surface has a pattern
+DRIFTS = 3  # periods over a map, below which roughness merely differs from place to place
 LINEAR = 0.5  # of the Nyquist wave vector of the points measured, where a linear interpolation passes 0.66 of C
 
 
@@ -244,6 +245,8 @@ def _period(heights: np.ndarray) -> tuple[float, float]:
     frequency = np.arange(len(wave)) / count
     short = frequency > 1 / LONGEST_PERIOD
     first = int(np.argmax(np.where(short, wave, 0.0)))
+    if wave[DRIFTS:][~short[DRIFTS:]].max(initial=0.0) > 0.1 * wave[first]:  # a pattern, and a harmonic of it
+        return 0.0, 0.0
     near = np.r_[wave[max(first - 8, 0) : max(first - 3, 0)], wave[first + 4 : first + 9]]
     usual = max(float(np.median(wave[short])), float(np.median(near)))
     modulation = 4 * float(np.sqrt(wave[first])) / count  # a Hann window halves a wave

@@ -44,6 +44,7 @@ def levelled_rms(scan):
 def test_all_dresses_are_the_same_surface(name):
     """256 x 256 pixels of 500 nm; 1 % of the pixels filled from their neighbours change its RMS height by 0.5 %."""
     sound, scan = load(MADE / "to_pack.gwy"), load(MADE / name)
+    assert isinstance(scan, Scan)
     assert scan.heights_nm.shape == (256, 256)
     assert scan.lengths_nm == pytest.approx((500.0, 500.0))
     assert levelled_rms(scan) == pytest.approx(levelled_rms(sound), rel=0.005)
