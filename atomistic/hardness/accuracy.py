@@ -54,7 +54,7 @@ MORE_ITERATIONS = 600
 """Most steps of the minimiser; relax.in takes 150."""
 SOLID_K = {"drift cold": 10.0, "drift hot": PROTOCOL.anneal_temperature_K}
 MOLTEN_K = {"drift molten": MELT_K}
-FREE_PS = 1.0
+FREE_PS = 2.0
 """Time at constant energy."""
 PRESSED = [("pressure at depth", "%"), ("force at depth", "%")]
 T = TypeVar("T")
