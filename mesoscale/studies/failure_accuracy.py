@@ -74,7 +74,8 @@ def _points(response: ReserveResponse, times: float) -> Knob:
         found = [response.sample(times, hold_V, FIRST_SEED + k, samples=samples, repeats=REPEATS) for k in range(seeds)]
         return np.array([[_logarithm(sampled.probability)] for sampled in found])
 
-    counts = (SAMPLES // 8, SAMPLES // 4, SAMPLES // 2, SAMPLES)
+    # of fewer than some 400 points OpenTURNS may find a variance below zero, and stops
+    counts = (SAMPLES // 4, SAMPLES // 2, SAMPLES)
     choices = [Choice(count, partial(probabilities, count)) for count in counts]
     most = 4 * SAMPLES
     best = partial(probabilities, most, 1)
