@@ -61,8 +61,9 @@ def accuracy_of_elastic(snakemake: Any, progress: Progress) -> Iterator[StudyRow
             glasses.append(elastic_accuracy.ScannedGlass(glass, dft, energies_eV))
     scan_s = float(np.mean(seconds)) if seconds else 0.0
     found = elastic_accuracy.variations(glasses, [modulus.B_GPa for modulus in trusted], scan_s)
-    of_glass = share_of_glass(load_json(snakemake.input.e_star))
-    volts = {"B": of_glass * volt for volt in input_volts(snakemake, ("e_star",)).values()}
+    volts = {}
+    if moved := input_volts(snakemake, ("e_star",)):
+        volts["B"] = moved["e_star"] * share_of_glass(load_json(snakemake.input.e_star))
     return rows_of(knobs_of(found, volts), progress)
 
 
