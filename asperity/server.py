@@ -213,7 +213,7 @@ def serve(host: str, port: int, workers: int) -> None:
     with needs("umbridge"):
         from aiohttp import web
     # aiohttp has no setting for either: its pages of plain text, and stacks of what clients garbled
-    web.RequestHandler.handle_error = _malformed
+    web.RequestHandler.handle_error = _malformed  # pyright: ignore[reportAttributeAccessIssue]
     logging.getLogger("aiohttp.server").addFilter(_by_client)
     try:
         web.run_app(application(Workers(workers), host), host=host, port=port, print=None, handler_cancellation=True)

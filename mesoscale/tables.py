@@ -65,7 +65,7 @@ def _columns(path: str) -> Columns:
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"{names.count(name)} columns are named {name}; rename or remove all but one")
-    rows = list(reader)
+    rows: list[list[Any]] = list(reader)
     for number, row in enumerate(rows, start=1):
         if len(row) != len(names):
             if any(value.strip() for value in row[len(names) :]):
