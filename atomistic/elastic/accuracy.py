@@ -24,7 +24,7 @@ from atomistic.elastic.relaxation import relax_ions, strained
 from atomistic.settings import DftSettings
 from atomistic.studied import Deviations, Variation
 
-WIDTHS = (0.01, 0.02, 0.03, 0.05)
+WIDTHS = (0.05, 0.03, 0.02, 0.01)
 """Largest strains that are tried; Kim et al. (2013) strained by 5 %."""
 EVERY = 0.005
 """Strain between the points of the reference for the number of strains."""

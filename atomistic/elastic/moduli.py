@@ -43,6 +43,17 @@ def plane_strain_modulus(B_GPa, nu, other_E_GPa, other_nu):
     return 1 / ((1 - np.asarray(nu) ** 2) / E + (1 - np.asarray(other_nu) ** 2) / np.asarray(other_E_GPa))
 
 
+def share_of_glass(summary: Mapping[str, Any]) -> float:
+    """Relative change of E* over that of the glass's bulk modulus.
+
+    Parameters
+    ----------
+    summary : of `effective_modulus`.
+    """
+    other = summary["counter_body"]
+    return 1.0 - summary["mean_GPa"] * (1 - other["nu"] ** 2) / other["E_GPa"]
+
+
 def functional_shift(moduli: Sequence[Modulus]) -> dict[str, Any]:
     """LDA − GGA of the bulk modulus over the structures that have both: mean and spread."""
     by_xc = {xc: {m.structure: m.B_GPa for m in moduli if m.xc == xc and m.trusted} for xc in ("GGA", "LDA")}

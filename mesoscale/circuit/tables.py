@@ -51,8 +51,13 @@ class Tables:
     of_net: float
 
 
-def tables_of(law: PadLaw, cubic: bool) -> Tables:
-    """Tables of the curves of a pad, of cubic or straight pieces."""
+def tables_of(law: PadLaw, cubic: bool, looser: float = 1.0) -> Tables:
+    """Tables of the curves of a pad, of cubic or straight pieces.
+
+    Parameters
+    ----------
+    looser : so many times the usual errors are allowed beside the curves.
+    """
     wells = np.array([-min(np.nanmin(opened.sum(axis=0)), 0.0) for opened in law.opening])
     floor = law.floor_GPa
     faint = max(CIRCUIT.faint * float(wells.min()), 1e2 * floor)
@@ -73,7 +78,7 @@ def tables_of(law: PadLaw, cubic: bool) -> Tables:
             return abs(np.exp(made[0]) - faint - flats * np.exp(made[1]) - net)
 
         allowed = np.minimum(CIRCUIT.of_well * well, CIRCUIT.of_pull * pull) + CIRCUIT.of_net * abs(net) + floor
-        at, made = _nodes(x, values, lambda made: missed(made) / allowed, nodes, cubic)
+        at, made = _nodes(x, values, lambda made: missed(made) / (looser * allowed), nodes, cubic)
         near = abs(net) < CIRCUIT.near_wells * well
         of_well, of_net = missed(made) / well, missed(made) / np.maximum(abs(net), faint)
         first, second = (Piece(x[at], row[at] - shift) for row, shift in zip(values, start, strict=True))
@@ -107,6 +112,29 @@ def _nodes(
         if missed.max() <= 1.0:
             return at, made
         chosen.add(int(missed.argmax()))
+
+
+def law_of_tables(tables: Tables, law: PadLaw, cubic: bool) -> PadLaw:
+    """The pad as its tables have it, at the separations of its curves."""
+
+    def curves(pieces: tuple[Piece, Piece], at_nm: Array) -> Array:
+        pairs = [(piece.x, piece.y) for piece in pieces]
+        if cubic:
+            return np.stack([PchipInterpolator(*pair)(at_nm) for pair in pairs])
+        return np.stack([np.interp(at_nm, *pair) for pair in pairs])
+
+    def pressures(logarithms: Array, at_nm: Array) -> Array:
+        pull = (law.flats.pull_GPa(at_nm) + tables.floor_GPa) * np.exp(logarithms[1]) - tables.floor_GPa
+        return np.stack([np.maximum(np.exp(logarithms[0]) - tables.faint_GPa, 0.0), -np.maximum(pull, 0.0)])
+
+    s = law.separation_nm
+    closing = pressures(curves(tables.closing, s), s)
+    opening = np.full_like(law.opening, np.nan)
+    for number, (depth, pieces) in enumerate(zip(tables.depth_nm, tables.opening, strict=True)):
+        way = np.isfinite(law.opening[number, 0])
+        start = curves(tables.closing, np.array([depth]))
+        opening[number][:, way] = pressures(start + curves(pieces, s[way] - depth), s[way])
+    return PadLaw(s, closing, law.depth_nm, opening, law.flats)
 
 
 def note(tables: Tables, cells: int) -> str:

@@ -257,6 +257,7 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
             [0.5 * (1.0 - np.cos(2.0 * np.pi * share)), np.pi / stated.length_m * np.sin(2 * np.pi * share)]
         )
         u = (1.0 if settings.buckled == "up" else -1.0) * height * mode.T.ravel()[freedoms] - z0
+    moved_nm = np.inf
     for _ in range(SWITCH.rest_steps):
         gradient = pulls @ (z0 + u)
         more = heat + stretching * (0.5 * u @ pulls @ u + z0 @ pulls @ u)
@@ -264,7 +265,11 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
         stiffness = bends + (stated.tension_N + more) * pulls + stretching * np.outer(gradient, gradient)
         change = -np.linalg.solve(stiffness, left)
         u = u + change
-        if abs(change[::2]).max() < SWITCH.rests_nm * NM:
+        before_nm = moved_nm
+        moved_nm = float(abs(change[::2]).max()) / NM
+        # steps shrink until they are rounding, which is large where elements are short
+        rounding = moved_nm < SWITCH.rounding_nm and moved_nm > 0.5 * before_nm
+        if moved_nm < SWITCH.rests_nm or rounding:
             break
     else:
         raise InputError(

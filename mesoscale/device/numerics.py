@@ -16,6 +16,7 @@ class SwitchNumerics:
     middle, landing : of lumped beams, shares of half the beam: of the last contact, 3 um of the default, and of what
         lands when the beam pulls in.
     rest_steps, rests_nm : Newton steps of a beam that heat or its stress moves to rest, and the last of them.
+    rounding_nm : steps below this that do not shrink any more are rounding: of 48 lumps they stay at 2e-4 nm.
     landed : a place has landed where it is pushed with more than this part of the pull of the spring
         (`mesoscale.device.beam.Beam.spring_Pa`), 1 kPa of the default switch.
     release_tolerance : relative error of a release.
@@ -45,6 +46,7 @@ class SwitchNumerics:
     landing: float = 0.56
     rest_steps: int = 200
     rests_nm: float = 1e-6
+    rounding_nm: float = 1e-3
     landed: float = 0.066
     release_tolerance: float = 1e-3
     little: float = 0.05

@@ -23,7 +23,7 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
     """Rows of accuracy/answer.csv without the stage; none of a plate on a spring, which has no such choices."""
     if not model.central.point.device.bends:
         return
-    switches = samples_of(model)
+    switches = samples_of(model, SWITCHES)
     solve = partial(states, switches)
     solve(SWITCH.coarse_elements)  # compiles, so that no value pays for it
 
@@ -41,10 +41,10 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
     yield from rows_of(knobs, progress)
 
 
-def samples_of(model: PadModel) -> list[Solved]:
-    """The central switch and some of the solved points, of all parts of the design."""
+def samples_of(model: PadModel, switches: int) -> list[Solved]:
+    """So many switches at most: the central one and some of the solved points, of all parts of the design."""
     solved = model.solved
-    count = min(SWITCHES - 1, solved.size)
+    count = min(switches - 1, solved.size)
     chosen = solved[np.linspace(0, solved.size - 1, count).round().astype(int)] if count else []
     points = [model.points[k] for k in chosen]
     return [switch for switch in (model.central, *points) if switch.pad is not None]

@@ -99,6 +99,11 @@ def made_up_law(adhesion_kPa=0.0):
     return PadLaw(s, closing, np.array(DEPTHS_NM), opening, Flats(1e-6, 0.0))
 
 
+def lifted(law: PadLaw, by_nm: float) -> PadLaw:
+    """The pad with so much more height above its mean plane."""
+    return PadLaw(law.separation_nm + by_nm, law.closing, law.depth_nm + by_nm, law.opening, law.flats)
+
+
 def hard_cases(device: DeviceSettings, law: PadLaw) -> list[HardCase]:
     """Hard beams, and the scene's device on its own pad at its extremes."""
     return [*hard_beams(), *_own(device, law)]
@@ -157,8 +162,7 @@ def _refused(settings: DeviceSettings, words: str) -> tuple[bool, str]:
 
 
 def _higher(changes: Changes) -> tuple[bool, str]:
-    law = made_up_law(2.0)
-    law = PadLaw(law.separation_nm + 6e3, law.closing, law.depth_nm + 6e3, law.opening, law.flats)
+    law = lifted(made_up_law(2.0), 6e3)
     try:
         solve_beam(DeviceSettings(**changes), law)
     except InputError as error:

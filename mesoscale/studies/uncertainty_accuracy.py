@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.law.parameters import FITTED, LAW, OUTPUTS
+from mesoscale.law.parameters import BRANCHES, LAW, LAW_OUTPUTS
 from mesoscale.settings import ContactSettings, UncertaintySettings
 from mesoscale.studies.driver import (
     Array,
@@ -53,6 +53,7 @@ MEAN_SAMPLES = 1000
 
 def accuracy_points(
     direct: Direct,
+    again: Array,
     nodes: NodeOutputs,
     table: InputTable,
     contact: ContactSettings,
@@ -64,6 +65,7 @@ def accuracy_points(
     Parameters
     ----------
     direct : inputs and parameters of the direct runs.
+    again : parameters at the inputs of the first of them on other surfaces, shape (r, len(FITTED)).
     nodes : the law at the nodes of the paper's method.
     contact : to time a few cycles.
     """
@@ -72,7 +74,7 @@ def accuracy_points(
     deviation[deviation == 0] = np.nan  # nothing varies: no error is told
     knobs = []
     if len(direct[0]) >= FEWEST:
-        knobs += [_runs(direct, table, settings, deviation, cycle), _degree(direct, table)]
+        knobs += [_runs(direct, table, settings, deviation, cycle), _degree(direct, again, table)]
     if len(nodes.seeds) > 1:
         knobs.append(_seeds(nodes, table, deviation, cycle))
     yield from rows_of(knobs, progress)
@@ -93,8 +95,11 @@ def _times(cost: Cost, count: float, added: Cost | None = None) -> Cost:
     return Cost(count * cost.wall_s + more.wall_s, count * cost.cpu_s + more.cpu_s, peak_MB)
 
 
-def _percent_of_deviation(names: Sequence[str], words: str) -> list[Quantity]:
-    return [Quantity(f"{words}{name}", "% of deviation") for name in names]
+MEANS = [f"mean {row.short}" for row in LAW_OUTPUTS]
+
+
+def _percent_of_deviation(names: Sequence[str]) -> list[Quantity]:
+    return [Quantity(name, "% of deviation") for name in names]
 
 
 def _runs(direct: Direct, table: InputTable, settings: UncertaintySettings, deviation: Array, cycle: Cost) -> Knob:
@@ -126,19 +131,26 @@ def _runs(direct: Direct, table: InputTable, settings: UncertaintySettings, devi
     if counts[-1] != len(x):
         counts.append(len(x))
     choices = [Choice(count, partial(errors, count)) for count in counts]
-    quantities = _percent_of_deviation(OUTPUTS, "mean of ")
+    quantities = _percent_of_deviation(MEANS)
     return Knob(
         "direct runs", quantities, choices, len(x), "half the difference of two halves", None, f"{SPLITS} splits"
     )
 
 
-def _degree(direct: Direct, table: InputTable) -> Knob:
-    """Responses of each degree against runs that they have not seen; the scatter between surfaces is part of it."""
+def _degree(direct: Direct, again: Array, table: InputTable) -> Knob:
+    """Responses of each degree against runs that they have not seen.
+
+    The mean square deviation includes the scatter between surfaces. Pairs of surfaces at equal inputs tell this
+    scatter, and it is subtracted.
+    """
     x, y = direct
     ranges = table.ranges()
+    deviation = np.nanstd(y, axis=0)
+    deviation[deviation == 0] = np.nan
     folds = np.arange(len(x)) % FOLDS
     signs = [row.any_sign for row in LAW] * 2
     transforms = ["identity" if any_sign else "log" for any_sign in signs]
+    scatter, error_of_scatter = _mean_and_error(0.5 * ((again - y[: len(again)]) / deviation) ** 2)
 
     def held_out(degree: int) -> Array:
         predicted = np.full_like(y, np.nan)
@@ -153,12 +165,26 @@ def _degree(direct: Direct, table: InputTable) -> Knob:
 
     def errors(degree: int) -> Errors:
         predicted, cost = timed(partial(held_out, degree))
-        deviations = 100 * (predicted - y) / np.nanstd(y, axis=0)
-        return Errors(*root_mean_square(deviations), _times(cost, 1 / FOLDS))
+        square, error_of_square = _mean_and_error(((predicted - y) / deviation) ** 2)
+        excess = np.maximum(square - scatter, 0.0)
+        error_of_excess = np.hypot(error_of_square, error_of_scatter)
+        error = np.sqrt(excess)
+        # of a root: near zero the root of the error itself
+        own_error = error_of_excess / (2 * np.maximum(error, np.sqrt(error_of_excess) / 2))
+        return Errors(100 * error, 100 * own_error, _times(cost, 1 / FOLDS))
 
     choices = [Choice(degree, partial(errors, degree)) for degree in DEGREES]
-    reference = f"{len(x)} direct runs that the response has not seen; scatter between surfaces included"
-    return Knob("degree of the responses", _percent_of_deviation(FITTED, ""), choices, DEGREE, reference)
+    reference = (
+        f"{len(x)} direct runs that the response has not seen, less the scatter of {len(again)} pairs of surfaces"
+    )
+    names = [f"{row.short} on {branch}" for branch in BRANCHES for row in LAW]
+    return Knob("degree of the responses", _percent_of_deviation(names), choices, DEGREE, reference)
+
+
+def _mean_and_error(values: Array) -> tuple[Array, Array]:
+    """Mean of each column and its standard error, without what is missing."""
+    count = np.maximum(np.isfinite(values).sum(axis=0), 1)
+    return np.nanmean(values, axis=0), np.nanstd(values, axis=0) / np.sqrt(count)
 
 
 def _seeds(nodes: NodeOutputs, table: InputTable, deviation: Array, cycle: Cost) -> Knob:
@@ -184,7 +210,7 @@ def _seeds(nodes: NodeOutputs, table: InputTable, deviation: Array, cycle: Cost)
     if counts[-1] != in_use:
         counts.append(in_use)
     choices = [Choice(count, partial(errors, count)) for count in counts]
-    quantities = _percent_of_deviation(OUTPUTS, "mean of ")
+    quantities = _percent_of_deviation(MEANS)
     return Knob(
         "surfaces at the nodes", quantities, choices, in_use, "scatter between surfaces", None, f"{in_use} surfaces"
     )

@@ -1,9 +1,8 @@
 """Scene `ci`, real codes from melt to report: complete, reproducible, resumable.
 
 One run is left alone; a second is killed with SIGKILL once in each stage and resumed. Both must end with the
-same results. The second run does without the melts and closings of the hardness stage, on which nothing else of this
-scene depends: `test_ownership` and `test_closing` kill those. It takes over the quenched cell of the first run, and
-has no points, whose pads are as the central one.
+same results. The second run takes over the melts and closings of the hardness stage, which `test_ownership` and
+`test_closing` kill, and the quenched cell of the first run. It has no points, whose pads are as the central one.
 """
 
 import json
@@ -14,6 +13,7 @@ import h5py
 import numpy as np
 import pytest
 
+from workflow.files.results import load_csv
 from workflow.run.job import result_checksum
 
 # one job of each stage; its log is opened when it starts, so killing at its first sight interrupts that very job
@@ -123,9 +123,9 @@ def test_a_deleted_stage_is_made_again_with_what_depends_on_it(finished):
 def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_workflow, tmp_path):
     workflow = make_workflow(tmp_path)
     scene = tmp_path / "killed.yaml"
-    scene.write_text("extends: ci\nname: killed\ncompute: [elastic, topography]\npad: {points: 0}\n")
-    quenched = "elastic/quenched"
-    shutil.copytree(finished.folder / "results/ci" / quenched, tmp_path / "results/killed" / quenched)
+    scene.write_text("extends: ci\nname: killed\npad: {points: 0}\n")
+    for taken_over in ("hardness", "elastic/quenched"):
+        shutil.copytree(finished.folder / "results/ci" / taken_over, tmp_path / "results/killed" / taken_over)
     (tmp_path / "results/killed/.scene").touch()  # as of a scene that has moved
     logs = tmp_path / "results/killed/logs"
     for job in STAGES.values():
@@ -138,3 +138,24 @@ def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_w
             continue
         first, second = content(finished.folder / "results/ci" / name), content(tmp_path / "results/killed" / name)
         np.testing.assert_equal(second, first, err_msg=name)
+
+
+def test_another_glass_moves_what_meets_the_contact(finished, make_workflow, tmp_path):
+    """Silicon nitride of another seed has another E*; hardness and roughness, which are taken over, stay."""
+    workflow = make_workflow(tmp_path)
+    scene = tmp_path / "other.yaml"
+    scene.write_text("extends: ci\nname: other\nelastic: {seed: 4}\n")
+    for stage in ("hardness", "topography"):
+        shutil.copytree(finished.folder / "results/ci" / stage, tmp_path / "results/other" / stage)
+    (tmp_path / "results/other/.scene").touch()  # as of a scene that has moved
+    done = workflow.run(str(scene), "inputs")
+    assert done.returncode == 0, done.stdout + done.stderr
+    before, after = ({row["parameter"]: row for row in load_csv(path)} for path in inputs_of(finished, tmp_path))
+    moved = {name for name in before if before[name]["a"] != after[name]["a"]}
+    assert moved == {"e_star"}
+    assert before["e_star"]["origin"] == "elastic"
+
+
+def inputs_of(finished, folder: Path) -> tuple[str, str]:
+    """Tables of the inputs of scene `ci` and of the other one."""
+    return str(finished.folder / "results/ci/inputs.csv"), str(folder / "results/other/inputs.csv")

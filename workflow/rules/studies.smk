@@ -21,7 +21,10 @@ STUDIED = {  # what both studies of a stage read beside settings, and whether th
 }
 IN_VOLTS = PRESSED if "pad" in SCENE.tails else {}
 ALSO_READ = {  # by one study alone
+    "accuracy/hardness": IN_VOLTS,
     "accuracy/elastic": {
+        **IN_VOLTS,
+        "e_star": f"{RESULTS}/elastic/e_star.json",
         "moduli": f"{RESULTS}/elastic/bulk_moduli.csv",
         "reports": expand(f"{RESULTS}/elastic/structures/{{name}}.json", name=GLASSES),
         "structures": expand(f"{RESULTS}/elastic/structures/{{name}}.xyz", name=GLASSES),
@@ -29,7 +32,11 @@ ALSO_READ = {  # by one study alone
     },
     "accuracy/topography": IN_VOLTS,
     "accuracy/contact": IN_VOLTS,
-    "accuracy/uncertainty": {"direct": DIRECT, "parameters": f"{RESULTS}/law/parameters.csv"},
+    "accuracy/uncertainty": {
+        "direct": DIRECT,
+        "again": rules.uq.input.again,
+        "parameters": f"{RESULTS}/law/parameters.csv",
+    },
 }
 
 

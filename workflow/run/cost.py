@@ -32,7 +32,7 @@ TYPICAL_S = {
     "calibrate": 60.0,
     "circuit": 30.0,
     "failure": 3000.0,
-    "study": 120.0,
+    "study": 25.0,
 }
 CYCLES = {  # contacts that a job closes and opens, to the largest force of the scene
     "curves": 50,

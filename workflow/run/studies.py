@@ -4,8 +4,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from mesoscale.contact.numerics import NUMERICS, Numerics
-from mesoscale.device.points import Point
+from mesoscale.contact.numerics import NUMERICS
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.table import from_rows, medians
 from mesoscale.settings import ContactSettings, TopographySettings, UncertaintySettings
@@ -18,15 +17,15 @@ from mesoscale.studies import (
     uncertainty_accuracy,
     uncertainty_stability,
 )
-from mesoscale.studies.driver import Array, Progress, StudyRow, stability_rows
+from mesoscale.studies.driver import Progress, StudyRow, stability_rows
 from mesoscale.studies.in_volts import volts_per_percent
 from mesoscale.topography.roughness_spectrum import slope_from_hurst
 from mesoscale.uncertainty.propagation import nodes_of_rows
 from mesoscale.uncertainty.validation import direct_runs_of_rows
 from workflow.files.results import load_csv
+from workflow.run.central_pads import central_pads
 from workflow.run.contact_settings import contact_settings
 from workflow.run.job import settings_from_job
-from workflow.run.pads import load_model, points_of_job
 from workflow.run.studies_of_atoms import STUDIES_OF_ATOMS
 from workflow.run.studies_of_switch import STUDIES_OF_SWITCH
 
@@ -38,24 +37,6 @@ def central_contact(snakemake: Any) -> tuple[ContactInputs, ContactSettings]:
     """Inputs of a contact at their medians, and its settings."""
     central = medians(load_csv(snakemake.input.inputs))
     return contact_of(central, contact_settings(snakemake.params.contact, snakemake))
-
-
-OnPads = Callable[[Point, ContactSettings, Numerics], Array]
-"""Release of a switch on a few pads, V, shape (pads,)."""
-
-
-def central_pads(snakemake: Any) -> tuple[Point, ContactSettings, OnPads] | None:
-    """The scene's switch at central inputs, the contact on the grid of its pads, and its release on a few pads.
-
-    None where the job reads no pad: the scene has no switch.
-    """
-    path = snakemake.input.get("model")
-    if not path:
-        return None
-    points, pad = points_of_job(snakemake)
-    central = load_model([path], points).central
-    releases = partial(contact_accuracy.releases_on_pads, central.pressed.cells.grid, pad.point_cells)
-    return central.point, points.on_grid, releases
 
 
 def accuracy_of_topography(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
@@ -98,10 +79,12 @@ def accuracy_of_uncertainty(snakemake: Any, progress: Progress) -> Iterator[Stud
     settings = settings_from_job(UncertaintySettings, snakemake.params.uncertainty)
     table = from_rows(load_csv(snakemake.input.inputs))
     contact = contact_settings(snakemake.params.contact, snakemake)
-    rows = (row for path in snakemake.input.direct for row in load_csv(path))
-    direct = direct_runs_of_rows(rows, table.names, settings.direct_runs)
+    direct, again = (
+        direct_runs_of_rows((row for path in paths for row in load_csv(path)), table.names, settings.direct_runs)
+        for paths in (snakemake.input.direct, snakemake.input.again)
+    )
     nodes = nodes_of_rows(load_csv(snakemake.input.parameters))
-    return uncertainty_accuracy.accuracy_points(direct, nodes, table, contact, settings, progress)
+    return uncertainty_accuracy.accuracy_points(direct, again[1], nodes, table, contact, settings, progress)
 
 
 def stability_of_uncertainty(_snakemake: Any, progress: Progress) -> Iterator[StudyRow]:

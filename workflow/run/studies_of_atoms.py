@@ -1,6 +1,6 @@
 """The studies of the stages of atoms, each from what its job reads, for the driver of all studies."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ import numpy as np
 from atomistic import studied
 from atomistic.elastic import accuracy as elastic_accuracy
 from atomistic.elastic import stability as elastic_stability
+from atomistic.elastic.moduli import share_of_glass
 from atomistic.elastic.structures import trusted_moduli
 from atomistic.hardness import accuracy as hardness_accuracy
 from atomistic.hardness import stability as hardness_stability
@@ -17,6 +18,7 @@ from atomistic.lammps import Atoms, load_data
 from atomistic.materials import Material, load_material
 from atomistic.potentials import Potential, load_potential
 from atomistic.settings import DftSettings, HardnessSettings
+from mesoscale.contact.numerics import NUMERICS
 from mesoscale.studies.driver import (
     Choice,
     Cost,
@@ -31,8 +33,10 @@ from mesoscale.studies.driver import (
     stability_rows,
     timed,
 )
+from mesoscale.studies.in_volts import volts_per_percent
 from workflow.files.results import load_csv, load_json
 from workflow.files.structures import load_structure
+from workflow.run.central_pads import central_pads
 from workflow.run.job import settings_from_job
 
 SAMPLES = 2
@@ -57,7 +61,9 @@ def accuracy_of_elastic(snakemake: Any, progress: Progress) -> Iterator[StudyRow
             glasses.append(elastic_accuracy.ScannedGlass(glass, dft, energies_eV))
     scan_s = float(np.mean(seconds)) if seconds else 0.0
     found = elastic_accuracy.variations(glasses, [modulus.B_GPa for modulus in trusted], scan_s)
-    return rows_of(knobs_of(found), progress)
+    of_glass = share_of_glass(load_json(snakemake.input.e_star))
+    volts = {"B": of_glass * volt for volt in input_volts(snakemake, ("e_star",)).values()}
+    return rows_of(knobs_of(found, volts), progress)
 
 
 def stability_of_elastic(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
@@ -72,7 +78,10 @@ def accuracy_of_hardness(snakemake: Any, progress: Progress) -> Iterator[StudyRo
     smallest = min(settings.asperities, key=lambda asperity: (asperity.tiles, asperity.amplitude_nm))
     _, potential, glass, work = atoms_of_job(snakemake)
     closings = hardness_accuracy.SmallClosings(smallest, glass, potential, settings.closing, work)
-    return rows_of(knobs_of(hardness_accuracy.variations(closings)), progress)
+    # of a film, h_macro is that of its base
+    volts = input_volts(snakemake, ("h_film",)) or input_volts(snakemake, ("h_macro", "h_prime"))
+    moved = {"pressure at depth": sum(volts.values())} if volts else {}
+    return rows_of(knobs_of(hardness_accuracy.variations(closings), moved), progress)
 
 
 def stability_of_hardness(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
@@ -95,11 +104,25 @@ def hard_rows(cases: Sequence[studied.HardCase], progress: Progress | None = Non
     return stability_rows([HardCase(*case) for case in cases], progress)
 
 
-def knobs_of(variations: Sequence[studied.Variation]) -> list[Knob]:
-    """The choices of a stage of atoms as the driver takes them."""
+def input_volts(snakemake: Any, names: Sequence[str]) -> dict[str, float]:
+    """What 1 % more of some inputs moves in the release, V; empty where the scene has no switch or none of them."""
+    pads = central_pads(snakemake)
+    if pads is None:
+        return {}
+    point, on_grid, releases = pads
+    return volts_per_percent(point, lambda moved: releases(moved, on_grid, NUMERICS), names)
+
+
+def knobs_of(variations: Sequence[studied.Variation], volts: Mapping[str, float]) -> list[Knob]:
+    """The choices of a stage of atoms as the driver takes them.
+
+    Parameters
+    ----------
+    volts : what an error of one unit moves in the release, V, by quantity where it is known.
+    """
     knobs = []
     for variation in variations:
-        quantities = [Quantity(*quantity) for quantity in variation.quantities]
+        quantities = [Quantity(name, unit, volts=volts.get(name)) for name, unit in variation.quantities]
         choices = [Choice(value, partial(_errors, compute)) for value, compute in variation.values]
         known = {"shipped": variation.shipped, "reference": variation.reference, "samples": variation.samples}
         knobs.append(Knob(variation.name, quantities, choices, **known))

@@ -3,7 +3,14 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from mesoscale.studies import answer_accuracy, answer_stability, pad_accuracy, pad_stability
+from mesoscale.studies import (
+    answer_accuracy,
+    answer_stability,
+    circuit_accuracy,
+    circuit_stability,
+    pad_accuracy,
+    pad_stability,
+)
 from mesoscale.studies.driver import Progress, StudyRow, stability_rows
 from workflow.run.pads import load_model, points_of_job
 
@@ -35,9 +42,25 @@ def stability_of_answer(snakemake: Any, progress: Progress) -> Iterator[StudyRow
     return stability_rows(answer_stability.hard_cases(points.device, central.pressed.law), progress)
 
 
+def accuracy_of_circuit(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Of lumps and tables, on pads of the scene."""
+    points, _ = points_of_job(snakemake)
+    return circuit_accuracy.accuracy_points(load_model([snakemake.input.model], points), progress)
+
+
+def stability_of_circuit(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Hard beams as lumps, and hard pads as tables."""
+    points, _ = points_of_job(snakemake)
+    central = load_model([snakemake.input.model], points).central
+    cases = circuit_stability.hard_cases(central.point, points.on_grid, central.pressed.law)
+    return stability_rows(cases, progress)
+
+
 STUDIES_OF_SWITCH: dict[tuple[str, str], Callable[[Any, Progress], Iterator[StudyRow]]] = {
     ("accuracy", "pad"): accuracy_of_pad,
     ("stability", "pad"): stability_of_pad,
     ("accuracy", "answer"): accuracy_of_answer,
     ("stability", "answer"): stability_of_answer,
+    ("accuracy", "circuit"): accuracy_of_circuit,
+    ("stability", "circuit"): stability_of_circuit,
 }

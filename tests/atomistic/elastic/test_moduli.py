@@ -9,7 +9,14 @@ from ase.calculators.calculator import CalculationFailed
 from ase.calculators.emt import EMT
 
 from atomistic.elastic.energy_scans import STRAINS, fit_scan, scan_rows, scan_volumes
-from atomistic.elastic.moduli import SAMPLES, Modulus, effective_modulus, mean_and_deviation, plane_strain_modulus
+from atomistic.elastic.moduli import (
+    SAMPLES,
+    Modulus,
+    effective_modulus,
+    mean_and_deviation,
+    plane_strain_modulus,
+    share_of_glass,
+)
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings, ElasticSettings
 
@@ -30,6 +37,12 @@ class FailsWhenStretched(EMT):
 def test_modulus_of_two_bodies():
     # 1/E* = (1 - 0.04)/282.6 + (1 - 0.1024)/116
     assert plane_strain_modulus(157, 0.2, 116, 0.32) == pytest.approx(1 / (0.96 / 282.6 + 0.8976 / 116))
+
+
+def test_the_share_of_the_glass_is_the_slope_of_e_star_by_its_bulk_modulus():
+    e_star, more = (float(plane_strain_modulus(B, 0.2, 116, 0.32)) for B in (157, 157 * 1.0001))
+    summary = {"mean_GPa": e_star, "counter_body": {"E_GPa": 116, "nu": 0.32}}
+    assert share_of_glass(summary) == pytest.approx((more / e_star - 1) / 1e-4, rel=1e-3)
 
 
 def test_e_star_falls_steadily_to_zero_as_the_body_becomes_incompressible():

@@ -1,0 +1,84 @@
+"""Error of the switch for simulators against run time: by its lumps, and by the tables of its pad."""
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+
+import numpy as np
+
+from mesoscale.circuit.lumps import choose_lumps
+from mesoscale.circuit.numerics import CIRCUIT
+from mesoscale.circuit.tables import law_of_tables, tables_of
+from mesoscale.device.beam import Beam, beam_of, lumped_beam
+from mesoscale.device.beam_switch import solve_bent
+from mesoscale.device.electrode import with_pad
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.points import PadModel, Solved
+from mesoscale.errors import InputError
+from mesoscale.pad.memory import PadLaw
+from mesoscale.settings import DeviceSettings
+from mesoscale.studies.answer_accuracy import samples_of
+from mesoscale.studies.driver import RELEASE, Array, Choice, Knob, Progress, Quantity, StudyRow, rows_of
+
+SWITCHES = 3
+"""Switches that are solved with each choice: the central one and others."""
+LUMPS, STRAIGHT, CUBIC = (
+    "pairs of lumps",
+    "allowed error of SPICE tables, over usual",
+    "allowed error of Verilog-A tables, over usual",
+)
+LOOSER = (100.0, 10.0, 1.0)
+QUANTITIES = (RELEASE, Quantity("pull-in", "V"), Quantity("capacitance", "%"))
+
+BeamOf = Callable[[DeviceSettings], Beam]
+LawOf = Callable[[PadLaw], PadLaw]
+
+
+def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterator[StudyRow]:
+    """Rows of accuracy/circuit.csv without the stage; none of an electrode that has no lumps.
+
+    Raises
+    ------
+    InputError : the switch at central inputs cannot be solved.
+    """
+    device = model.central.point.device
+    if not device.bends or device.without_lumps:
+        return
+    switches = samples_of(model, SWITCHES)
+    samples = f"{len(switches)} switches of the scene"
+    in_use, _ = with_pad(partial(choose_lumps, device), model.central.pressed.law)
+    counts = sorted({*CIRCUIT.lump_counts[::2], in_use.lumps})
+    elements = CIRCUIT.reference_elements // 2
+    by_lumps = [Choice(count, partial(states, switches, partial(lumped_beam, lumps=count))) for count in counts]
+    exact = partial(states, switches, partial(beam_of, elements=elements))
+    knobs = [Knob(LUMPS, QUANTITIES, by_lumps, in_use.lumps, f"{elements} finite elements", exact, samples)]
+    usual = partial(beam_of, elements=SWITCH.coarse_elements)
+    on_curves = partial(states, switches, usual)
+    for name, cubic in ((STRAIGHT, False), (CUBIC, True)):
+        choices = [
+            Choice(looser, partial(states, switches, usual, partial(on_tables, cubic, looser))) for looser in LOOSER
+        ]
+        knobs.append(Knob(name, QUANTITIES, choices, 1.0, "the curves themselves", on_curves, samples))
+    yield from rows_of(knobs, progress)
+
+
+def on_tables(cubic: bool, looser: float, law: PadLaw) -> PadLaw:
+    """The pad as its tables have it, with so many times the usual errors."""
+    return law_of_tables(tables_of(law, cubic, looser), law, cubic)
+
+
+def as_it_is(law: PadLaw) -> PadLaw:
+    """The pad as its curves have it."""
+    return law
+
+
+def states(switches: Sequence[Solved], beam: BeamOf, made: LawOf = as_it_is) -> Array:
+    """Release, pull-in (V) and held capacitance (fF) of switches without tilt, shape (switches, 3); NaN: no answer."""
+    found = np.full((len(switches), 3), np.nan)
+    for row, switch in zip(found, switches, strict=True):
+        settings = switch.point.device.model_copy(update={"tilt_nm": 0.0})
+        try:
+            solved, _ = with_pad(lambda law, of=settings: solve_bent(beam(of), of, made(law)), switch.pressed.law)
+        except InputError:
+            continue
+        row[:] = solved.release_V, solved.pull_in_V, solved.capacitance_fF
+    return found
