@@ -8,6 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from asperity.guards.foreign_files import is_of_the_system
 from mesoscale.errors import InputError
 
 MAX_TABLE_BYTES = 64 * 2**20
@@ -38,6 +39,8 @@ def foreign_columns(path: str | Path, named: str) -> Columns:
         begins with `named`.
     """
     try:
+        if is_of_the_system(path):
+            raise InputError("of the system, not of data; copy what you need of it")
         found = os.stat(path)
         if stat.S_ISREG(found.st_mode):
             return _kept_columns(str(path), (found.st_ino, found.st_mtime_ns, found.st_size))
