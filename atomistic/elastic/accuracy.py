@@ -21,8 +21,8 @@ from atomistic.elastic.dft import PyscfGamma, Solution, make_calculator
 from atomistic.elastic.energy_scans import STRAINS
 from atomistic.elastic.equation_of_state import fit_equation_of_state
 from atomistic.elastic.relaxation import relax_ions, strained
+from atomistic.for_studies import Deviations, Variation
 from atomistic.settings import DftSettings
-from atomistic.studied import Deviations, Variation
 
 WIDTHS = (0.05, 0.03, 0.02, 0.01)
 """Largest strains that are tried; Kim et al. (2013) strained by 5 %."""
@@ -118,12 +118,12 @@ def variations(glasses: Sequence[ScannedGlass], moduli_GPa: Sequence[float], sca
     """
     if not glasses:
         raise InputError("elastic: no glass of the scene has a whole scan, so that there is nothing to study")
-    found = [_widths(glasses), _numbers(glasses), _cutoffs(glasses)]
+    choices = [_widths(glasses), _numbers(glasses), _cutoffs(glasses)]
     if glasses[0].dft.relaxation_steps:
-        found.append(_relaxations(glasses))
+        choices.append(_relaxations(glasses))
     if len(moduli_GPa) > 1:
-        found.append(_ensembles(moduli_GPa, scan_s))
-    return found
+        choices.append(_ensembles(moduli_GPa, scan_s))
+    return choices
 
 
 def _widths(glasses: Sequence[ScannedGlass]) -> Variation:
@@ -171,8 +171,8 @@ def _cutoffs(glasses: Sequence[ScannedGlass]) -> Variation:
 
     values = []
     for factor in (CUTOFF, 1.0):
-        told = _each(glasses, partial(fitted, factor), partial(fitted, FINER_CUTOFF), partial(seconds, factor))
-        values.append((round(factor * used, 6), told))
+        deviations = _each(glasses, partial(fitted, factor), partial(fitted, FINER_CUTOFF), partial(seconds, factor))
+        values.append((round(factor * used, 6), deviations))
     words = f"{FINER_CUTOFF * used:g} Ha"
     return Variation("cut-off of the density, Ha", MODULUS, values, used, words, samples=_counted(glasses))
 
@@ -197,11 +197,11 @@ def _ensembles(moduli_GPa: Sequence[float], scan_s: float) -> Variation:
     B = np.asarray(moduli_GPa, float)
     scatter = 100 * float(B.std(ddof=1) / B.mean())
 
-    def told(count: int) -> Deviations:
+    def deviations(count: int) -> Deviations:
         error = np.array([scatter / np.sqrt(count)])
         return Deviations(error[None], error / np.sqrt(2 * (len(B) - 1)), count * scan_s)
 
-    values = [(count, partial(told, count)) for count in range(1, len(B) + 1)]
+    values = [(count, partial(deviations, count)) for count in range(1, len(B) + 1)]
     reference = f"the mean of all possible ones, by the scatter of {len(B)}"
     return Variation("glasses", MODULUS, values, len(B), reference, "")
 
@@ -214,15 +214,15 @@ def _each(
 ) -> Callable[[], Deviations]:
     """How far a value is off on some glasses; the misfit of each fit says how well that is known."""
 
-    def told() -> Deviations:
+    def deviations() -> Deviations:
         fitted = np.array([value(glass) for glass in glasses])
         best = np.array([reference(glass) for glass in glasses])
-        deviations = 100 * (fitted[:, 0] / best[:, 0] - 1)
+        off = 100 * (fitted[:, 0] / best[:, 0] - 1)
         misfits = 100 * np.hypot(fitted[:, 1], best[:, 1]) / best[:, 0]
         noise = np.sqrt(np.mean(misfits**2) / len(glasses))
-        return Deviations(deviations[:, None], np.array([noise]), seconds())
+        return Deviations(off[:, None], np.array([noise]), seconds())
 
-    return told
+    return deviations
 
 
 def _scan_s(glasses: Sequence[ScannedGlass], number: int = len(STRAINS)) -> float:

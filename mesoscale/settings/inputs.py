@@ -182,8 +182,8 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
                 raise ValueError(f"correlations: {pair[0]} with {pair[1]} is stated twice; leave one of them out")
             if not -1 < (rank := self.pairs[pair]) < 1:
                 raise ValueError(
-                    f"correlations: {pair[0]} with {pair[1]} = {rank:g}; accepted is more than -1 and less than 1; where "
-                    "one input follows from the other, give both the same file of joint samples"
+                    f"correlations: {pair[0]} with {pair[1]} = {rank:g}; accepted is more than -1 and less than 1; "
+                    "where one input follows from the other, give both the same file of joint samples"
                 )
         for name, row in self.rows().items():
             stage = BY_NAME[name].stage

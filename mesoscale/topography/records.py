@@ -49,7 +49,7 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
         )
         share, skewness = alignment_effect(data, settings)
         attributes = {"length_y_nm": length_y, "pixels_y": pixels[1], "form": limits.form}
-        attributes |= {"alignment_share": share, "alignment_skewness": skewness}
+        attributes |= {"alignment_share": share, "alignment_skewness": skewness, "treatment": limits.treatment}
         arrays["heights"] = _thinned(cleaned.heights_nm, 256)
         if cleaned.rms_nm > 0:
             arrays["quantiles"] = height_quantiles(cleaned.heights_nm)
@@ -65,6 +65,7 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
         "length_x_nm": length_x,
         "pixels_x": pixels[0],
         "rms_nm": cleaned.rms_nm,
+        "unfiltered_rms_nm": limits.rms_nm,
         "spacing": spectrum.spacing,
         "nyquist": spectrum.nyquist,
         "trusted_low": limits.low,
@@ -114,7 +115,7 @@ def trusted_record(name: str, arrays: Mapping[str, np.ndarray], attributes: Mapp
     ends = attributes["spacing"], attributes["nyquist"]
     spectrum = Spectrum(arrays["q"], arrays["psd"], arrays["modes"], *ends, sharp=line)
     low, high, radius, rms, reach = (
-        float(attributes[key]) for key in ("trusted_low", "trusted_high", "tip_radius_nm", "rms_nm", "reach")
+        float(attributes[key]) for key in ("trusted_low", "trusted_high", "tip_radius_nm", "unfiltered_rms_nm", "reach")
     )
     result = TrustedSpectrum(name, spectrum, low, high, str(attributes["limit"]), radius, rms, reach)
     result = replace(result, parabola=bool(attributes["parabola"]))

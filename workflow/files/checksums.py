@@ -36,7 +36,7 @@ def content_checksums(paths: Iterable[str | Path], remembered: Path = CONTENTS) 
     The date of the inode (ctime) counts, too: no program can set it, as `cp -p` and `rsync -a` set the other one.
     """
     known = _remembered(remembered)
-    found: dict[str, str] = {}
+    checksums: dict[str, str] = {}
     news: dict[str, list[Any]] = {}
     for path in map(str, paths):
         try:
@@ -44,17 +44,17 @@ def content_checksums(paths: Iterable[str | Path], remembered: Path = CONTENTS) 
             now = [status.st_size, status.st_mtime_ns, status.st_ctime_ns, status.st_ino]
             former = known.get(os.path.abspath(path))
             if isinstance(former, list) and former[:-1] == now:
-                found[path] = str(former[-1])
+                checksums[path] = str(former[-1])
                 continue
-            found[path] = file_checksum(path)
+            checksums[path] = file_checksum(path)
         except OSError:
-            found[path] = UNREADABLE
+            checksums[path] = UNREADABLE
             continue
         if time.time() - max(status.st_mtime, status.st_ctime) > SETTLED_S:
-            news[os.path.abspath(path)] = [*now, found[path]]
+            news[os.path.abspath(path)] = [*now, checksums[path]]
     if news:
         _remember(remembered, known | news)
-    return found
+    return checksums
 
 
 def _remembered(file: Path) -> dict[str, Any]:

@@ -34,11 +34,11 @@ def changed_files(jobs: Iterable[Any], recorded: Callable[[Any], list[str] | Non
 
 def _checksums(parameters: Iterable[Any]) -> dict[str, str]:
     """Checksums of files by path among the values of parameters."""
-    found: dict[str, str] = {}
+    checksums: dict[str, str] = {}
     for value in parameters:
         if isinstance(value, dict) and all(CHECKSUM.fullmatch(str(item)) for item in value.values()):
-            found |= value
-    return found
+            checksums |= value
+    return checksums
 
 
 def _values(parameters: Iterable[str], paths: Iterable[str]) -> Iterator[Any]:

@@ -16,13 +16,16 @@ from mesoscale.device.points import (
     cutoff_range,
     on_pad_grid,
     plan_points,
+    press_pad,
+    surfaces_of,
 )
+from mesoscale.failure.population import Population
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import film_table, from_rows
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import Flats
-from mesoscale.settings import ContactSettings, DeviceSettings, PadSettings
+from mesoscale.settings import ContactSettings, DeviceSettings, FailureSettings, PadSettings
 from workflow.files.results import Dataset, load_csv, load_h5, load_json, write_h5
 from workflow.run.contact_settings import contact_settings
 from workflow.run.job import settings_from_job
@@ -166,7 +169,7 @@ def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.n
     finite = [np.isfinite(curves[name]).all() for name in CURVES if name != "opening_GPa"]
     _check(where, all(finite) and not np.isinf(curves["opening_GPa"]).any(), "values that are not finite")
     _check(where, separation.size > 1 and (np.diff(separation) < 0.0).all(), "separation_nm does not fall")
-    places = depth.dtype.kind in "iu" and (np.diff(depth) > 0).all() and 0 <= depth[0] and depth[-1] < separation.size
+    places = depth.dtype.kind in "iu" and (np.diff(depth) > 0).all() and depth[0] >= 0 and depth[-1] < separation.size
     _check(where, bool(places), "depth: no rising positions in separation_nm")
     weight = curves["weight"]
     _check(where, (weight >= 0.0).all() and abs(weight.sum() - 1.0) < 1e-6, "weight: no shares of 1")
@@ -221,3 +224,20 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
         states = {key: float(said[key]) for key in STATES if key in said}
         first, second = (float(value) for value in said["halves_V"])
         yield number, Solved(points[number], pad, states, (first, second), str(said["refused"]))
+
+
+def population_of_job(snakemake: Any) -> tuple[Population, float]:
+    """All switches of a job that also has section `failure` of its scene, and the share of them that may fail."""
+    asked = settings_from_job(FailureSettings, snakemake.params.failure)
+    assert asked.probability is not None, "rules refuse scenes without it"
+    points, pad = points_of_job(snakemake)
+    model = load_model([snakemake.input.model], points)
+
+    def press(point: Point, times: int, number: int) -> Pad:
+        surfaces = surfaces_of(100_000 + number)  # beyond those of the points of an answer
+        return press_pad(point, points.on_grid, times * pad.point_cells, surfaces)
+
+    pads = {k: one.pad for k, one in enumerate(model.points) if one.pad}
+    known = points.design.probability[np.array(list(pads), int)], list(pads.values())
+    population = Population(points.table, points.device, points.cutoffs_nm, asked.release_V, press, known)
+    return population, asked.probability

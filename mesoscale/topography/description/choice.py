@@ -34,6 +34,14 @@ STEPS_TO_TELL = {
 """Steps of a measurement that a user should hear of: code of the doubt and remedy."""
 
 
+TREATED = {
+    "smoothed": "smoothed or filtered: its spectrum falls as that of no measured map; what the filter took is put back",
+    "median": "smoothed by a median, or pixels are repeated: neighbours have exactly the same height",
+    "interpolated": "interpolated: it is smoother at even distances, between the points that were measured",
+}
+"""Signs by which a map shows what was done to it, by the kind of `treatment.Treatment`."""
+
+
 @dataclass(frozen=True)
 class Choice:
     """The description in use.
@@ -141,6 +149,10 @@ def _doubts_of_record(name: str, values: Mapping[str, Any]) -> Iterator[Doubt]:
         )
         remedy = "if the lines have no offsets, set topography.line_alignment to none"
         yield Doubt("alignment_took_roughness", text, remedy, "rms")
+    if treatment := str(values.get("treatment", "")):
+        signs = TREATED[treatment]
+        text = f"{name}: {signs}; what it shows is trusted to {float(values['trusted_high']):.2g} /nm"
+        yield Doubt("treated", text, "give the map as it was measured, without filters", "spectrum")
     for step in values["steps"].split("; "):
         for begins, (code, remedy) in STEPS_TO_TELL.items():
             if step.startswith(begins):

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from mesoscale.errors import InputError
+from mesoscale.topography.description.treatment import restored, treatment_of
 from mesoscale.topography.measurements.cleaning import Scan, form_share
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile
@@ -83,12 +84,13 @@ class TrustedSpectrum:
     low, high : trusted wave vectors, 1/nm.
     limit : what ends the range above: `tip`, `noise`, `pixels` or `filter`.
     tip_radius_nm : radius used for the tip's correction.
-    rms_nm : RMS of the cleaned heights.
+    rms_nm : RMS of the cleaned heights, with what a filter took of it.
     reach : where the range would end without the tip, 1/nm; between `high` and here the tip's correction is large.
     side_nm : side of a square of a measured map's area; 0 for a line profile.
     form : ln of what a parabola would take of the mean square height, besides the levelling.
     parabola : the levelling took one.
     line : of a line profile, C1(k) in nm^3 on bins inside its trusted range; None for a scan.
+    treatment : what was done to a map, a kind of `treatment.Treatment`; empty where nothing shows.
     """
 
     name: str
@@ -103,6 +105,7 @@ class TrustedSpectrum:
     form: float = 0.0
     parabola: bool = False
     line: Spectrum | None = None
+    treatment: str = ""
 
     @property
     def trusted(self) -> np.ndarray:
@@ -154,9 +157,15 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
 def trusted_map(cleaned: Scan, measured: Measurement) -> TrustedSpectrum:
     """Spectrum of a cleaned scan within what its instrument shows."""
     white = (measured.noise_nm or 0.0) ** 2 * float(np.prod(cleaned.pixel_nm)) / (2 * np.pi) ** 2
-    spectrum, radius, shortest = hann_spectrum(cleaned), measured.tip_radius_nm, measured.shortest_wave_nm
-    limits = trusted_range(cleaned.name, spectrum, radius, cleaned.rms_nm, shortest, white)
-    return replace(limits, side_nm=float(np.sqrt(np.prod(cleaned.lengths_nm))), form=form_share(cleaned.heights_nm))
+    spectrum, rms_nm, shortest_nm = hann_spectrum(cleaned), cleaned.rms_nm, measured.shortest_wave_nm
+    raw = measured.data
+    treated = treatment_of(raw, cleaned, spectrum) if isinstance(raw, Scan) else None
+    if treated is not None:
+        spectrum, rms_nm = restored(spectrum, treated, rms_nm)
+        shortest_nm = max(shortest_nm or 0.0, 2 * np.pi / treated.end)
+    limits = trusted_range(cleaned.name, spectrum, measured.tip_radius_nm, rms_nm, shortest_nm, white)
+    side_nm, form = float(np.sqrt(np.prod(cleaned.lengths_nm))), form_share(cleaned.heights_nm)
+    return replace(limits, side_nm=side_nm, form=form, treatment=treated.kind if treated else "")
 
 
 def trusted_range(
@@ -176,7 +185,8 @@ def trusted_range(
       back by the pixels;
     - *tip*: the roughness of an octave is curved like the tip, R sqrt(2 pi q^6 C) > 0.5 (dilation takes 20 % of C
       there; the fit corrects the known part);
-    - *filter*: the instrument's shortest wave, where `shortest_wave_nm` states one.
+    - *filter*: the instrument's shortest wave, where `shortest_wave_nm` states one, or the end of what a map shows
+      that was treated (`treatment`).
 
     `noise_psd` (nm^4) is a stated white level; the level at Nyquist counts where it is higher.
     """

@@ -27,6 +27,6 @@ def check_count(given: str, files: Sequence[object]) -> None:
     """
     if len(files) > MOST_FILES:
         raise InputError(
-            f"{given}: {len(files)} files; at most {MOST_FILES} are described together: move those of this surface into "
-            "a folder of their own, or name some of them"
+            f"{given}: {len(files)} files; at most {MOST_FILES} are described together: move those of this surface "
+            "into a folder of their own, or name some of them"
         )

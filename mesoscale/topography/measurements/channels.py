@@ -40,7 +40,7 @@ def words(kind: str) -> frozenset[str]:
 
 def parts_of(name: str) -> list[str]:
     """A name in small letters, split at capitals, digits, blanks and underscores; arrows are parts, too."""
-    plain = ACROSS.sub(lambda found: " forward " if found[1] else " backward ", unicodedata.normalize("NFC", name))
+    plain = ACROSS.sub(lambda match: " forward " if match[1] else " backward ", unicodedata.normalize("NFC", name))
     spaced = CAPITALS.sub(" ", plain)
     return [part.lower() for part in PARTS.findall(spaced)]
 
@@ -48,10 +48,10 @@ def parts_of(name: str) -> list[str]:
 def says(kind: str, name: str) -> bool:
     """Has a name a word of this section?"""
     name = ANGSTROM.sub(" ", name)
-    found = parts_of(name)
-    joined = " ".join(found)
+    parts = parts_of(name)
+    joined = " ".join(parts)
     for word in words(kind):
-        if word in found and (len(word) > WHOLE or kind != "no_height" or base_of(name) == word):
+        if word in parts and (len(word) > WHOLE or kind != "no_height" or base_of(name) == word):
             return True
         inside = len(word) > ALONE or not word.isascii() or " " in word
         if inside and (word in joined or word in name.lower()) and not (word.isascii() and len(word) <= ALONE):
@@ -73,9 +73,9 @@ def base_of(name: str) -> str:
 
 def is_backward(name: str) -> bool:
     """Was a channel of this name scanned on the way back?"""
-    found = parts_of(name)
+    parts = parts_of(name)
     ends = tuple(word for word in words("backward") if _may_end(word))
-    return any(part in words("backward") or part.endswith(ends) for part in found)
+    return any(part in words("backward") or part.endswith(ends) for part in parts)
 
 
 def _may_end(word: str) -> bool:

@@ -73,21 +73,21 @@ class Scan:
         return float(np.nanstd(self.heights_nm))
 
 
-def stand_in_steps(found: Sequence[StandIn], points: int) -> tuple[str, ...]:
+def stand_in_steps(stand_ins: Sequence[StandIn], points: int) -> tuple[str, ...]:
     """In words which numbers were taken for missing points, and the share of `points` that had them."""
     return tuple(
         f"{STAND_INS} {item.count / points:.2%} of the points ({item.count}), which lie "
         f"{'exactly at' if item.exact else 'far from all others, about'} {item.value_nm:.6g} nm"
-        for item in found
+        for item in stand_ins
     )
 
 
 def without_missing(scan: Scan) -> Scan:
     """A scan whose missing points are NaN: numbers that stand for them are found and told."""
-    heights, found = without_stand_ins(scan.heights_nm)
-    if not found:
+    heights, stand_ins = without_stand_ins(scan.heights_nm)
+    if not stand_ins:
         return scan
-    steps = stand_in_steps(found, heights.size)
+    steps = stand_in_steps(stand_ins, heights.size)
     return replace(scan, heights_nm=heights, steps=(*scan.steps, *steps))
 
 
@@ -96,6 +96,10 @@ def measured_part(scan: Scan) -> Scan:
 
     At the ends, as an aborted scan has them, such lines are cut off, between others they are missing. A scan of nothing
     else stays as it is.
+
+    Raises
+    ------
+    InputError : more lines between others than `MAX_MISSING` repeat the one before.
     """
     heights = scan.heights_nm
     same = np.append(False, (heights[:, 1:] == heights[:, :-1]).all(axis=0))
@@ -105,6 +109,12 @@ def measured_part(scan: Scan) -> Scan:
     if len(measured) < 2 or len(measured) == lines:
         return scan
     first, last = measured[0], measured[-1] + 1
+    repeated = float(np.mean((same & ~empty)[first:last] & (np.ptp(heights, axis=0) != 0)[first:last]))
+    if repeated > MAX_MISSING:
+        raise InputError(
+            f"{scan.name}: {repeated:.0%} of the scan lines repeat the line before: the map was enlarged after it was "
+            "measured; give it as it was measured"
+        )
     kept, steps = np.array(heights[:, first:last], dtype=float), scan.steps
     if last - first < lines:
         steps = (*steps, f"{LINES_CUT}: {lines - last + first} of {lines} scan lines, without measurement")

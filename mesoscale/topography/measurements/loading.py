@@ -39,7 +39,7 @@ from mesoscale.topography.measurements.opening import (
 )
 from mesoscale.topography.measurements.points import on_grid
 from mesoscale.topography.measurements.profiles import Profile, profile_of
-from mesoscale.topography.measurements.text import BROADEST_TABLE, Text, decoded, read_text
+from mesoscale.topography.measurements.text import BROADEST_TABLE, Text, decoded, text_of
 from mesoscale.topography.measurements.units import nm_of, teach_units
 
 MIN_SIDE = 32
@@ -152,7 +152,7 @@ def _alone(path: Path, file: Path, name: str, settings: TopographySettings) -> M
     wanted = instrument.channel or settings.channel
     if named := foreign(file, head, by_name=False):
         raise InputError(named.replace(str(file), where, 1))
-    text = None if _is_known(head) or decoded(head) is None else read_text(file.read_bytes())
+    text = None if _is_known(head) or decoded(head) is None else text_of(file.read_bytes())
     if text is None and (named := foreign(file, head, by_name=True)):
         raise InputError(named.replace(str(file), where, 1))
     if text is not None and _is_table(text):
@@ -210,7 +210,8 @@ def _of_channels(
     if min(getattr(channel, "nb_grid_pts", None) or [MIN_SIDE]) < MIN_SIDE and channel.dim == 2:
         raise InputError(_too_small(where, channel.nb_grid_pts))
     given = _given(where, channel, instrument)
-    _check_sized(where, channel, instrument)
+    if channel.dim == 2 or getattr(channel, "is_uniform", False):  # uneven lines have positions instead
+        _check_sized(where, channel, instrument)
     topography = _tried(where, lambda: channel.topography(**given))
     _check_whole(where, text, topography, channels)
     marked = None
@@ -385,7 +386,7 @@ def _check_member(where: str, member: Any, source: Any, head: bytes) -> None:
     called = str(channels[source].name) if isinstance(source, int) and source < len(channels) else ""
     if called and not holds_heights(called):
         raise InputError(f"{where}: takes channel {called!r}, which holds no heights; remove it from the container")
-    text = read_text(head)
+    text = text_of(head)
     if text is not None and 1 < text.width <= BROADEST_TABLE and text.heads and not _is_known(head):
         columns_of(where, replace(text, odd=0), None)
 
@@ -471,7 +472,7 @@ def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profi
 
 def _column_factors(where: str, head: bytes) -> tuple[float, float] | None:
     """Factors to nm of positions and heights, by the heads of the columns of a text in a container; None without."""
-    text = read_text(head)
+    text = text_of(head)
     if text is None or not 1 < text.width <= BROADEST_TABLE or not text.heads:
         return None
     across, up = columns_of(where, replace(text, odd=0), None).units

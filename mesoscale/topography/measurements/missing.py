@@ -45,8 +45,8 @@ class StandIn:
 
 def without_stand_ins(heights: np.ndarray) -> tuple[np.ndarray, list[StandIn]]:
     """Heights (n,) or (nx, ny) with NaN in place of numbers that stand for missing points, and these numbers."""
-    found: list[StandIn] = []
-    while len(found) < MOST_VALUES:
+    stand_ins: list[StandIn] = []
+    while len(stand_ins) < MOST_VALUES:
         known = heights[np.isfinite(heights)]
         if len(known) < 2:
             break
@@ -58,9 +58,9 @@ def without_stand_ins(heights: np.ndarray) -> tuple[np.ndarray, list[StandIn]]:
         if marked is None:
             break
         values = heights[marked]
-        found.append(StandIn(float(np.median(values)), len(values), bool(np.ptp(values) == 0)))
+        stand_ins.append(StandIn(float(np.median(values)), len(values), bool(np.ptp(values) == 0)))
         heights = np.where(marked, np.nan, heights)
-    return heights, found
+    return heights, stand_ins
 
 
 def _lonely(heights: np.ndarray, known: np.ndarray) -> np.ndarray | None:
@@ -160,7 +160,7 @@ def _largest_rectangle(known: np.ndarray) -> tuple[slice, slice]:
 
     Row by row, each column is as high as what is true above it; a stack finds the largest rectangle under these.
     """
-    best, found = 0, (slice(0, 0), slice(0, 0))
+    best, largest = 0, (slice(0, 0), slice(0, 0))
     high = np.zeros(known.shape[1], dtype=int)
     for row, line in enumerate(known):
         high = np.where(line, high + 1, 0)
@@ -171,6 +171,6 @@ def _largest_rectangle(known: np.ndarray) -> tuple[slice, slice]:
                 start, tall = open_columns.pop()
                 if tall * (column - start) > best:
                     best = tall * (column - start)
-                    found = slice(row + 1 - tall, row + 1), slice(start, column)
+                    largest = slice(row + 1 - tall, row + 1), slice(start, column)
             open_columns.append((start, height))
-    return found
+    return largest

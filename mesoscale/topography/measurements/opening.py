@@ -237,12 +237,12 @@ def opened(path: Path, head: bytes) -> Any:
     try:
         if meant:
             raise CannotDetectFileFormat("".join(reasons))
-        found = open_topography(str(path))
-        if found.format() in WITHOUT_MARK and path.suffix.lower() != f".{found.format()}":
+        reader = open_topography(str(path))
+        if reader.format() in WITHOUT_MARK and path.suffix.lower() != f".{reader.format()}":
             raise CannotDetectFileFormat("")
     except CannotDetectFileFormat as error:
         raise InputError(why_not_read(path, head, str(error))) from None
-    return found
+    return reader
 
 
 def why_not_read(path: Path, head: bytes, tried: str) -> str:

@@ -97,8 +97,8 @@ def _without_missing(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, tuple[st
 
     Numbers that stand for missing points are told. Where more are missing, they stay NaN, and so do those at the ends.
     """
-    z, found = without_stand_ins(z)
-    steps = stand_in_steps(found, len(z))
+    z, stand_ins = without_stand_ins(z)
+    steps = stand_in_steps(stand_ins, len(z))
     missing = ~np.isfinite(z)
     forth = np.diff(x)
     in_order = bool(np.isfinite(x).all() and (forth > 0).all())

@@ -75,8 +75,8 @@ class Text:
 
     def _names(self, line: str) -> tuple[str, ...]:
         """As many names as there are columns; none where the line has another number of them."""
-        for found in (_split(line, self.separator), NAME.findall(line), re.split(r"\s{2,}|\t", line)):
-            words = [word for word in (word.strip() for word in found) if word]
+        for parts in (_split(line, self.separator), NAME.findall(line), re.split(r"\s{2,}|\t", line)):
+            words = [word for word in (word.strip() for word in parts) if word]
             if len(words) == self.width and all(re.search(r"[^\W\d]|#", word) for word in words):
                 return tuple(words)
         return ()
@@ -106,7 +106,7 @@ class Text:
         return _as_number(word, self.comma) or "nan"
 
 
-def read_text(raw: bytes) -> Text | None:
+def text_of(raw: bytes) -> Text | None:
     """The rows of a text; None of a file that is no text, or has no rows of numbers.
 
     Text is what begins without signs that do not print, and has no byte 0 unless it is UTF-16.
@@ -156,13 +156,13 @@ def _layout(lines: Sequence[str]) -> tuple[str | None, bool]:
     sample = numbers[len(numbers) // 4 :: max(1, len(numbers) // SAMPLE)][:SAMPLE]  # past most of a header
     if _one_column(sample):
         return None, True
-    best, found = 0.0, (None, False)
+    best, layout = 0.0, (None, False)
     for comma in (False, True):
         for separator in SEPARATORS:
             score = _understood(sample, separator, comma)
             if score > best:
-                best, found = score, (separator, comma)
-    return found
+                best, layout = score, (separator, comma)
+    return layout
 
 
 def _understood(sample: Sequence[str], separator: str | None, comma: bool) -> float:
@@ -209,8 +209,8 @@ def _rows(lines: Sequence[str], separator: str | None, comma: bool) -> tuple[lis
             kept[place] = words
     first, last = min(kept), max(kept)
     for place, words in others.items():  # a row of words alone, among rows of numbers
-        alone = len(words) == width and (width > 3 or width == 1 or len(set(words)) == 1)
-        if first < place < last and place not in numeric and alone and not any(len(word) > 12 for word in words):
+        may_be_lost = len(words) == width and (width > 3 or width == 1 or len(set(words)) == 1)
+        if first < place < last and place not in numeric and may_be_lost and not any(len(word) > 12 for word in words):
             kept[place] = words
     places = sorted(kept)
     return places, [kept[place] for place in places], width
@@ -227,10 +227,10 @@ def _split(line: str, separator: str | None) -> Sequence[str]:
     if separator is None:
         return line.replace('"', "").split()
     if '"' in line:
-        found = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+        parts = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
     else:
-        found = line.split(separator)
-    words = [word.strip().strip('"').strip() for word in found]
+        parts = line.split(separator)
+    words = [word.strip().strip('"').strip() for word in parts]
     while words and not words[-1]:
         words.pop()
     return words

@@ -51,12 +51,12 @@ def unit_of_head(head: str) -> str | None:
     from SurfaceTopography.Support.UnitConversion import find_length_unit_in_string, length_units
 
     for text in (*BRACKETS.findall(head), head.replace("_", " ")):
-        found = find_length_unit_in_string(text)
-        if found is None:
+        unit = find_length_unit_in_string(text)
+        if unit is None:
             small = (word.lower() for word in re.split(r"[\s()\[\]{},;:=/-]+", text))
-            found = next((word for word in small if len(word) > 2 and word in length_units), None)
-        if found is not None:
-            return found
+            unit = next((word for word in small if len(word) > 2 and word in length_units), None)
+        if unit is not None:
+            return unit
     return None
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from evidence.contact.accuracy import separation_at_share
 from mesoscale.errors import InputError
 from mesoscale.law.compact import Law, force, pressure
 from mesoscale.law.fit import contact_separation, fit_branch, row_of
@@ -90,12 +89,6 @@ def test_contact_is_the_separation_at_first_touch():
     step = separation[1] - separation[0]
     assert contact_separation(separation, repulsive) == pytest.approx(32.0, abs=step)
     assert contact_separation(separation, repulsive, 31.5) == 31.5
-
-
-def test_contact_by_share_of_the_largest_force():
-    separation, repulsive, _ = curve(points=2000)
-    exact = 32.0 - 3.3 * np.log1p(0.01 * np.expm1(9.0 / 3.3))
-    assert separation_at_share(separation, repulsive, 0.01) == pytest.approx(exact, abs=1e-3)
 
 
 def test_noise_is_covered_by_the_covariance():
