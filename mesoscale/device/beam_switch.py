@@ -35,6 +35,10 @@ from mesoscale.settings import DeviceSettings
 
 Array = NDArray[np.float64]
 
+MOST_V = 1e4
+"""Largest voltage that a scene may state; more pulls no switch."""
+BESIDE = "place electrode nearer to contact, or take a softer beam"
+
 
 @dataclass(frozen=True)
 class BeamStates:
@@ -242,6 +246,11 @@ class _Moving:
         sides = self.edge_per_nm / NM * np.log(np.pi * width / gaps)
         return float(VACUUM_PERMITTIVITY * width * (self.beam.wired * self.beam.weights_m * (1.0 / gaps + sides)).sum())
 
+    def beside_GPa(self) -> float:
+        """Largest pressure on stoppers beside the pad."""
+        _, lands, _, stopper_nm, stopper_GPa_nm = self.beam.places
+        return float((stopper_GPa_nm * (1.0 - lands) * np.maximum(stopper_nm - self.separation_nm(), 0.0)).max())
+
     def over_nm(self) -> Array:
         """Local separations over what the beam touches first: the pad, or stoppers beside it."""
         touched = np.where(self.beam.lands > 0, self.beam.dimple_nm + self.touch_nm, self.beam.stopper_nm)
@@ -271,6 +280,7 @@ class _Moving:
         way = float(self.over_nm()[max(at - 1, 0) : at + 1].mean())
         squared, kept, states = 0.0, [0.0], [self.nodal]
         for target in np.linspace(0.0, way, SWITCH.down)[1:]:
+            more = wanted = np.inf
             for _ in range(30):
                 change, per_V2 = self.beam.step(
                     self.nodal, lambda s, now=squared: self.load(s, now), 0.0, self.pull_Pa()
@@ -281,10 +291,19 @@ class _Moving:
                 squared += more
                 if abs(more) < 1e-9 * abs(squared) and abs(wanted) < 1e-6 * NM:
                     break
+            touches = self.over_nm().min() < 0.0 and abs(squared) < MOST_V**2
+            # not to the last digit, as where it buckles, is enough; else it must touch or be beyond the snap
+            settled = abs(more) < 1e-3 * abs(squared) and abs(wanted) < 1e-2 * NM
+            if not (settled or touches):
+                if np.argmax(kept) == len(kept) - 1:
+                    raise InputError(f"device: no voltage brings the beam down by {target:.4g} nm; {BESIDE}")
+                break
             kept.append(squared)
             states.append(self.nodal)
-            if self.over_nm().min() < 0.0:
+            if touches:
                 break
+        if max(kept) > MOST_V**2:
+            raise InputError(f"device: more than {MOST_V:g} V are needed to pull the beam down; {BESIDE}")
         top = int(np.argmax(kept))
         if top == len(kept) - 1:
             self.nodal = states[-2]
@@ -324,6 +343,11 @@ class _Moving:
                 f"device.hold_voltage_V = {voltage:.4g}: the beam presses the pad below "
                 f"{law.separation_nm[0]:.4g} nm ({law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa), where its "
                 "curves end"
+            )
+        if ended == UNSETTLED and (beside_GPa := self.beside_GPa()) > 0.0:
+            raise InputError(
+                f"device: at {voltage:.4g} V the electrode lands beside the contact part and presses {beside_GPa:.3g} "
+                f"GPa on what stands there; raise stopper_nm or dimple_nm, lower hold_voltage_V, or {BESIDE}"
             )
         if ended == UNSETTLED:
             raise InputError(f"device: the beam finds no balance at {voltage:.4g} V; this is a fault of the solver")
