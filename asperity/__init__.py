@@ -15,6 +15,19 @@ From a scan to a switch::
 Lengths are in nm, forces in nN, pressures and moduli in GPa; `help()` of every name states its units.
 """
 
+import os
+import sys
+
+if os.path.basename(sys.argv[0]) in ("asperity", "-m"):
+    # the command: an empty or relative entry of PYTHONPATH is the working folder, whose modules would be taken for
+    # Python's own by the imports below; the folder of this package stays
+    _given = os.environ.get("PYTHONPATH")
+    _unsafe = (
+        {os.path.abspath(path) for path in _given.split(os.pathsep) if not os.path.isabs(path)} if _given else set()
+    )
+    _unsafe -= {os.path.dirname(os.path.dirname(os.path.abspath(__file__)))}
+    sys.path[:] = [path for path in sys.path if os.path.abspath(path) not in _unsafe]
+
 import ast
 import importlib
 from pathlib import Path

@@ -34,7 +34,7 @@ def topography_of(given: Namespace) -> dict[str, Any]:
     keys = {name: getattr(given, name) for name in ("channel", "detrend") if getattr(given, name)}
     added: dict[str, Any] = {}
     if given.unit:
-        units, known = given.unit.replace("\u00b5", "u").split(","), get_args(LengthUnit)
+        units, known = re.sub("[\u00b5\u03bc]", "u", given.unit).split(","), get_args(LengthUnit)  # micro sign, mu
         if len(units) > 2 or not set(units) <= set(known):
             raise InputError(f"--unit {given.unit}: accepted are {', '.join(known)}, or two of them such as um,nm")
         added |= dict(zip(("unit", "height_unit"), units, strict=False))
@@ -106,6 +106,8 @@ def material_of(given: Sequence[str]) -> dict[str, InputRow]:
     for word in given:
         name, _, value = word.partition("=")
         definition(name)
+        if name in rows:
+            raise InputError(f"{word}: {name} is given twice; leave one of them out")
         numbers = re.fullmatch(rf"({NUMBER})(?:(:|\+-)({NUMBER}))?", value)
         if numbers is None:
             raise InputError(f"{word}: accepted are {name}=75, {name}=70:80 (from, to) and {name}=75+-4 (deviation)")
@@ -130,6 +132,8 @@ def device_of(given: Sequence[str]) -> dict[str, float]:
         if name not in NUMBERS_OF_DEVICE or not re.fullmatch(NUMBER, value):
             listed, meant = ", ".join(NUMBERS_OF_DEVICE), did_you_mean(name, NUMBERS_OF_DEVICE)
             raise InputError(f"{word}: accepted is KEY=NUMBER with a key of {listed} (others: in the scene){meant}")
+        if name in keys:
+            raise InputError(f"{word}: {name} is given twice; leave one of them out")
         keys[name] = float(value)
     DeviceSettings(**keys)
     return keys

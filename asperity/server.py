@@ -9,6 +9,7 @@ must be JSON and name this machine as their host.
 import asyncio
 import ipaddress
 import json
+import logging
 import multiprocessing
 import socket
 from collections.abc import Callable
@@ -29,6 +30,8 @@ TRIES = 3
 """Evaluations of one request, should its worker die."""
 LONGEST_S = 600.0
 """Of one evaluation."""
+BODY_S = 30.0
+"""In which a request must have come: one whose stated length never comes would hold its connection for ever."""
 
 
 class _Worker:
@@ -103,27 +106,51 @@ class Workers:
         raise RuntimeError(f"the worker died {TRIES} times at these inputs; is memory short?")
 
 
+def _refused(kind: str, message: str, status: int = 400) -> "web.Response":
+    from aiohttp import web
+
+    line = shown(" ".join(message.split()))[:1000]
+    return web.json_response({"error": {"type": kind, "message": line}}, status=status)
+
+
+def _malformed(handler: Any, request: Any, status: int = 500, exc: Any = None, message: str | None = None) -> Any:
+    """Answer of aiohttp's connections to what is no HTTP, in place of its plain text; see `serve`."""
+    if request.writer.output_size > 0:
+        raise ConnectionError("the answer has begun: another cannot be sent")
+    if status < 500:
+        answer = _refused("InvalidInput", f"the request is no HTTP: {message}", status)
+    else:
+        handler.log_exception("Error handling request", exc_info=exc)
+        answer = _refused("ModelError", "a fault of the server", status)
+    answer.force_close()
+    return answer
+
+
+def _by_client(record: logging.LogRecord) -> bool:
+    """Whether a record of the log is to be kept: none of a request that its client broke off or garbled."""
+    from aiohttp import web
+
+    error = record.exc_info[1] if record.exc_info else None
+    return not isinstance(error, web.RequestPayloadError)
+
+
 def application(workers: Workers, host: str) -> "web.Application":
     """The routes of the protocol, for requests that name `host`, this machine or an address as theirs."""
     from aiohttp import web
-
-    def refused(kind: str, message: str, status: int = 400) -> "web.Response":
-        line = shown(" ".join(message.split()))[:1000]
-        return web.json_response({"error": {"type": kind, "message": line}}, status=status)
 
     @web.middleware
     async def in_one_line(request: "web.Request", handler: Callable[..., Any]) -> "web.StreamResponse":
         # a page of a stranger may name a host of its own that leads here: its requests carry that name
         if not _is_ours(request.host, host):
-            return refused("InvalidInput", f"Host: {request.host}: accepted is {host}, localhost or an address")
+            return _refused("InvalidInput", f"Host: {request.host}: accepted is {host}, localhost or an address")
         try:
             return await handler(request)
         except web.HTTPException as error:  # no such route, too large
-            return refused("InvalidInput", error.reason, error.status)
+            return _refused("InvalidInput", error.reason, error.status)
         except InputError as error:
-            return refused("InvalidInput", str(error))
+            return _refused("InvalidInput", str(error))
         except RuntimeError as error:
-            return refused("ModelError", str(error), 500)
+            return _refused("ModelError", str(error), 500)
 
     async def info(_: "web.Request") -> "web.Response":
         return web.json_response({"protocolVersion": 1.0, "models": list(MODELS)})
@@ -132,7 +159,11 @@ def application(workers: Workers, host: str) -> "web.Application":
         if request.content_type != "application/json":
             raise InputError("the request must say Content-Type: application/json")
         try:
-            content = json.loads(await request.text())
+            content = json.loads(await asyncio.wait_for(request.text(), BODY_S))
+        except TimeoutError:
+            raise InputError(f"the request did not come within {BODY_S:.0f} s; is its Content-Length right?") from None
+        except web.RequestPayloadError:
+            raise InputError("the request cannot be decoded; send it as it is, in good chunks") from None
         except (ValueError, LookupError, RecursionError):  # LookupError: a charset that nobody knows
             raise InputError("the request is no JSON") from None
         if not isinstance(content, dict):
@@ -181,6 +212,9 @@ def serve(host: str, port: int, workers: int) -> None:
     """
     with needs("umbridge"):
         from aiohttp import web
+    # aiohttp has no setting for either: its pages of plain text, and stacks of what clients garbled
+    web.RequestHandler.handle_error = _malformed  # pyright: ignore[reportAttributeAccessIssue]
+    logging.getLogger("aiohttp.server").addFilter(_by_client)
     try:
         web.run_app(application(Workers(workers), host), host=host, port=port, print=None, handler_cancellation=True)
     except OSError as error:

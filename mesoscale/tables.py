@@ -2,13 +2,19 @@
 
 import csv
 import io
+import os
+import stat
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from asperity.guards.foreign_files import is_of_the_system
 from mesoscale.errors import InputError
 
 MAX_TABLE_BYTES = 64 * 2**20
 csv.field_size_limit(MAX_TABLE_BYTES)  # samples of an input stand in one field of inputs.csv
+
+Columns = dict[str, tuple[str | None, ...]]
 
 
 def foreign_table(path: str | Path, named: str) -> tuple[list[str], list[dict[str, Any]]]:
@@ -16,16 +22,59 @@ def foreign_table(path: str | Path, named: str) -> tuple[list[str], list[dict[st
 
     Raises
     ------
-    InputError : too large, unreadable or no text; begins with `named`.
+    InputError : see `foreign_columns`.
+    """
+    columns = foreign_columns(path, named)
+    return list(columns), [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+def foreign_columns(path: str | Path, named: str) -> Columns:
+    """Columns of a user's table by name; None where a row is too short.
+
+    A file that did not change is read once: a plan asks for each column of it.
+
+    Raises
+    ------
+    InputError : too large, unreadable or no text; two columns of one name; a row that is longer than the header. Each
+        begins with `named`.
     """
     try:
-        with Path(path).open("rb") as stream:
-            content = stream.read(MAX_TABLE_BYTES + 1)  # counted while it is read: some files never end
-        if len(content) > MAX_TABLE_BYTES:
-            raise InputError(f"{named}: more than {MAX_TABLE_BYTES >> 20} MB; give fewer rows")
-        text = io.StringIO(content.decode("utf-8-sig"), newline="")
-        reader = csv.DictReader(line for line in text if line.strip() and not line.startswith("#"))
-        return [name.strip() for name in reader.fieldnames or ()], list(reader)
+        if is_of_the_system(path):
+            raise InputError("of the system, not of data; copy what you need of it")
+        found = os.stat(path)
+        if stat.S_ISREG(found.st_mode):
+            return _kept_columns(str(path), (found.st_ino, found.st_mtime_ns, found.st_size))
+        return _columns(str(path))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         why = error.strerror if isinstance(error, OSError) else "no text" if isinstance(error, ValueError) else error
         raise InputError(f"{named}: cannot be read ({why}); give a CSV file") from None
+    except InputError as error:
+        raise InputError(f"{named}: {error}") from None
+
+
+@lru_cache(maxsize=2)
+def _kept_columns(path: str, _version: tuple[int, int, int]) -> Columns:
+    return _columns(path)
+
+
+def _columns(path: str) -> Columns:
+    with Path(path).open("rb") as stream:
+        content = stream.read(MAX_TABLE_BYTES + 1)  # counted while it is read: some files never end
+    if len(content) > MAX_TABLE_BYTES:
+        raise InputError(f"more than {MAX_TABLE_BYTES >> 20} MB; give fewer rows")
+    text = io.StringIO(content.decode("utf-8-sig"), newline="")
+    reader = csv.reader(line for line in text if line.strip() and not line.startswith("#"))
+    names = [name.strip() or f"column {place}" for place, name in enumerate(next(reader, []), start=1)]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"{names.count(name)} columns are named {name}; rename or remove all but one")
+    rows: list[list[Any]] = list(reader)
+    for number, row in enumerate(rows, start=1):
+        if len(row) != len(names):
+            if any(value.strip() for value in row[len(names) :]):
+                raise InputError(
+                    f"row {number} has {len(row)} values, the header {len(names)} names; write decimal points, one "
+                    "value a column"
+                )
+            rows[number - 1] = (row + [None] * len(names))[: len(names)]
+    return dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else {name: () for name in names}

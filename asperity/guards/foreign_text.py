@@ -9,6 +9,8 @@ from urllib.parse import quote, unquote
 PLAIN = re.compile(r"[A-Za-z0-9_./-]*[A-Za-z][A-Za-z0-9_./-]*")
 ENCODED = "percent:"
 COLUMNS = 80
+COMPUTED = "=+@\uff1d\uff0b\uff20\uff0d-"
+"""Begin what a spreadsheet computes; those of full width do in the Excel of East Asia. The last is one in brackets."""
 
 
 def shown(text: str) -> str:
@@ -32,8 +34,9 @@ def as_cell(text: str) -> str:
 
     `=HYPERLINK(...)` would send out what stands in other cells.
     """
-    text = re.sub(r"([;\t\r\n])(?=[=+@-])", r"\1'", text)  # where a spreadsheet that separates by these begins a cell
-    if not text or text[0] not in "=+-@\t\r":
+    # where a spreadsheet that separates by these begins a cell
+    text = re.sub(rf"([;\t\r\n])(?=[{COMPUTED}])", r"\1'", text)
+    if not text or text[0] not in COMPUTED + "\t\r":
         return text
     try:
         float(text)

@@ -7,11 +7,13 @@ those of the ones before.
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache, partial
 
 import numpy as np
 from ase import Atoms
+from ase.calculators.calculator import CalculationFailed
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
@@ -21,8 +23,8 @@ from atomistic.elastic.dft import PyscfGamma, Solution, make_calculator
 from atomistic.elastic.energy_scans import STRAINS
 from atomistic.elastic.equation_of_state import fit_equation_of_state
 from atomistic.elastic.relaxation import relax_ions, strained
+from atomistic.for_studies import Deviations, Variation
 from atomistic.settings import DftSettings
-from atomistic.studied import Deviations, Variation
 
 WIDTHS = (0.05, 0.03, 0.02, 0.01)
 """Largest strains that are tried; Kim et al. (2013) strained by 5 %."""
@@ -62,12 +64,15 @@ class ScannedGlass:
     solutions: list[Solution] = field(default_factory=list)
 
     def modulus(self, strains: Sequence[float]) -> Fitted:
-        """B by the fit of the stage."""
-        fit = fit_equation_of_state(*self.curve(strains))
+        """B by the fit of the stage; NaN where an energy is missing."""
+        volumes, energies = self.curve(strains)
+        if not np.isfinite(energies).all():
+            return np.nan, np.nan
+        fit = fit_equation_of_state(volumes, energies)
         return fit.B_GPa, fit.B_error_GPa
 
     def curve(self, strains: Sequence[float]) -> tuple[list[float], list[float]]:
-        """Volumes (Å³) and energies (eV)."""
+        """Volumes (Å³) and energies (eV), NaN where the calculation fails."""
         # from small strains outwards, as the stage does: each starts from its neighbours
         missing = sorted(set(strains) - set(self.energies_eV), key=abs)
         calculator = self._calculator()
@@ -75,7 +80,9 @@ class ScannedGlass:
             trial = strained(self.atoms, strain)
             trial.calc = calculator
             started = time.process_time()
-            self.energies_eV[strain] = float(trial.get_potential_energy())
+            self.energies_eV[strain] = np.nan
+            with suppress(CalculationFailed, np.linalg.LinAlgError):
+                self.energies_eV[strain] = float(trial.get_potential_energy())
             self.seconds.append(time.process_time() - started)
         self.solutions = calculator.history
         volume = self.atoms.get_volume()
@@ -118,12 +125,12 @@ def variations(glasses: Sequence[ScannedGlass], moduli_GPa: Sequence[float], sca
     """
     if not glasses:
         raise InputError("elastic: no glass of the scene has a whole scan, so that there is nothing to study")
-    found = [_widths(glasses), _numbers(glasses), _cutoffs(glasses)]
+    choices = [_widths(glasses), _numbers(glasses), _cutoffs(glasses)]
     if glasses[0].dft.relaxation_steps:
-        found.append(_relaxations(glasses))
+        choices.append(_relaxations(glasses))
     if len(moduli_GPa) > 1:
-        found.append(_ensembles(moduli_GPa, scan_s))
-    return found
+        choices.append(_ensembles(moduli_GPa, scan_s))
+    return choices
 
 
 def _widths(glasses: Sequence[ScannedGlass]) -> Variation:
@@ -131,13 +138,15 @@ def _widths(glasses: Sequence[ScannedGlass]) -> Variation:
     every = sorted({strain for width in WIDTHS for strain in five_strains(width)})
 
     def reference(glass: ScannedGlass) -> Fitted:
-        return modulus_of_polynomial(*glass.curve(every), DEGREE), 0.0
+        volumes, energies = map(np.array, glass.curve(every))
+        known = np.isfinite(energies)
+        return modulus_of_polynomial(volumes[known], energies[known], DEGREE), 0.0
 
     values = []
     for width in WIDTHS:
         fitted = partial(_by_strains, five_strains(width))
         values.append((width, _each(glasses, fitted, reference, partial(_scan_s, glasses))))
-    words = f"a polynomial of degree {DEGREE} through the energies of all of them"
+    words = f"a polynomial of degree {DEGREE} through the energies of all widths"
     return Variation("largest strain", MODULUS, values, max(STRAINS), words, samples=_counted(glasses))
 
 
@@ -171,8 +180,8 @@ def _cutoffs(glasses: Sequence[ScannedGlass]) -> Variation:
 
     values = []
     for factor in (CUTOFF, 1.0):
-        told = _each(glasses, partial(fitted, factor), partial(fitted, FINER_CUTOFF), partial(seconds, factor))
-        values.append((round(factor * used, 6), told))
+        deviations = _each(glasses, partial(fitted, factor), partial(fitted, FINER_CUTOFF), partial(seconds, factor))
+        values.append((round(factor * used, 6), deviations))
     words = f"{FINER_CUTOFF * used:g} Ha"
     return Variation("cut-off of the density, Ha", MODULUS, values, used, words, samples=_counted(glasses))
 
@@ -182,7 +191,10 @@ def _relaxations(glasses: Sequence[ScannedGlass]) -> Variation:
     used = glasses[0].dft.relaxation_steps
 
     def further(glass: ScannedGlass) -> Fitted:
-        return glass.relaxed_further().modulus(STRAINS)
+        try:
+            return glass.relaxed_further().modulus(STRAINS)
+        except CalculationFailed:
+            return np.nan, np.nan
 
     def seconds() -> float:
         return used * float(np.mean([glass.step_seconds for glass in glasses]))
@@ -197,11 +209,11 @@ def _ensembles(moduli_GPa: Sequence[float], scan_s: float) -> Variation:
     B = np.asarray(moduli_GPa, float)
     scatter = 100 * float(B.std(ddof=1) / B.mean())
 
-    def told(count: int) -> Deviations:
+    def deviations(count: int) -> Deviations:
         error = np.array([scatter / np.sqrt(count)])
         return Deviations(error[None], error / np.sqrt(2 * (len(B) - 1)), count * scan_s)
 
-    values = [(count, partial(told, count)) for count in range(1, len(B) + 1)]
+    values = [(count, partial(deviations, count)) for count in range(1, len(B) + 1)]
     reference = f"the mean of all possible ones, by the scatter of {len(B)}"
     return Variation("glasses", MODULUS, values, len(B), reference, "")
 
@@ -214,15 +226,15 @@ def _each(
 ) -> Callable[[], Deviations]:
     """How far a value is off on some glasses; the misfit of each fit says how well that is known."""
 
-    def told() -> Deviations:
+    def deviations() -> Deviations:
         fitted = np.array([value(glass) for glass in glasses])
         best = np.array([reference(glass) for glass in glasses])
-        deviations = 100 * (fitted[:, 0] / best[:, 0] - 1)
+        off = 100 * (fitted[:, 0] / best[:, 0] - 1)
         misfits = 100 * np.hypot(fitted[:, 1], best[:, 1]) / best[:, 0]
         noise = np.sqrt(np.mean(misfits**2) / len(glasses))
-        return Deviations(deviations[:, None], np.array([noise]), seconds())
+        return Deviations(off[:, None], np.array([noise]), seconds())
 
-    return told
+    return deviations
 
 
 def _scan_s(glasses: Sequence[ScannedGlass], number: int = len(STRAINS)) -> float:

@@ -18,8 +18,8 @@ from atomistic.elastic.energy_scans import STRAINS, fit_scan, scan_volumes
 from atomistic.elastic.equation_of_state import EquationOfState, fit_equation_of_state, vinet
 from atomistic.elastic.networks import crystal, examine, no_insulator
 from atomistic.elastic.relaxation import last_gap_eV, strained
+from atomistic.for_studies import HardCase, Verdict, refused
 from atomistic.materials import Material, NetworkGlass
-from atomistic.studied import HardCase, Verdict, refused
 
 CHEAP = {"basis": "gth-szv-molopt-sr", "cutoff_Ha": 40.0, "max_cycles": SCF.max_cycles}
 REFUSED = "not converged, or its gap is too small: no energy counts"
@@ -132,7 +132,7 @@ def curve_cases() -> list[HardCase]:
         ("energy without a number", "one of seven is NaN", volumes, with_nan, "energies finite"),
         ("volume of zero", "one of seven", volumes - volumes[0], sound, "volumes must be positive"),
     ]
-    told = [
+    solids = [
         ("stiffest", "B = 10,000 GPa", 1e4),
         ("softest", "B = 0.1 GPa", 0.1),
     ]
@@ -142,7 +142,7 @@ def curve_cases() -> list[HardCase]:
             HardCase(name, words, ONE_LINE, partial(refused, partial(fit_equation_of_state, x, y), why))
             for name, words, x, y, why in refusals
         ),
-        *(HardCase(name, words, "B comes back within 1 %", partial(_comes_back, B)) for name, words, B in told),
+        *(HardCase(name, words, "B comes back within 1 %", partial(_comes_back, B)) for name, words, B in solids),
         HardCase(
             "noise that is known",
             "0.015 eV on a curve of 5 eV",

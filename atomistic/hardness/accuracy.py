@@ -18,11 +18,13 @@ from typing import TypeVar
 import numpy as np
 
 from atomistic.constants import EV_PER_A3_IN_GPA
+from atomistic.for_studies import Deviations, Variation
 from atomistic.hardness.asperity import formula_of, neutralise
 from atomistic.hardness.closing import cut_body, top_below
 from atomistic.hardness.contact_area import Area
 from atomistic.hardness.glass import MELT_K, TIMESTEP_FS
 from atomistic.hardness.motion import drift_meV_atom_ps, free_motion, heated
+from atomistic.hardness.plateau import RULES
 from atomistic.hardness.pressing import base_thickness_nm, plan_closing, prepare_body, press_body
 from atomistic.hardness.readout import PressedCell, Sample, load_samples
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
@@ -30,7 +32,6 @@ from atomistic.hardness.top_attraction import combined_cutoffs_nm
 from atomistic.lammps import Atoms, LammpsFolder, load_dump, run_lammps
 from atomistic.potentials import Potential
 from atomistic.settings import AsperitySettings, ClosingSettings
-from atomistic.studied import Deviations, Variation
 
 CUTS = (1, 2)
 """Seeds of the cuts from one glass."""
@@ -121,8 +122,8 @@ class SmallClosings:
 
     def outputs(self, choice: Choice) -> np.ndarray:
         """Pressure and force of each cut, shape (cuts, 2)."""
-        found = [self.pressed(cut, choice) for cut in CUTS]
-        return np.array([(one.pressure_GPa, one.force_nN) for one in found])
+        runs = [self.pressed(cut, choice) for cut in CUTS]
+        return np.array([(one.pressure_GPa, one.force_nN) for one in runs])
 
     def cpu_s(self, choice: Choice) -> float:
         """Mean over the cuts."""
@@ -206,13 +207,13 @@ def _speeds(closings: SmallClosings) -> Variation:
     # of the runs at each speed in the deviation: 2 q(v) - q(2v) is that of a flat at rest
     weights = {4: (1, 1, 2), 2: (2, 2), 1: (1, 1)}
 
-    def told(speed: int) -> Deviations:
+    def deviations(speed: int) -> Deviations:
         rest = 2 * closings.outputs(Choice(speed=1)) - closings.outputs(Choice(speed=2))
         off = 100 * (closings.outputs(Choice(speed=speed)) / rest - 1)
         noise = closings.noise_percent() * float(np.linalg.norm(weights[speed])) / np.sqrt(len(CUTS))
         return Deviations(off, noise, closings.cpu_s(Choice(speed=speed)))
 
-    values = [(speed * used, partial(told, speed)) for speed in SPEEDS]
+    values = [(speed * used, partial(deviations, speed)) for speed in SPEEDS]
     reference = f"at rest, on the line through {used:g} and {2 * used:g} m/s"
     return Variation("closing speed, m/s", PRESSED, values, used, reference, _samples())
 
@@ -247,14 +248,14 @@ def _minimisers(closings: SmallClosings) -> Variation:
     """The steps of the minimiser, by what they leave of D0: the same contact is relaxed each time."""
     best: list[float] = []
 
-    def told(iterations: int) -> Deviations:
+    def deviations(iterations: int) -> Deviations:
         if not best:
             best.extend(closings.cutoff_nm(cut, MORE_ITERATIONS)[0] for cut in CUTS)
-        found, cpu_s = np.array([closings.cutoff_nm(cut, iterations) for cut in CUTS]).T
-        off = 100 * (found / np.array(best) - 1)
+        cutoffs_nm, cpu_s = np.array([closings.cutoff_nm(cut, iterations) for cut in CUTS]).T
+        off = 100 * (cutoffs_nm / np.array(best) - 1)
         return Deviations(off[:, None], np.zeros(1), float(cpu_s.mean()))
 
-    values = [(iterations, partial(told, iterations)) for iterations in ITERATIONS]
+    values = [(iterations, partial(deviations, iterations)) for iterations in ITERATIONS]
     quantities = [("D0", "%")]
     return Variation(
         "steps of the minimiser", quantities, values, max(ITERATIONS), f"{MORE_ITERATIONS} steps", _samples()
@@ -270,16 +271,17 @@ def _drifts(closings: SmallClosings, name: str, used_fs: float, temperatures_K: 
         record, _ = free_motion(atoms, closings.potential, closings.work / "nve", timestep_fs, steps)
         return drift_meV_atom_ps(record, len(atoms), timestep_fs)
 
-    def told(timestep_fs: float) -> Deviations:
+    def deviations(timestep_fs: float) -> Deviations:
         drifts, cpu_s = _timed(
             lambda: np.array([[drift(timestep_fs, kelvin, cut) for kelvin in temperatures_K.values()] for cut in CUTS])
         )
         return Deviations(drifts, np.zeros(len(temperatures_K)), cpu_s / drifts.size)
 
-    values = [(factor * used_fs, partial(told, factor * used_fs)) for factor in (*TIMESTEPS, FINER_TIMESTEP)]
+    values = [(factor * used_fs, partial(deviations, factor * used_fs)) for factor in TIMESTEPS]
     quantities = [(quantity, "meV per atom and ps") for quantity in temperatures_K]
     samples = f"{len(CUTS)} starts of {FREE_PS:g} ps"
-    return Variation(name, quantities, values, used_fs, "no drift", samples)
+    reference = f"no drift (gate of a closing: {RULES.max_drift_meV_atom_ps:g})"
+    return Variation(name, quantities, values, used_fs, reference, samples)
 
 
 def lowered(body: Atoms, by_A: float, formula: np.ndarray) -> Atoms:
@@ -323,8 +325,8 @@ def _fast(closings: SmallClosings) -> str:
 def _timed(compute: Callable[[], T]) -> tuple[T, float]:
     """What is computed, and processor seconds of this process and of LAMMPS."""
     before = _processor_s()
-    found = compute()
-    return found, _processor_s() - before
+    result = compute()
+    return result, _processor_s() - before
 
 
 def _processor_s() -> float:

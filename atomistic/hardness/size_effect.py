@@ -38,8 +38,8 @@ class FitRules:
     Attributes
     ----------
     interval : quantiles of the 68 % interval, as in the paper.
-    least_runs, least_share : defended runs needed, and their share of all runs. Runs scatter by 11 %, so that four leave
-        their mean open by 6 %; errors that all runs share are 13 %.
+    least_runs, least_share : defended runs needed, and their share of all runs. Runs scatter by 11 %, so that four
+        leave their mean open by 6 %; errors that all runs share are 13 %.
     samples : of the joint distribution of H_macro and H'.
     identified : Student's t of H_macro and of H' from which on a free fit tells both.
     """

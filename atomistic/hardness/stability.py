@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from atomistic.for_studies import HardCase, Verdict, refused
 from atomistic.hardness.closing import ClosedAsperity, run_closing
 from atomistic.hardness.contact_area import Area, calibrated, contact_area
 from atomistic.hardness.glass import MELT_K, TIMESTEP_FS
@@ -33,7 +34,6 @@ from atomistic.lammps import Atoms, load_data, load_dump, write_data
 from atomistic.materials import Material
 from atomistic.potentials import Potential
 from atomistic.settings import AsperitySettings, ClosingSettings
-from atomistic.studied import HardCase, Verdict, refused
 
 FREE_PS = 4.0
 """Time at constant energy: over half of it a heated solid still drifts by 0.25 meV per atom and ps while it melts."""
@@ -252,28 +252,28 @@ def _rising(length_nm: float) -> float:
 
 
 def _no_hardness(rows: Rows, seen: Rows, why: str, cell_area_nm2: float) -> Verdict:
-    found = find_hardness(rows, seen, cell_area_nm2, APPROACH_NM)
-    return found.status != "yield" and why in found.status, found.status
+    hardness = find_hardness(rows, seen, cell_area_nm2, APPROACH_NM)
+    return hardness.status != "yield" and why in hardness.status, hardness.status
 
 
 def _noisy_hardness(rows: Rows) -> Verdict:
-    found = find_hardness(rows, witness(), CELL_AREA_NM2, APPROACH_NM)
-    half = 0.5 * (found.hardness_hi - found.hardness_lo)
-    wide = half > RULES.stop_interval * found.hardness_GPa
-    detail = f"{found.status}, {found.hardness_GPa:.1f} +- {half:.1f} GPa"
-    return found.status == "yield" and wide and abs(found.hardness_GPa - HARDNESS_GPA) < 3 * half, detail
+    hardness = find_hardness(rows, witness(), CELL_AREA_NM2, APPROACH_NM)
+    half = 0.5 * (hardness.hardness_hi - hardness.hardness_lo)
+    wide = half > RULES.stop_interval * hardness.hardness_GPa
+    detail = f"{hardness.status}, {hardness.hardness_GPa:.1f} +- {half:.1f} GPa"
+    return hardness.status == "yield" and wide and abs(hardness.hardness_GPa - HARDNESS_GPA) < 3 * half, detail
 
 
 def _between(rows: Rows, low_GPa: float, high_GPa: float) -> Verdict:
-    found = find_hardness(rows, witness(), CELL_AREA_NM2, APPROACH_NM)
-    if found.status != "yield":
-        return True, found.status
-    return low_GPa <= found.hardness_GPa <= high_GPa, f"{found.hardness_GPa:.1f} GPa"
+    hardness = find_hardness(rows, witness(), CELL_AREA_NM2, APPROACH_NM)
+    if hardness.status != "yield":
+        return True, hardness.status
+    return low_GPa <= hardness.hardness_GPa <= high_GPa, f"{hardness.hardness_GPa:.1f} GPa"
 
 
 def _background(rows: Rows, seen: Rows, exchanges: float) -> Verdict:
-    found = find_hardness(rows, seen, CELL_AREA_NM2, APPROACH_NM)
-    return found.exchanges_before == exchanges, f"{found.exchanges_before:g} exchanges before contact"
+    hardness = find_hardness(rows, seen, CELL_AREA_NM2, APPROACH_NM)
+    return hardness.exchanges_before == exchanges, f"{hardness.exchanges_before:g} exchanges before contact"
 
 
 def _load_written(path: Path, text: str) -> object:
@@ -289,8 +289,8 @@ def _load_cut(glass: Atoms, potential: Potential, path: Path) -> object:
 
 
 def _area(places: np.ndarray, cell: tuple[float, float], middle: tuple[float, float], area_A2: float) -> Verdict:
-    found = contact_area(places, cell, Area(), middle)
-    return abs(found - area_A2) <= 0.15 * area_A2, f"{found:.1f} of {area_A2:.1f} Å2"
+    measured_A2 = contact_area(places, cell, Area(), middle)
+    return abs(measured_A2 - area_A2) <= 0.15 * area_A2, f"{measured_A2:.1f} of {area_A2:.1f} Å2"
 
 
 def _drift(glass: Atoms, potential: Potential, kelvin: float, step_fs: float, work: Path) -> float:
@@ -353,15 +353,15 @@ def _flat(close: Callable[[], ClosedAsperity]) -> Verdict:
     closed = close()
     last = closed.curve[-1]
     cell_nm2 = closed.summary["wavelength_nm"] ** 2
-    found = find_hardness(closed.curve, closed.witness, cell_nm2)
+    hardness = find_hardness(closed.curve, closed.witness, cell_nm2)
     touches = last["force_nN"] > 0 and last["contact_area_nm2"] > RULES.max_area_fraction * cell_nm2
-    detail = f"contact on {last['contact_area_nm2']:.1f} of {cell_nm2:.1f} nm2: {found.status}"
-    return touches and found.status != "yield", detail
+    detail = f"contact on {last['contact_area_nm2']:.1f} of {cell_nm2:.1f} nm2: {hardness.status}"
+    return touches and hardness.status != "yield", detail
 
 
 def _untouched(close: Callable[[], ClosedAsperity]) -> Verdict:
     closed = close()
-    found = find_hardness(closed.curve, closed.witness, closed.summary["wavelength_nm"] ** 2)
+    hardness = find_hardness(closed.curve, closed.witness, closed.summary["wavelength_nm"] ** 2)
     force = max(abs(row["force_nN"]) for row in closed.curve)
     area = max(row["contact_area_nm2"] for row in closed.curve)
-    return force == 0 and found.status != "yield", f"{force:g} nN on {area:g} nm2: {found.status}"
+    return force == 0 and hardness.status != "yield", f"{force:g} nN on {area:g} nm2: {hardness.status}"

@@ -114,8 +114,8 @@ class Beam:
         """Uniform pressure that brings the beam down by its separation at rest, in parts that add up.
 
         Bending 384 EI s / b L^4 (cantilever 8 EI s / b L^4), and 8 N s / b L^2 of the axial force N, that at rest and
-        that of a parabola of sag s, which is 8 s^2 / 3 L longer. Compression counts as no force: a beam about to buckle is not
-        without a scale.
+        that of a parabola of sag s, which is 8 s^2 / 3 L longer. Compression counts as no force: a beam about to buckle
+        is not without a scale.
         """
         sag, length = float(self.rest_m.max()), self.length_m
         stretched_N = self.stretching_N_m * 8.0 * sag**2 / (3.0 * length)

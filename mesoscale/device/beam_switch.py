@@ -35,6 +35,10 @@ from mesoscale.settings import DeviceSettings
 
 Array = NDArray[np.float64]
 
+MOST_V = 1e4
+"""Largest voltage that a scene may state; more pulls no switch."""
+BESIDE = "place electrode nearer to contact, or take a softer beam"
+
 
 @dataclass(frozen=True)
 class BeamStates:
@@ -55,7 +59,11 @@ class BeamStates:
 
 
 def solve_beam(
-    settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.elements, opening_nm: float = OPENING_NM
+    settings: DeviceSettings,
+    law: PadLaw,
+    elements: int = SWITCH.elements,
+    opening_nm: float = OPENING_NM,
+    tolerance: float = SWITCH.release_tolerance,
 ) -> BeamStates:
     """Close the beam on a pad, hold it, and open it.
 
@@ -63,16 +71,23 @@ def solve_beam(
     ----------
     elements : of the beam.
     opening_nm : largest step of a place in contact on the way out.
+    tolerance : relative error of the release.
 
     Raises
     ------
     NotComputed : the beam presses harder than the pad was computed for.
     InputError : the beam never lands, is not held, or is no beam.
     """
-    return solve_bent(beam_of(settings, elements), settings, law, opening_nm)
+    return solve_bent(beam_of(settings, elements), settings, law, opening_nm, tolerance)
 
 
-def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw, opening_nm: float = OPENING_NM) -> BeamStates:
+def solve_bent(
+    beam: Beam,
+    settings: DeviceSettings,
+    law: PadLaw,
+    opening_nm: float = OPENING_NM,
+    tolerance: float = SWITCH.release_tolerance,
+) -> BeamStates:
     """As `solve_beam`, of any beam."""
     moving = _Moving(beam, LocalPad(law), settings)
     pull_in = moving.snap_V()
@@ -87,7 +102,7 @@ def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw, opening_nm: fl
             "hold_voltage_V or dimple_nm, or lower stopper_nm, gap_um, bow_nm or tilt_nm"
         )
     capacitance = moving.capacitance_F()
-    return BeamStates(pull_in, hold, moving.open(hold, opening_nm), share, capacitance * 1e15)
+    return BeamStates(pull_in, hold, moving.open(hold, opening_nm, tolerance), share, capacitance * 1e15)
 
 
 def free_pull_in_V(settings: DeviceSettings, elements: int = 64) -> float:
@@ -231,6 +246,11 @@ class _Moving:
         sides = self.edge_per_nm / NM * np.log(np.pi * width / gaps)
         return float(VACUUM_PERMITTIVITY * width * (self.beam.wired * self.beam.weights_m * (1.0 / gaps + sides)).sum())
 
+    def beside_GPa(self) -> float:
+        """Largest pressure on stoppers beside the pad."""
+        _, lands, _, stopper_nm, stopper_GPa_nm = self.beam.places
+        return float((stopper_GPa_nm * (1.0 - lands) * np.maximum(stopper_nm - self.separation_nm(), 0.0)).max())
+
     def over_nm(self) -> Array:
         """Local separations over what the beam touches first: the pad, or stoppers beside it."""
         touched = np.where(self.beam.lands > 0, self.beam.dimple_nm + self.touch_nm, self.beam.stopper_nm)
@@ -260,6 +280,7 @@ class _Moving:
         way = float(self.over_nm()[max(at - 1, 0) : at + 1].mean())
         squared, kept, states = 0.0, [0.0], [self.nodal]
         for target in np.linspace(0.0, way, SWITCH.down)[1:]:
+            more = wanted = np.inf
             for _ in range(30):
                 change, per_V2 = self.beam.step(
                     self.nodal, lambda s, now=squared: self.load(s, now), 0.0, self.pull_Pa()
@@ -270,10 +291,19 @@ class _Moving:
                 squared += more
                 if abs(more) < 1e-9 * abs(squared) and abs(wanted) < 1e-6 * NM:
                     break
+            touches = self.over_nm().min() < 0.0 and abs(squared) < MOST_V**2
+            # not to the last digit, as where it buckles, is enough; else it must touch or be beyond the snap
+            settled = abs(more) < 1e-3 * abs(squared) and abs(wanted) < 1e-2 * NM
+            if not (settled or touches):
+                if np.argmax(kept) == len(kept) - 1:
+                    raise InputError(f"device: no voltage brings the beam down by {target:.4g} nm; {BESIDE}")
+                break
             kept.append(squared)
             states.append(self.nodal)
-            if self.over_nm().min() < 0.0:
+            if touches:
                 break
+        if max(kept) > MOST_V**2:
+            raise InputError(f"device: more than {MOST_V:g} V are needed to pull the beam down; {BESIDE}")
         top = int(np.argmax(kept))
         if top == len(kept) - 1:
             self.nodal = states[-2]
@@ -314,11 +344,16 @@ class _Moving:
                 f"{law.separation_nm[0]:.4g} nm ({law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa), where its "
                 "curves end"
             )
+        if ended == UNSETTLED and (beside_GPa := self.beside_GPa()) > 0.0:
+            raise InputError(
+                f"device: at {voltage:.4g} V the electrode lands beside the contact part and presses {beside_GPa:.3g} "
+                f"GPa on what stands there; raise stopper_nm or dimple_nm, lower hold_voltage_V, or {BESIDE}"
+            )
         if ended == UNSETTLED:
             raise InputError(f"device: the beam finds no balance at {voltage:.4g} V; this is a fault of the solver")
         return ended == SETTLED
 
-    def open(self, hold_V: float, opening_nm: float) -> float:
+    def open(self, hold_V: float, opening_nm: float, tolerance: float) -> float:
         """Lower the voltage until the beam lets go; the release voltage (0: stuck).
 
         The voltage is halved in the longer steps of closing until it opens. These may tear off a little more than they
@@ -336,7 +371,7 @@ class _Moving:
         high, *held = closed[-2:][0]
         self.nodal, self.deepest = (state.copy() for state in held)
         low = None
-        while low is None or high - low > SWITCH.release_tolerance * high:
+        while low is None or high - low > tolerance * high:
             voltage = lower(high) if low is None else 0.5 * (low + high)
             if self.creep(voltage, opening_nm):
                 high, held = voltage, [self.nodal.copy(), self.deepest.copy()]

@@ -45,11 +45,19 @@ def _with(z: Array, known: Known | None) -> Array:
 
 @dataclass(frozen=True)
 class ReserveResponse:
-    """What was learned of the reserve of a population, from a number of switches."""
+    """What was learned of the reserve of a population.
+
+    Attributes
+    ----------
+    switches : number of them that were pressed.
+    columns, reserves : of those that it was learned from, shapes (m, k) and (m,).
+    """
 
     population: Population
     process: Process
     switches: int
+    columns: Array
+    reserves: Array
 
     def moments(self, z: Array, hold_V: float) -> tuple[Array, Array]:
         """Mean and deviation of the reserve."""
@@ -123,7 +131,8 @@ def learn(population: Population, tell: Callable[[float, str], None], seed: int 
                 f"failure.release_V = {population.release_V:.4g}: {known.sum()} of {within.sum()} switches release "
                 f"above it; accepted are at least {FAILURE.fewest}; lower it, or device.hold_voltage_V"
             )
-        response = ReserveResponse(population, Process(columns[known], reserves[known]), len(reserves))
+        learned = columns[known], reserves[known]
+        response = ReserveResponse(population, Process(*learned), len(reserves), *learned)
         if number == FAILURE.rounds:
             return response
         hold_V, times = float(rng.uniform(low, high)), WORKS[number % len(WORKS)]

@@ -1,6 +1,7 @@
 """The table of uncertain inputs in use (the paper's Table 1): each row from literature or from a stage."""
 
 import json
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
@@ -13,7 +14,7 @@ from mesoscale.inputs.distributions import Distribution, InputTable, UncertainIn
 from mesoscale.settings import TABLE_1, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.contact import AttractionLaw
 from mesoscale.settings.definitions import BY_NAME, RMS_SCATTER
-from mesoscale.tables import foreign_table
+from mesoscale.tables import foreign_columns
 
 NUMBERS = ("a", "b", "low", "high")
 """Of a distribution, in the order of `InputRow.values`; columns of inputs.csv."""
@@ -177,21 +178,30 @@ def stated_distribution(name: str, row: DistributionRow, section: str = "inputs"
     return Distribution("samples", values=np.sort(_read_samples(name, row.values or "", f"{section}.{name}")))
 
 
-def joint_samples(rows: Mapping[str, DistributionRow]) -> dict[tuple[str, str], float]:
+def joint_samples(rows: Mapping[str, InputRow]) -> dict[tuple[str, str], float]:
     """Rank correlations of inputs whose samples stand in the same file, a row of it one joint sample.
 
     Raises
     ------
-    InputError : a file has samples of an input in use that takes its own from elsewhere.
+    InputError : a file has samples of an input in use that takes its own from elsewhere, or joint samples of one that
+        is common to all devices and one that varies with each.
     """
-    files, pairs = dict.fromkeys(row.values for row in rows.values() if isinstance(row.values, str)), {}
-    for file in files:
-        names = [name for name, row in rows.items() if row.values == file]
-        key = f"inputs.{names[0]}.values = {file}"
-        if partners := sorted((set(foreign_table(file, key)[0]) & set(rows)) - set(names)):
+    files: dict[str, list[str]] = {}
+    for name, row in rows.items():
+        if isinstance(row.values, str):
+            files.setdefault(os.path.realpath(row.values), []).append(name)  # ./g.csv is g.csv
+    pairs = {}
+    for file, names in files.items():
+        key = f"inputs.{names[0]}.values = {rows[names[0]].values}"
+        if partners := sorted((set(foreign_columns(file, key)) & set(rows)) - set(names)):
             raise InputError(f"{key}: holds samples of {partners[0]} beside; give inputs.{partners[0]} the same file")
         if len(names) < 2:
             continue
+        if len({rows[name].varies for name in names}) > 1:
+            raise InputError(
+                f"{key}: joint samples of {', '.join(names)}, of which some are common to all devices and others vary "
+                "with each (varies); give these a file of their own"
+            )
         from scipy.stats import spearmanr  # slow to import
 
         columns = {name: _read_samples(name, file, f"inputs.{name}") for name in names}
@@ -238,9 +248,9 @@ def _from_stage(name: str, origin: str, content: Mapping[str, Any], source: str,
 
 
 def _read_samples(name: str, file: str, key: str) -> np.ndarray:
-    rows = foreign_table(file, f"{key}.values = {file}")[1]
+    columns = foreign_columns(file, f"{key}.values = {file}")
     try:
-        values = np.array([float(row[name]) for row in rows])
+        values = np.array([float(value) for value in columns[name]])  # type: ignore[arg-type]  # None: refused below
     except (KeyError, TypeError, ValueError):
         raise InputError(f"{key}.values = {file}: needs a column {name} with one number a row") from None
     if values.size < 2 or not np.isfinite(values).all():

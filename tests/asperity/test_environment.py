@@ -44,6 +44,17 @@ def test_no_module_of_the_folder_is_run(tmp_path, name):
     assert said == ""
 
 
+@pytest.mark.parametrize("name", ["argparse", "ast", "pathlib", "pydantic"])
+@pytest.mark.parametrize("given", [":", "/nowhere:", ".", "::/nowhere"])
+def test_an_empty_entry_of_pythonpath_runs_no_module_of_the_folder(tmp_path, given, name):
+    """Python itself puts the working folder there, before its own modules."""
+    (tmp_path / f"{name}.py").write_text("open('ran', 'w')\nraise SystemExit(7)\n")
+    environment = {**os.environ, "PYTHONPATH": given}
+    done = subprocess.run([ASPERITY, "targets"], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert (done.returncode, (tmp_path / "ran").exists()) == (0, False), done.stderr
+    assert "circuit" in done.stdout
+
+
 def test_pyscf_runs_no_settings_of_the_folder(tmp_path):
     (tmp_path / ".pyscf_conf.py").write_text("print('ran')\n")
     assert started(tmp_path, "import pyscf.__config__") == ""
@@ -239,3 +250,6 @@ def test_text_of_a_stranger_is_shown_without_control_characters():
     assert [as_cell(text) for text in ("=HYPERLINK(1)", "+1+1", "@x", "-x", "-1.5", "a=b", "")] == [
         "'=HYPERLINK(1)", "'+1+1", "'@x", "'-x", "-1.5", "a=b", "",
     ]  # fmt: skip
+    full_width = ("\uff1d1+1", "\uff0b1", "\uff20x", "\uff0dx")  # as the Excel of East Asia computes them
+    assert [as_cell(text) for text in full_width] == [f"'{text}" for text in full_width]
+    assert as_cell("a;\uff1d1") == "a;'\uff1d1"

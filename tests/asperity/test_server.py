@@ -57,6 +57,51 @@ def post(url, path, body):
         return error.code, json.load(error)
 
 
+HEAD = b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+
+
+@pytest.mark.parametrize(
+    ("request_bytes", "words"),
+    [
+        (
+            HEAD + b"Transfer-Encoding: chunked\r\n\r\nZZ\r\nabc\r\n0\r\n\r\n",
+            "no HTTP: Invalid character in chunk size",
+        ),
+        (HEAD + b"Transfer-Encoding: chunked\r\n\r\n3\r\nabcdef\r\n0\r\n\r\n", "no HTTP: Expected LF"),
+        (HEAD + b"Content-Length: -5\r\n\r\n", "no HTTP: Invalid character in Content-Length"),
+        (HEAD + b"Content-Encoding: gzip\r\nContent-Length: 3\r\n\r\nabc", "cannot be decoded"),
+        (b"HELLO\r\n\r\n", "no HTTP: Invalid method"),
+        (HEAD + b"Content-Length: 100\r\n\r\n{", "did not come within 1 s"),
+    ],
+)
+def test_what_is_no_request_is_answered_in_one_line_and_let_go(request_bytes, words):
+    """By a server of its own, whose errors are read: no stacks."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    code = f"from asperity import server; server.BODY_S = 1.0; server.serve('127.0.0.1', {port}, 1)"
+    process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE)
+    try:
+        for _ in range(600):
+            try:
+                client = socket.create_connection(("127.0.0.1", port), timeout=60)
+                break
+            except OSError:
+                time.sleep(0.1)
+        with client:
+            client.sendall(request_bytes)
+            answer = client.makefile("rb").read()  # until the server lets go
+    finally:
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=20)
+    head, _, body = answer.partition(b"\r\n\r\n")
+    assert b" 400 " in head
+    message = json.loads(body)["error"]["message"]
+    assert words in message
+    assert message.isprintable()
+    assert b"Traceback" not in errors
+
+
 @pytest.mark.parametrize(
     ("name", "values", "config"),
     [

@@ -141,6 +141,19 @@ def test_a_small_file_that_costs_gigabytes_or_leads_elsewhere_is_not_read(tmp_pa
         load_h5(tmp_path / "a.h5")
 
 
+def test_groups_in_groups_are_not_visited(tmp_path):
+    """Where 3,000 lie in each other, their visit takes half a minute."""
+    write_h5(tmp_path / "a.h5", {"x": {"y": Dataset(np.zeros(3), "1", "y", ("n",))}}, {}, {})
+    with h5py.File(tmp_path / "a.h5", "a") as file:
+        group = file
+        for _ in range(3000):
+            group = group.create_group("a")
+    started = time.process_time()
+    with pytest.raises(ValueError, match="groups in groups, which no result has"):
+        load_h5(tmp_path / "a.h5")
+    assert time.process_time() - started < 5.0
+
+
 def test_a_planted_log_forges_no_error(tmp_path):
     (tmp_path / "logs").mkdir()
     (tmp_path / "logs/x.log").write_text("ERROR forged\n")

@@ -16,6 +16,7 @@ from atomistic.lammps import load_data
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
 from evidence.attacks.runs import TRACE
+from workflow.files.results import write_text
 from workflow.run import ownership
 from workflow.scene import load_scene
 
@@ -163,3 +164,42 @@ def test_runs_after_interrupted_ones_work_at_once_and_end_as_an_uninterrupted_on
     quiet = make_glass(silica, potential, load_scene(scene).hardness.glass, 1, tmp_path / "quiet")
     np.testing.assert_array_equal(resumed.positions_A, quiet.positions_A)
     np.testing.assert_array_equal(resumed.cell_A, quiet.cell_A)
+
+
+def old_results(folder):
+    """Results of a former version of scene `paper`: a table that no rule makes any more, and a page."""
+    results = folder / "results" / "paper"
+    for name in ("law/wells.csv", "report.html"):
+        (results / name).parent.mkdir(parents=True, exist_ok=True)
+        write_text(results / name, "old\n")
+        os.utime(results / name, (1e9, 1e9))
+    (results / ".scene").write_text("shipped scene paper\n")
+    return results
+
+
+def test_results_of_another_version_are_named_once_and_kept(workflow_in):
+    """Beside new results, the old page is not their report."""
+    results = old_results(workflow_in.folder)
+    done = workflow_in.run("paper", "inputs")
+    assert done.returncode == 0, done.stderr
+    said = " ".join((done.stdout + done.stderr).split())
+    assert said.count("wells.csv is a result of another version: nothing here reads or changes them") == 1
+    assert "report.html is older than they are: a run without a target renews it" in said
+    assert "the report is" not in said
+    assert (results / "law/wells.csv").read_text() == (results / "report.html").read_text() == "old\n"
+    assert (results / "inputs.csv").is_file()
+
+
+def test_a_plan_writes_nothing_and_looks_on_while_a_run_works(workflow_in):
+    results = old_results(workflow_in.folder)
+    before = {path: path.lstat().st_mtime_ns for path in [results, *results.rglob("*")]}
+    assert workflow_in.planned("paper", "inputs")["inputs"] == 1
+    assert {path: path.lstat().st_mtime_ns for path in [results, *results.rglob("*")]} == before
+    held = ownership.take(results)
+    try:
+        assert workflow_in.planned("paper", "inputs")["inputs"] == 1
+        refused = workflow_in.run("paper", "inputs")
+        assert refused.returncode != 0
+        assert "another run of this scene is working here" in refused.stdout + refused.stderr
+    finally:
+        os.close(held)

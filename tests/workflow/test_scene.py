@@ -6,6 +6,9 @@ import time
 
 import pytest
 
+from mesoscale.errors import InputError
+from mesoscale.tables import foreign_table
+from mesoscale.topography.measurements.loading import load_measurements
 from workflow.scene import SCENES, Scene, SceneError, load_scene, locate
 from workflow.scene.documented import DEFAULTS, documented_defaults
 
@@ -139,3 +142,24 @@ def test_a_file_dated_in_the_future_is_refused(tmp_path, monkeypatch):
     os.utime(tmp_path / "rms.csv", (time.time() + 1e6,) * 2)
     with pytest.raises(SceneError, match=r"inputs\.rms\.file = rms\.csv: dated in the future"):
         locate("mine.yaml", "inputs.rms.file", ["rms.csv"])
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("<a>.csv", "angle brackets mean path variables to Snakemake; rename the file"),
+        ("/proc/kmsg", "of the system, not of data"),
+    ],
+)
+def test_files_that_snakemake_or_nobody_can_read_are_refused(tmp_path, name, words):
+    (tmp_path / "<a>.csv").write_text("")
+    (tmp_path / "mine.yaml").write_text("name: mine\n")
+    with pytest.raises(SceneError, match=words):
+        locate(str(tmp_path / "mine.yaml"), "inputs.rms.values", [name])
+
+
+def test_files_of_the_system_are_neither_tables_nor_scans():
+    """/proc/kmsg waits for ever for what the kernel says next."""
+    for read in (lambda: foreign_table("/proc/kmsg", "inputs.rms.values"), lambda: load_measurements("/proc/kmsg")):
+        with pytest.raises(InputError, match="of the system, not of data"):
+            read()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from atomistic.studied import Deviations, HardCase, Variation
+from atomistic.for_studies import Deviations, HardCase, Variation
 from mesoscale.studies.driver import rows_of
 from workflow.run.studies_of_atoms import hard_rows, knobs_of
 

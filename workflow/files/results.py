@@ -224,6 +224,10 @@ def _attributes(values: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+DEEPEST = 4
+"""Groups in each other in a result; the time to visit them grows with their depth squared: 3,000 take half a minute."""
+
+
 def load_h5(path: str | Path) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
     """Read an HDF5 result file: datasets by group, root attributes, attributes by group.
 
@@ -255,7 +259,13 @@ def checked_items(file: Any) -> dict[str, Any]:
     ValueError : its datasets are too large or lie in other files.
     """
     items: dict[str, Any] = {}
-    file.visititems(items.__setitem__)
+
+    def kept(name: str, item: Any) -> bool | None:
+        items[name] = item
+        return True if name.count("/") > DEEPEST else None
+
+    if file.visititems(kept):
+        raise ValueError(f"{file.filename}: groups in groups, which no result has; delete it and run again")
     datasets = [item for item in items.values() if hasattr(item, "nbytes")]
     size = sum(dataset.nbytes for dataset in datasets)
     # the largest result that ships has 18 MB; deflate packs 1032 times at most, what is not written takes nothing

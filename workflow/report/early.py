@@ -8,7 +8,8 @@ from mesoscale.device.release import switch_on_pad
 from workflow.report.available import Results
 from workflow.report.render import render
 
-STATUS = "the run goes on; its end renews this page"
+STATUS = "this page was made during the run, whose end renews it (start the run again if it was stopped)"
+"""True also after a run that was stopped or killed, which writes no other page."""
 
 
 def early_page(root: Path, paths: list[str], central: PadModel, cell_area_nm2: float, scene: dict[str, Any]) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from matplotlib.ticker import LogLocator
 
 from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import INK, SERIES, SOFT, draw
@@ -32,6 +33,10 @@ TOLD_APART = 2.0
 """Two errors differ where they do by as many of their own errors."""
 PER_ROW = 2
 """Panels of a row of the picture."""
+LEGEND_LINE = 0.2
+"""Height of a line of a legend, inches."""
+ROUNDING = 1e-9
+"""Errors that are rounding, in % or volts: not drawn."""
 
 
 @dataclass(frozen=True)
@@ -258,18 +263,22 @@ def error_against_time(tables: Sequence[KnobTable]) -> str | None:
     def plot(*axes):
         for axis, ((stage, unit), knobs) in zip(axes, panels.items(), strict=False):
             _draw_panel(axis, knobs)
+            axis.xaxis.set_minor_locator(LogLocator(subs=(2, 5)))  # their labels have room
             axis.set(title=stage, xlabel="processor time (s)", ylabel=f"error ({unit})", xscale="log", yscale="log")
         for axis in axes[len(panels) :]:
             axis.set_visible(False)
 
     label = "Numerical error against processor time, for each choice of each stage"
-    return draw("accuracy", label, plot, (4.4 * columns, 3.6 * rows), columns=columns, rows=rows)
+    legend = max(map(len, panels.values())) * LEGEND_LINE
+    return draw("accuracy", label, plot, (4.4 * columns, (3.2 + legend) * rows), columns=columns, rows=rows)
 
 
 def drawn_points(table: KnobTable) -> list[tuple[float, float, bool]]:
     """Processor seconds, error and whether it is in use, of the values that logarithms can show."""
     return [
-        (value.cpu_s, error.error, value.shipped) for value, error in table.curve if value.cpu_s > 0 and error.error > 0
+        (value.cpu_s, error.error, value.shipped)
+        for value, error in table.curve
+        if value.cpu_s > 0 and error.error > ROUNDING
     ]
 
 
@@ -283,7 +292,7 @@ def _draw_panel(axis, knobs: Sequence[KnobTable]) -> None:
         axis.plot(seconds[shipped], errors[shipped], "o", color=INK, markerfacecolor="none", markersize=10, linewidth=0)
     front = pareto_front([(seconds, error) for seconds, error, _ in every])
     axis.plot(*zip(*front, strict=True), "--", color=SOFT, linewidth=1, zorder=0)
-    axis.legend(fontsize=8)
+    axis.legend(fontsize=8, loc="upper left", bbox_to_anchor=(0, -0.18))  # below: nowhere else is free
 
 
 def pareto_front(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -1,7 +1,7 @@
 # Error against run time (accuracy) and stiff and extreme cases (stability) of every stage that the scene uses
 
 OF_CELL = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"}
-STUDIED = {  # what both studies of a stage read beside settings, and whether the scene uses the stage
+OF_STAGE = {  # what both studies of a stage read beside settings, and whether the scene uses the stage
     "hardness": (
         {
             "material": BODIES.material,
@@ -42,12 +42,12 @@ ALSO_READ = {  # by one study alone
 
 def studies_of(kind):
     """The tables of a kind of study: those of the stages that the scene uses."""
-    return [f"{RESULTS}/{kind}/{stage}.csv" for stage, (_, used) in STUDIED.items() if used]
+    return [f"{RESULTS}/{kind}/{stage}.csv" for stage, (_, used) in OF_STAGE.items() if used]
 
 
-def read_by_study(wildcards):
+def files_of_study(wildcards):
     """As named inputs: what a study reads; a stage that the scene does not use is refused."""
-    files, used = STUDIED[wildcards.stage]
+    files, used = OF_STAGE[wildcards.stage]
     words = f"target accuracy or stability: the scene does not use the stage {wildcards.stage}; nothing to study"
     return {"used": required(used, words), **files, **ALSO_READ.get(f"{wildcards.kind}/{wildcards.stage}", {})}
 
@@ -70,14 +70,14 @@ rule stability:
 
 rule study:
     input:
-        unpack(read_by_study),
+        unpack(files_of_study),
     output:
         f"{RESULTS}/{{kind}}/{{stage}}.csv",
     log:
         f"{RESULTS}/logs/{{kind}}_{{stage}}.log",
     wildcard_constraints:
         kind="accuracy|stability",
-        stage="|".join(STUDIED),
+        stage="|".join(OF_STAGE),
     resources:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:

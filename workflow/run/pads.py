@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
+
 from mesoscale.device.points import (
     Design,
     Pad,
@@ -14,16 +16,20 @@ from mesoscale.device.points import (
     cutoff_range,
     on_pad_grid,
     plan_points,
+    press_pad,
+    surfaces_of,
 )
+from mesoscale.failure.population import Population
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import film_table, from_rows
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import Flats
-from mesoscale.settings import ContactSettings, DeviceSettings, PadSettings
+from mesoscale.settings import ContactSettings, DeviceSettings, FailureSettings, PadSettings
 from workflow.files.results import Dataset, load_csv, load_h5, load_json, write_h5
 from workflow.run.contact_settings import contact_settings
 from workflow.run.job import settings_from_job
+from workflow.schemas import UnfitTable
 
 STATES = ("pull_in_V", "release_V", "capacitance_fF", "deepened")
 CURVES = {
@@ -114,9 +120,80 @@ def points_of_job(snakemake: Any) -> tuple[ScenePoints, PadSettings]:
     return ScenePoints(table, contact, device, pad.points), pad
 
 
+class UnfitModel(UnfitTable):
+    """A file of pads that no run wrote so; the message is one line."""
+
+
+def _check(where: str, fits: bool | np.bool_, what: str) -> None:
+    if not fits:
+        raise UnfitModel(f"{where}: {what}; delete the file and run again")
+
+
+def _check_solved(where: str, said: Mapping[str, Any]) -> None:
+    """See that a point has either a reason or all states, each in its range.
+
+    Raises
+    ------
+    UnfitModel
+    """
+    for name in ("halves_V", "refused"):
+        _check(where, name in said, f"no attribute {name}")
+    halves = np.asarray(said["halves_V"])
+    _check(where, halves.shape == (2,) and halves.dtype.kind == "f" and not (halves < 0.0).any(), "halves_V: no two V")
+    _check(where, isinstance(said["refused"], str), "refused: no text")
+    for name in STATES:
+        if said["refused"]:
+            _check(where, name not in said, f"{name} of a point without an answer")
+            continue
+        value = np.asarray(said.get(name, np.nan))
+        number = value.shape == () and value.dtype.kind in "fiu" and np.isfinite(value) and 0.0 <= value <= 1e9
+        _check(where, bool(number), f"{name} = {said.get(name)!r:.40}: accepted is a number from 0 on")
+
+
+def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.ndarray]) -> None:
+    """See that the curves of a pad have the shapes and ranges in which they are written.
+
+    Raises
+    ------
+    UnfitModel
+    """
+    for name in CURVES:
+        _check(where, name in curves and np.asarray(curves[name]).dtype.kind in "fiu", f"no numbers {name}")
+    sizes = {"force": 2}
+    for name, (_, _, dims) in CURVES.items():
+        shape = curves[name].shape
+        _check(where, len(shape) == len(dims), f"{name}: {len(shape)} dimensions for {len(dims)}")
+        for dim, size in zip(dims, shape, strict=True):
+            _check(where, size == sizes.setdefault(dim, size) and size > 0, f"{name}: {size} along {dim}")
+    separation, depth = curves["separation_nm"], curves["depth"]
+    finite = [np.isfinite(curves[name]).all() for name in CURVES if name != "opening_GPa"]
+    _check(where, all(finite) and not np.isinf(curves["opening_GPa"]).any(), "values that are not finite")
+    _check(where, separation.size > 1 and (np.diff(separation) < 0.0).all(), "separation_nm does not fall")
+    places = depth.dtype.kind in "iu" and (np.diff(depth) > 0).all() and depth[0] >= 0 and depth[-1] < separation.size
+    _check(where, bool(places), "depth: no rising positions in separation_nm")
+    weight = curves["weight"]
+    _check(where, (weight >= 0.0).all() and abs(weight.sum() - 1.0) < 1e-6, "weight: no shares of 1")
+    _check(where, (curves["rms_ratio"] > 0.0).all(), "rms_ratio: not positive")
+    for name in ("closing_GPa", "opening_GPa"):
+        repulsive, attractive = np.moveaxis(curves[name], -2, 0)
+        nothing = 1e-9 * np.nanmax(np.abs(curves[name]))
+        signs = not (repulsive < -nothing).any() and not (attractive > nothing).any()
+        _check(where, signs, f"{name}: repulsion is positive and attraction negative")
+    for name in ("hamaker", "offset_nm"):
+        value = np.asarray(said.get(name, np.nan))
+        number = value.shape == () and value.dtype.kind in "fiu" and np.isfinite(value) and value >= 0.0
+        _check(where, bool(number), f"{name} = {said.get(name)!r:.40}: accepted is a number from 0 on")
+
+
 def load_model(paths: Sequence[str], points: ScenePoints) -> PadModel:
-    """The pad from pad/model.h5, or from the files of its parts."""
+    """The pad from pad/model.h5, or from the files of its parts.
+
+    Raises
+    ------
+    UnfitModel : a file that no run wrote so, or that is of another scene.
+    """
     solved = dict(item for path in paths for item in _of_file(path, points.by_number))
+    _check(", ".join(paths), 0 in solved, "no central point")
     central = solved.pop(0)
     return PadModel(central, points.design, tuple(solved[number] for number in sorted(solved)))
 
@@ -126,8 +203,13 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
     for name, said in attributes.items():
         if not name.startswith("point_"):
             continue
-        number, pad = int(name.removeprefix("point_")), None
+        digits, pad, where = name.removeprefix("point_"), None, f"{path}: {name}"
+        _check(where, digits.isascii() and digits.isdigit() and int(digits) in points, "no point of this scene")
+        number = int(digits)
+        _check_solved(where, said)
+        _check(where, name in groups or bool(said["refused"]), "no curves")
         if name in groups:
+            _check_curves(where, said, groups[name])
             curves = groups[name]
             cells = PadCells(
                 PadGrid(curves["separation_nm"], curves["depth"]),
@@ -142,3 +224,20 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
         states = {key: float(said[key]) for key in STATES if key in said}
         first, second = (float(value) for value in said["halves_V"])
         yield number, Solved(points[number], pad, states, (first, second), str(said["refused"]))
+
+
+def population_of_job(snakemake: Any) -> tuple[Population, float]:
+    """All switches of a job that also has section `failure` of its scene, and the share of them that may fail."""
+    asked = settings_from_job(FailureSettings, snakemake.params.failure)
+    assert asked.probability is not None, "rules refuse scenes without it"
+    points, pad = points_of_job(snakemake)
+    model = load_model([snakemake.input.model], points)
+
+    def press(point: Point, times: int, number: int) -> Pad:
+        surfaces = surfaces_of(100_000 + number)  # beyond those of the points of an answer
+        return press_pad(point, points.on_grid, times * pad.point_cells, surfaces)
+
+    pads = {k: one.pad for k, one in enumerate(model.points) if one.pad}
+    known = points.design.probability[np.array(list(pads), int)], list(pads.values())
+    population = Population(points.table, points.device, points.cutoffs_nm, asked.release_V, press, known)
+    return population, asked.probability

@@ -63,8 +63,8 @@ def stability_of_topography(snakemake: Any, progress: Progress) -> Iterator[Stud
 def accuracy_of_contact(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
     """Of one cycle at central inputs; where the scene has a switch, of its release, too."""
     pads = None
-    if found := central_pads(snakemake):
-        point, on_grid, releases = found
+    if central := central_pads(snakemake):
+        point, on_grid, releases = central
         pads = on_grid, partial(releases, point)
     return contact_accuracy.accuracy_points(*central_contact(snakemake), pads, progress)
 

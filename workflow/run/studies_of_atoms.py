@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from atomistic import studied
+from atomistic import for_studies
 from atomistic.elastic import accuracy as elastic_accuracy
 from atomistic.elastic import stability as elastic_stability
 from atomistic.elastic.moduli import share_of_glass
@@ -60,10 +60,11 @@ def accuracy_of_elastic(snakemake: Any, progress: Progress) -> Iterator[StudyRow
             glass = load_structure(structures[modulus.structure])
             glasses.append(elastic_accuracy.ScannedGlass(glass, dft, energies_eV))
     scan_s = float(np.mean(seconds)) if seconds else 0.0
-    found = elastic_accuracy.variations(glasses, [modulus.B_GPa for modulus in trusted], scan_s)
-    of_glass = share_of_glass(load_json(snakemake.input.e_star))
-    volts = {"B": of_glass * volt for volt in input_volts(snakemake, ("e_star",)).values()}
-    return rows_of(knobs_of(found, volts), progress)
+    choices = elastic_accuracy.variations(glasses, [modulus.B_GPa for modulus in trusted], scan_s)
+    volts = {}
+    if of_e_star := input_volts(snakemake, ("e_star",)):
+        volts["B"] = share_of_glass(load_json(snakemake.input.e_star)) * of_e_star["e_star"]
+    return rows_of(knobs_of(choices, volts), progress)
 
 
 def stability_of_elastic(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
@@ -99,7 +100,7 @@ def atoms_of_job(snakemake: Any) -> tuple[Material, Potential, Atoms, Path]:
     return material, potential, glass, work
 
 
-def hard_rows(cases: Sequence[studied.HardCase], progress: Progress | None = None) -> Iterator[StudyRow]:
+def hard_rows(cases: Sequence[for_studies.HardCase], progress: Progress | None = None) -> Iterator[StudyRow]:
     """Rows of a stability table without the stage."""
     return stability_rows([HardCase(*case) for case in cases], progress)
 
@@ -113,7 +114,7 @@ def input_volts(snakemake: Any, names: Sequence[str]) -> dict[str, float]:
     return volts_per_percent(point, lambda moved: releases(moved, on_grid, NUMERICS), names)
 
 
-def knobs_of(variations: Sequence[studied.Variation], volts: Mapping[str, float]) -> list[Knob]:
+def knobs_of(variations: Sequence[for_studies.Variation], volts: Mapping[str, float]) -> list[Knob]:
     """The choices of a stage of atoms as the driver takes them.
 
     Parameters
@@ -129,13 +130,13 @@ def knobs_of(variations: Sequence[studied.Variation], volts: Mapping[str, float]
     return knobs
 
 
-def _errors(compute: Callable[[], studied.Deviations]) -> Errors:
+def _errors(compute: Callable[[], for_studies.Deviations]) -> Errors:
     """The errors of a value, known as far as its samples scatter and as it says itself."""
-    found, cost = timed(compute)
-    error, by_scatter = root_mean_square(found.values)
-    own_error = np.hypot(np.nan_to_num(by_scatter), found.noise)
+    deviations, cost = timed(compute)
+    error, by_scatter = root_mean_square(deviations.values)
+    own_error = np.hypot(np.nan_to_num(by_scatter), deviations.noise)
     # a value shares computations with others, so that it says itself what it takes, on one core
-    return Errors(error, own_error, Cost(found.cpu_s, found.cpu_s, cost.peak_rss_MB))
+    return Errors(error, own_error, Cost(deviations.cpu_s, deviations.cpu_s, cost.peak_rss_MB))
 
 
 STUDIES_OF_ATOMS = {

@@ -8,11 +8,13 @@ from mesoscale.studies import (
     answer_stability,
     circuit_accuracy,
     circuit_stability,
+    failure_accuracy,
+    failure_stability,
     pad_accuracy,
     pad_stability,
 )
 from mesoscale.studies.driver import Progress, StudyRow, stability_rows
-from workflow.run.pads import load_model, points_of_job
+from workflow.run.pads import load_model, points_of_job, population_of_job
 
 
 def accuracy_of_pad(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
@@ -56,6 +58,17 @@ def stability_of_circuit(snakemake: Any, progress: Progress) -> Iterator[StudyRo
     return stability_rows(cases, progress)
 
 
+def accuracy_of_failure(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Of the probability that the scene allows."""
+    return failure_accuracy.accuracy_points(*population_of_job(snakemake), progress)
+
+
+def stability_of_failure(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Rare, certain and impossible failures."""
+    population, _ = population_of_job(snakemake)
+    return stability_rows(failure_stability.hard_cases(population), progress)
+
+
 STUDIES_OF_SWITCH: dict[tuple[str, str], Callable[[Any, Progress], Iterator[StudyRow]]] = {
     ("accuracy", "pad"): accuracy_of_pad,
     ("stability", "pad"): stability_of_pad,
@@ -63,4 +76,6 @@ STUDIES_OF_SWITCH: dict[tuple[str, str], Callable[[Any, Progress], Iterator[Stud
     ("stability", "answer"): stability_of_answer,
     ("accuracy", "circuit"): accuracy_of_circuit,
     ("stability", "circuit"): stability_of_circuit,
+    ("accuracy", "failure"): accuracy_of_failure,
+    ("stability", "failure"): stability_of_failure,
 }

@@ -134,7 +134,16 @@ def _no_such_air(scene: Scene) -> str:
 
 def _no_switch(device: DeviceSettings) -> str:
     """One line on a device that is no switch; empty where nothing is known against it."""
-    unusual = {"hold_voltage_V", "residual_stress_MPa", "temperature_C", "ends", "stopper_nm", "dimple_nm", "spread"}
+    parts = {"electrode", "contact"}
+    unusual = parts | {
+        "hold_voltage_V",
+        "residual_stress_MPa",
+        "temperature_C",
+        "ends",
+        "stopper_nm",
+        "dimple_nm",
+        "spread",
+    }
     if device.touching_at_rest or not device.bends or not unusual & device.model_fields_set:
         return device.touching_at_rest
     from mesoscale.device.pressing import never_closes, pull_in_V  # takes a second

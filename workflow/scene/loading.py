@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from asperity.guards.bundle import ROOT
 from asperity.guards.errors import InputError
+from asperity.guards.foreign_files import is_of_the_system
 from asperity.guards.foreign_text import did_you_mean, shown
 from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
 from mesoscale.topography.measurements import check_count, files_in
@@ -131,8 +132,8 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
 
     Raises
     ------
-    SceneError : a file is missing or dated in the future, or its path has braces or characters that do not print; one
-        line per file.
+    SceneError : a file is missing, dated in the future or of the system, or its path has brackets or characters that
+        do not print; one line per file.
     """
     files, mistakes = [], []
     beside = _folders_of(scene)
@@ -145,6 +146,12 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
             mistakes.append(f"{scene}: {key} = {shown(path)}: characters that do not print; rename the file")
         elif set(path) & set("{}"):
             mistakes.append(f"{scene}: {key} = {_cut(path)}: braces mean wildcards to Snakemake; rename the file")
+        elif {"<", ">"} <= set(path):
+            mistakes.append(
+                f"{scene}: {key} = {_cut(path)}: angle brackets mean path variables to Snakemake; rename the file"
+            )
+        elif is_of_the_system(path):
+            mistakes.append(f"{scene}: {key} = {_cut(path)}: of the system, not of data; copy what you need of it")
         elif os.path.getmtime(path) > time.time() + CLOCK_S:
             mistakes.append(
                 f"{scene}: {key} = {_cut(path)}: dated in the future, so that every result of it would seem older; set "

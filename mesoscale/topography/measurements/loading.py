@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from asperity.guards.foreign_files import is_of_the_system
 from asperity.guards.foreign_yaml import MistakenYaml, parse
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
@@ -89,6 +90,8 @@ def load_measurements(
     path, settings = Path(path), settings or TopographySettings()
     if not os.path.isfile(path):  # unlike Path.is_file, False for a name that is too long
         raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
+    if is_of_the_system(path):
+        raise InputError(f"{path}: of the system, not of data; copy what you need of it")
     with needs("scans"):  # imported here, so that the process that reads, a fork of this one, has the readers
         import SurfaceTopography.Container.IO
         import SurfaceTopography.IO  # noqa: F401  loads all of that library

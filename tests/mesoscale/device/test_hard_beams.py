@@ -3,6 +3,8 @@
 import pytest
 
 from mesoscale.device.beam import lumped_beam
+from mesoscale.device.beam_switch import solve_beam
+from mesoscale.device.electrode import with_pad
 from mesoscale.device.spread import check_spread
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
@@ -57,3 +59,18 @@ def test_a_device_that_is_none_is_refused_in_one_line(change, words):
     with pytest.raises(InputError, match=words) as caught:
         DeviceSettings(**change)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("electrode", "contact", "words"),
+    [
+        ((0.0, 0.05), (0.9, 1.0), "no voltage brings the beam down by 3446 nm; place electrode nearer to contact"),
+        ((0.0, 0.02), (0.0, 1.0), "place electrode nearer to contact, or take a softer beam"),
+        ((0.05, 0.2), (0.45, 0.55), r"at 390.1 V the electrode lands beside the contact part and presses .* GPa on"),
+        ((0.1, 0.3), (0.6, 0.9), r"at 202.6 V the beam does not land on the pad"),
+    ],
+)
+def test_an_electrode_beside_its_contact_is_refused_for_a_true_reason(electrode, contact, words):
+    """By its place, and not by voltages that nobody has or by a fault of the solver."""
+    with pytest.raises(InputError, match=words):
+        with_pad(lambda law: solve_beam(DeviceSettings(electrode=electrode, contact=contact), law), made_up_law(2.0))

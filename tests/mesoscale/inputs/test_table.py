@@ -171,6 +171,66 @@ def test_samples_of_one_file_are_joint(tmp_path):
     assert np.std(drawn["rms"] - 3 - 2 * (1 - drawn["hurst"])) == pytest.approx(0.1, rel=0.1)
 
 
+def samples_of(*names, varies="common", **files):
+    rows = {name: InputRow(distribution="samples", values=str(files[name]), varies=varies) for name in names}
+    return PAPER.model_copy(update=rows)
+
+
+def test_joint_samples_of_a_file_are_joint_however_its_path_is_written(tmp_path):
+    """As are those of a link to it."""
+    file, link = tmp_path / "g.csv", tmp_path / "link.csv"
+    rng = np.random.default_rng(0)
+    np.savetxt(file, rng.uniform(0.6, 0.9, 200)[:, None] * [1.0, 10.0], delimiter=",", header="hurst,rms", comments="")
+    link.symlink_to(file)
+    for other in (f"{tmp_path}/./g.csv", link):
+        table = collect(samples_of("hurst", "rms", hurst=file, rms=other), {}, {})
+        k, m = table.names.index("hurst"), table.names.index("rms")
+        assert table.correlation[k, m] == pytest.approx(1.0)
+
+
+def test_joint_samples_of_what_is_common_and_what_varies_are_refused(tmp_path):
+    file = tmp_path / "g.csv"
+    file.write_text("hurst,rms\n0.7,4\n0.8,5\n0.75,7\n")
+    settings = samples_of("hurst", "rms", hurst=file, rms=file)
+    settings = settings.model_copy(update={"rms": settings.rms.model_copy(update={"varies": "each"})})
+    for check in (lambda: collect(settings, {}, {}), lambda: check_literature(settings)):
+        with pytest.raises(InputError, match="joint samples of hurst, rms, of which some are common to all devices"):
+            check()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("rms,rms\n4,5\n6,7\n", "2 columns are named rms; rename or remove all but one"),
+        ("rms\n4,5\n5,1\n6,3\n", "row 1 has 2 values, the header 1 names; write decimal points"),
+        ("rms,hurst\n4\n5\n", "holds samples of hurst beside"),
+        ("place,x\n4,1\n", "needs a column rms with one number a row"),
+        ("rms\n4\n\n", "1 samples; at least 2"),
+    ],
+)
+def test_tables_of_samples_that_say_two_things_are_refused(tmp_path, text, words):
+    file = tmp_path / "g.csv"
+    file.write_text(text)
+    with pytest.raises(InputError, match=words) as caught:
+        collect(samples_of("rms", rms=file), {}, {})
+    assert "\n" not in str(caught.value)
+
+
+def test_a_table_is_read_once_for_all_its_columns(tmp_path, monkeypatch):
+    """And again when it changed; empty columns at the end of each row are none."""
+    file, opened = tmp_path / "g.csv", []
+    file.write_text("hurst,rms,\n0.7,4,\n0.8,5,\n0.75,7,\n")
+    read = Path.open
+    monkeypatch.setattr(Path, "open", lambda self, *args, **more: opened.append(self) or read(self, *args, **more))
+    settings = samples_of("hurst", "rms", hurst=file, rms=file)
+    collect(settings, {}, {})
+    check_literature(settings)
+    assert opened.count(file) == 1
+    file.write_text("hurst,rms\n0.7,4\n0.8,5\n0.75,9.5\n")
+    (rms,) = (row for row in collect(settings, {}, {}).rows if row.name == "rms")
+    assert rms.distribution.values.max() == 9.5
+
+
 def test_samples_without_their_partners_are_refused(tmp_path):
     file = tmp_path / "film.csv"
     file.write_text("hurst,rms\n0.5,3\n0.7,4\n")

@@ -68,8 +68,8 @@ def refused(compute: Callable[[], object], because: str, *kinds: type[Exception]
     kinds : errors that count as a refusal beside `InputError`.
     """
     try:
-        found = compute()
+        result = compute()
     except (InputError, *kinds) as error:
         message = str(error)
         return because in message and "\n" not in message, message
-    return False, f"not refused: {found}"
+    return False, f"not refused: {result}"

@@ -1,0 +1,146 @@
+"""Error of a rare probability of failure against run time.
+
+All values are judged at the attraction with which as many switches as allowed fail by the response.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from scipy.special import ndtr
+
+from mesoscale.failure.population import FAILURE, Population
+from mesoscale.failure.rate import ReserveResponse, just_allowed, learn
+from mesoscale.studies.driver import (
+    Array,
+    Choice,
+    Cost,
+    Errors,
+    Knob,
+    Progress,
+    Quantity,
+    StudyRow,
+    root_mean_square,
+    rows_of,
+    timed,
+)
+from mesoscale.uncertainty.rare_events import LEAST, REPEATS, SAMPLES, Process, Sampled
+
+SEEDS = 4
+"""Independent tries of each choice."""
+PARTS = 8
+"""Random parts of the switches."""
+FIRST_SEED = 100
+"""Beyond those of the stage."""
+RESAMPLES = 400
+SAMPLED, LEARNED, RUNS = "points of each level", "switches learned from", "switches that correct a probability"
+UNIT = "% of the probability"
+RATE = Quantity("probability of failure", UNIT)
+
+
+def accuracy_points(population: Population, allowed: float, progress: Progress) -> Iterator[StudyRow]:
+    """Rows of accuracy/failure.csv without the stage.
+
+    Parameters
+    ----------
+    allowed : share of the switches that may fail.
+
+    Raises
+    ------
+    InputError : see `learn`.
+    """
+    response, learning = timed(partial(learn, population, lambda share, words: progress(0.4 * share, words)))
+    times = just_allowed(response, population.hold_V, allowed)
+    sampled = response.sample(times, population.hold_V, FIRST_SEED, repeats=REPEATS)
+    knobs = [
+        _points(response, times),
+        _learned(response, sampled, times, learning),
+        _runs(response, sampled, times),
+    ]
+    yield from rows_of(knobs, lambda share, words: progress(0.5 + 0.5 * share, words))
+
+
+def _logarithm(probability: float) -> float:
+    """Of the probability, in per cent: small differences are then relative ones, large ones have no bound."""
+    return 100.0 * float(np.log(max(probability, LEAST)))
+
+
+def _points(response: ReserveResponse, times: float) -> Knob:
+    """Fewer or more points of each level of subset simulation, by the same response."""
+    hold_V = response.population.hold_V
+
+    def probabilities(samples: int, seeds: int = SEEDS) -> Array:
+        found = [response.sample(times, hold_V, FIRST_SEED + k, samples=samples, repeats=REPEATS) for k in range(seeds)]
+        return np.array([[_logarithm(sampled.probability)] for sampled in found])
+
+    # of fewer than some 400 points OpenTURNS may find a variance below zero, and stops
+    counts = (SAMPLES // 4, SAMPLES // 2, SAMPLES)
+    choices = [Choice(count, partial(probabilities, count)) for count in counts]
+    most = 4 * SAMPLES
+    best = partial(probabilities, most, 1)
+    return Knob(SAMPLED, [RATE], choices, SAMPLES, f"{most} points", best, f"{SEEDS} seeds")
+
+
+def _learned(response: ReserveResponse, sampled: Sampled, times: float, learning: Cost) -> Knob:
+    """A response from random parts of the switches. It takes the time of pressing so many.
+
+    Failures by the whole response are weighed by what the other one says of them (importance sampling), which costs
+    nothing beside a search of its own.
+    """
+    count = len(response.reserves)
+    hold_V = response.population.hold_V
+
+    def errors(part: int) -> Errors:
+        deviations = []
+        for seed in range(PARTS):
+            chosen = np.random.default_rng(seed).permutation(count)[:part]
+            process = Process(response.columns[chosen], response.reserves[chosen])
+            mean, deviation = replace(response, process=process).moments(sampled.points, hold_V)
+            chance = ndtr((np.log(times) - mean) / deviation)
+            deviations.append([_logarithm(sampled.probability * float(np.mean(chance / sampled.chance)))])
+        share = part / response.switches
+        cost = Cost(share * learning.wall_s, share * learning.cpu_s, learning.peak_rss_MB)
+        return Errors(*root_mean_square(np.array(deviations) - _logarithm(sampled.probability)), cost)
+
+    parts = [round(share * count) for share in (0.4, 0.6, 0.8)]
+    choices = [Choice(part, partial(errors, part)) for part in parts]
+    words = f"all {count} switches that were learned from"
+    return Knob(LEARNED, [RATE], choices, count, words, samples=f"{PARTS} random parts")
+
+
+def _runs(response: ReserveResponse, sampled: Sampled, times: float) -> Knob:
+    """Fewer or more switches that correct the response: standard errors, by drawing so many of those in use."""
+    factors, cost = timed(partial(correcting_factors, response, sampled, times))
+    count = max(factors.size, 1)
+
+    def errors(runs: int) -> Errors:
+        found, own = relative_errors(factors, runs)
+        of_runs = Cost(runs * cost.wall_s / count, runs * cost.cpu_s / count, cost.peak_rss_MB)
+        return Errors([found], [own], of_runs)
+
+    counts = (FAILURE.runs // 4, FAILURE.runs // 2, FAILURE.runs, 2 * FAILURE.runs)
+    choices = [Choice(runs, partial(errors, runs)) for runs in counts]
+    words = f"mean of {factors.size} switches that nearly fail"
+    return Knob(RUNS, [RATE], choices, FAILURE.runs, words, samples=f"{RESAMPLES} draws of them")
+
+
+def correcting_factors(response: ReserveResponse, sampled: Sampled, times: float) -> Array:
+    """Of switches that fail by the response: 1 over its chance where one does fail, else 0; shape (runs,)."""
+    chosen = np.random.default_rng(FIRST_SEED).permutation(len(sampled.points))[: FAILURE.runs]
+    population = response.population
+    failed = population.failed(sampled.points[chosen], population.hold_V, times)
+    return failed / sampled.chance[chosen]
+
+
+def relative_errors(factors: Array, runs: int) -> tuple[float, float]:
+    """Standard error of the mean of so many factors (%), and its own by leaving one out; NaN where none fails."""
+    if factors.size < 2 or not factors.any():
+        return np.nan, np.nan
+
+    def error(values: Array) -> float:
+        return 100.0 * float(values.std(ddof=1) / values.mean() / np.sqrt(runs))
+
+    without = np.array([error(np.delete(factors, k)) for k in range(factors.size) if np.delete(factors, k).any()])
+    own = float(np.sqrt((factors.size - 1) / factors.size * ((without - without.mean()) ** 2).sum()))
+    return error(factors), own
