@@ -7,11 +7,13 @@ those of the ones before.
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache, partial
 
 import numpy as np
 from ase import Atoms
+from ase.calculators.calculator import CalculationFailed
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
@@ -62,12 +64,15 @@ class ScannedGlass:
     solutions: list[Solution] = field(default_factory=list)
 
     def modulus(self, strains: Sequence[float]) -> Fitted:
-        """B by the fit of the stage."""
-        fit = fit_equation_of_state(*self.curve(strains))
+        """B by the fit of the stage; NaN where an energy is missing."""
+        volumes, energies = self.curve(strains)
+        if not np.isfinite(energies).all():
+            return np.nan, np.nan
+        fit = fit_equation_of_state(volumes, energies)
         return fit.B_GPa, fit.B_error_GPa
 
     def curve(self, strains: Sequence[float]) -> tuple[list[float], list[float]]:
-        """Volumes (Å³) and energies (eV)."""
+        """Volumes (Å³) and energies (eV), NaN where the calculation fails."""
         # from small strains outwards, as the stage does: each starts from its neighbours
         missing = sorted(set(strains) - set(self.energies_eV), key=abs)
         calculator = self._calculator()
@@ -75,7 +80,9 @@ class ScannedGlass:
             trial = strained(self.atoms, strain)
             trial.calc = calculator
             started = time.process_time()
-            self.energies_eV[strain] = float(trial.get_potential_energy())
+            self.energies_eV[strain] = np.nan
+            with suppress(CalculationFailed, np.linalg.LinAlgError):
+                self.energies_eV[strain] = float(trial.get_potential_energy())
             self.seconds.append(time.process_time() - started)
         self.solutions = calculator.history
         volume = self.atoms.get_volume()
@@ -131,13 +138,15 @@ def _widths(glasses: Sequence[ScannedGlass]) -> Variation:
     every = sorted({strain for width in WIDTHS for strain in five_strains(width)})
 
     def reference(glass: ScannedGlass) -> Fitted:
-        return modulus_of_polynomial(*glass.curve(every), DEGREE), 0.0
+        volumes, energies = map(np.array, glass.curve(every))
+        known = np.isfinite(energies)
+        return modulus_of_polynomial(volumes[known], energies[known], DEGREE), 0.0
 
     values = []
     for width in WIDTHS:
         fitted = partial(_by_strains, five_strains(width))
         values.append((width, _each(glasses, fitted, reference, partial(_scan_s, glasses))))
-    words = f"a polynomial of degree {DEGREE} through the energies of all of them"
+    words = f"a polynomial of degree {DEGREE} through the energies of all widths"
     return Variation("largest strain", MODULUS, values, max(STRAINS), words, samples=_counted(glasses))
 
 
@@ -182,7 +191,10 @@ def _relaxations(glasses: Sequence[ScannedGlass]) -> Variation:
     used = glasses[0].dft.relaxation_steps
 
     def further(glass: ScannedGlass) -> Fitted:
-        return glass.relaxed_further().modulus(STRAINS)
+        try:
+            return glass.relaxed_further().modulus(STRAINS)
+        except CalculationFailed:
+            return np.nan, np.nan
 
     def seconds() -> float:
         return used * float(np.mean([glass.step_seconds for glass in glasses]))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from ase import Atoms
-from ase.calculators.calculator import Calculator, all_changes
+from ase.calculators.calculator import CalculationFailed, Calculator, all_changes
 
 from asperity.guards.errors import InputError
 from atomistic.constants import EV_PER_A3_IN_GPA
@@ -81,6 +81,20 @@ def test_energies_of_the_scan_are_not_computed_again(glasses):
     computed = len(glass.seconds)
     glass.curve(accuracy.five_strains(max(STRAINS)))
     assert len(glass.seconds) == computed == len(STRAINS)
+
+
+def test_a_strain_whose_calculation_fails_leaves_its_width_without_an_error(glasses, monkeypatch):
+    class Fails(Solid):
+        def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes):
+            assert atoms is not None
+            if atoms.get_volume() > 1.12 * V0_A3:
+                raise CalculationFailed("not converged")
+            super().calculate(atoms, properties, system_changes)
+
+    monkeypatch.setattr(accuracy, "make_calculator", Fails)
+    by_width, _ = errors_of(variations(glasses, [220.0], 1.0), "largest strain")
+    assert np.isnan(by_width[0.05].values).all()
+    assert np.abs(by_width[0.03].values).max() < 1.0
 
 
 def test_the_error_of_the_mean_falls_with_the_number_of_glasses(glasses):
