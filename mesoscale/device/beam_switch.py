@@ -59,7 +59,11 @@ class BeamStates:
 
 
 def solve_beam(
-    settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.elements, opening_nm: float = OPENING_NM
+    settings: DeviceSettings,
+    law: PadLaw,
+    elements: int = SWITCH.elements,
+    opening_nm: float = OPENING_NM,
+    tolerance: float = SWITCH.release_tolerance,
 ) -> BeamStates:
     """Close the beam on a pad, hold it, and open it.
 
@@ -67,16 +71,23 @@ def solve_beam(
     ----------
     elements : of the beam.
     opening_nm : largest step of a place in contact on the way out.
+    tolerance : relative error of the release.
 
     Raises
     ------
     NotComputed : the beam presses harder than the pad was computed for.
     InputError : the beam never lands, is not held, or is no beam.
     """
-    return solve_bent(beam_of(settings, elements), settings, law, opening_nm)
+    return solve_bent(beam_of(settings, elements), settings, law, opening_nm, tolerance)
 
 
-def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw, opening_nm: float = OPENING_NM) -> BeamStates:
+def solve_bent(
+    beam: Beam,
+    settings: DeviceSettings,
+    law: PadLaw,
+    opening_nm: float = OPENING_NM,
+    tolerance: float = SWITCH.release_tolerance,
+) -> BeamStates:
     """As `solve_beam`, of any beam."""
     moving = _Moving(beam, LocalPad(law), settings)
     pull_in = moving.snap_V()
@@ -91,7 +102,7 @@ def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw, opening_nm: fl
             "hold_voltage_V or dimple_nm, or lower stopper_nm, gap_um, bow_nm or tilt_nm"
         )
     capacitance = moving.capacitance_F()
-    return BeamStates(pull_in, hold, moving.open(hold, opening_nm), share, capacitance * 1e15)
+    return BeamStates(pull_in, hold, moving.open(hold, opening_nm, tolerance), share, capacitance * 1e15)
 
 
 def free_pull_in_V(settings: DeviceSettings, elements: int = 64) -> float:
@@ -342,7 +353,7 @@ class _Moving:
             raise InputError(f"device: the beam finds no balance at {voltage:.4g} V; this is a fault of the solver")
         return ended == SETTLED
 
-    def open(self, hold_V: float, opening_nm: float) -> float:
+    def open(self, hold_V: float, opening_nm: float, tolerance: float) -> float:
         """Lower the voltage until the beam lets go; the release voltage (0: stuck).
 
         The voltage is halved in the longer steps of closing until it opens. These may tear off a little more than they
@@ -360,7 +371,7 @@ class _Moving:
         high, *held = closed[-2:][0]
         self.nodal, self.deepest = (state.copy() for state in held)
         low = None
-        while low is None or high - low > SWITCH.release_tolerance * high:
+        while low is None or high - low > tolerance * high:
             voltage = lower(high) if low is None else 0.5 * (low + high)
             if self.creep(voltage, opening_nm):
                 high, held = voltage, [self.nodal.copy(), self.deepest.copy()]

@@ -13,9 +13,9 @@ from mesoscale.device.points import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.studies.driver import RELEASE, Array, Choice, Knob, Progress, Quantity, StudyRow, rows_of
 
-SWITCHES = 5
+SWITCHES = 4
 """Switches that are solved with each choice."""
-ELEMENTS, STEPS = "elements of the beam", "steps of opening, nm"
+ELEMENTS, STEPS, TOLERANCE = "elements of the beam", "steps of opening, nm", "relative error of a release"
 QUANTITIES = (RELEASE, Quantity("pull-in", "V"))
 
 
@@ -33,10 +33,13 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
         return Knob(name, QUANTITIES, choices, shipped, f"{name}: {best:g}", partial(compute, best), samples)
 
     elements = [round(factor * SWITCH.elements) for factor in (0.125, 0.25, 0.5, 1, 2)]
-    steps = [factor * OPENING_NM for factor in (4, 2, 1, 0.5)]
+    steps = [factor * OPENING_NM for factor in (2, 1, 0.5)]
+    usual = SWITCH.release_tolerance
+    tolerances = [factor * usual for factor in (10, 1, 0.1)]
     knobs = [
         knob(ELEMENTS, SWITCH.elements, elements, 4 * SWITCH.elements, solve),
         knob(STEPS, OPENING_NM, steps, OPENING_NM / 4, partial(solve, SWITCH.elements)),
+        knob(TOLERANCE, usual, tolerances, 1e-3 * usual, partial(solve, SWITCH.elements, OPENING_NM)),
     ]
     yield from rows_of(knobs, progress)
 
@@ -50,14 +53,20 @@ def samples_of(model: PadModel, switches: int) -> list[Solved]:
     return [switch for switch in (model.central, *points) if switch.pad is not None]
 
 
-def states(switches: Sequence[Solved], elements: int, opening_nm: float = OPENING_NM) -> Array:
+def states(
+    switches: Sequence[Solved],
+    elements: int,
+    opening_nm: float = OPENING_NM,
+    tolerance: float = SWITCH.release_tolerance,
+) -> Array:
     """Release and pull-in (V) of switches, shape (switches, 2); NaN where one has no answer."""
-    found = np.full((len(switches), 2), np.nan)
-    for row, switch in zip(found, switches, strict=True):
+    voltages = np.full((len(switches), 2), np.nan)
+    for row, switch in zip(voltages, switches, strict=True):
         device = switch.point.device
+        solve = partial(solve_beam, device, elements=elements, opening_nm=opening_nm, tolerance=tolerance)
         try:
-            beam, _ = with_pad(lambda law, of=device: solve_beam(of, law, elements, opening_nm), switch.pressed.law)
+            beam, _ = with_pad(solve, switch.pressed.law)
         except InputError:
             continue
         row[:] = beam.release_V, beam.pull_in_V
-    return found
+    return voltages
