@@ -146,6 +146,8 @@ def _film(given: argparse.Namespace) -> int:
     if missing := [name for name in given.files if not os.path.exists(name)]:
         meant = did_you_mean(missing[0], COMMANDS)
         return _refuse(f"{missing[0]}: neither a file nor a command{meant} (asperity --help)")
+    for library in ("OMP", "OPENBLAS", "MKL"):  # on small matrices threads wait for each other, three times as long
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     from asperity.door import device_of, material_of, readable, scene_lines, topography_of
     from asperity.film import Film
     from mesoscale.errors import InputError

@@ -128,12 +128,12 @@ def check_periodic(heights: np.ndarray) -> None:
         raise InputError(
             f"heights: periodic maps have at least {FEWEST_PERIODIC} x {FEWEST_PERIODIC} sites, not {heights.shape}"
         )
-    along = np.linspace(-0.5, 0.5, len(heights))
+    position = np.linspace(-0.5, 0.5, len(heights))
     level = heights - heights.mean()
-    share = along / (along @ along)
+    share = position / (position @ position)
     tilts = np.array([share @ level.mean(axis=1), share @ level.mean(axis=0)])  # from one edge to the other, nm
     cliffs = np.array([(level[-1] - level[0]).mean(), (level[:, -1] - level[:, 0]).mean()])
-    rough = float(np.std(level - tilts[0] * along[:, None] - tilts[1] * along))
+    rough = float(np.std(level - tilts[0] * position[:, None] - tilts[1] * position))
     for axis, tilt, cliff in zip("xy", tilts.tolist(), cliffs.tolist(), strict=True):
         if min(tilt * cliff, tilt**2) > (TILTED * rough) ** 2 and abs(tilt) > 1e-9 * np.abs(heights).max():
             raise InputError(

@@ -41,9 +41,9 @@ def foreign_columns(path: str | Path, named: str) -> Columns:
     try:
         if is_of_the_system(path):
             raise InputError("of the system, not of data; copy what you need of it")
-        found = os.stat(path)
-        if stat.S_ISREG(found.st_mode):
-            return _kept_columns(str(path), (found.st_ino, found.st_mtime_ns, found.st_size))
+        status = os.stat(path)
+        if stat.S_ISREG(status.st_mode):
+            return _kept_columns(str(path), (status.st_ino, status.st_mtime_ns, status.st_size))
         return _columns(str(path))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         why = error.strerror if isinstance(error, OSError) else "no text" if isinstance(error, ValueError) else error

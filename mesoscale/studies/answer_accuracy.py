@@ -60,8 +60,8 @@ def states(
     tolerance: float = SWITCH.release_tolerance,
 ) -> Array:
     """Release and pull-in (V) of switches, shape (switches, 2); NaN where one has no answer."""
-    found = np.full((len(switches), 2), np.nan)
-    for row, switch in zip(found, switches, strict=True):
+    voltages = np.full((len(switches), 2), np.nan)
+    for row, switch in zip(voltages, switches, strict=True):
         device = switch.point.device
         solve = partial(solve_beam, device, elements=elements, opening_nm=opening_nm, tolerance=tolerance)
         try:
@@ -69,4 +69,4 @@ def states(
         except InputError:
             continue
         row[:] = beam.release_V, beam.pull_in_V
-    return found
+    return voltages

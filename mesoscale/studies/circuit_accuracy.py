@@ -73,12 +73,12 @@ def as_it_is(law: PadLaw) -> PadLaw:
 
 def states(switches: Sequence[Solved], beam: BeamOf, made: LawOf = as_it_is) -> Array:
     """Release, pull-in (V) and held capacitance (fF) of switches without tilt, shape (switches, 3); NaN: no answer."""
-    found = np.full((len(switches), 3), np.nan)
-    for row, switch in zip(found, switches, strict=True):
+    solutions = np.full((len(switches), 3), np.nan)
+    for row, switch in zip(solutions, switches, strict=True):
         settings = switch.point.device.model_copy(update={"tilt_nm": 0.0})
         try:
             solved, _ = with_pad(lambda law, of=settings: solve_bent(beam(of), of, made(law)), switch.pressed.law)
         except InputError:
             continue
         row[:] = solved.release_V, solved.pull_in_V, solved.capacitance_fF
-    return found
+    return solutions

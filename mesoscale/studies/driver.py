@@ -111,9 +111,9 @@ def rows_of(knobs: Sequence[Knob], progress: Progress | None = None) -> Iterator
     for done, knob in enumerate(knobs):
         best = None if knob.best is None else np.atleast_2d(np.asarray(knob.best(), float))
         for choice in knob.choices:
-            told = _told(choice, best, knob.quantities)
-            errors = np.broadcast_to(np.asarray(told.error, float), len(knob.quantities))
-            own_errors = np.broadcast_to(np.asarray(told.own_error, float), len(knob.quantities))
+            errors_of_choice = _errors_of(choice, best, knob.quantities)
+            errors = np.broadcast_to(np.asarray(errors_of_choice.error, float), len(knob.quantities))
+            own_errors = np.broadcast_to(np.asarray(errors_of_choice.own_error, float), len(knob.quantities))
             for quantity, error, own_error in zip(knob.quantities, errors.tolist(), own_errors.tolist(), strict=True):
                 volts = None if quantity.volts is None else abs(quantity.volts) * error
                 yield {
@@ -126,21 +126,21 @@ def rows_of(knobs: Sequence[Knob], progress: Progress | None = None) -> Iterator
                     "unit": quantity.unit,
                     "release_V": volts,
                     "reference": "; ".join(filter(None, (knob.reference, knob.samples))),
-                    "wall_s": round(told.cost.wall_s, 4),
-                    "cpu_s": round(told.cost.cpu_s, 4),
-                    "peak_rss_MB": round(told.cost.peak_rss_MB, 1),
+                    "wall_s": round(errors_of_choice.cost.wall_s, 4),
+                    "cpu_s": round(errors_of_choice.cost.cpu_s, 4),
+                    "peak_rss_MB": round(errors_of_choice.cost.peak_rss_MB, 1),
                 }
             if progress:
                 progress((done + 0.5) / len(knobs), f"{knob.name} {choice.value}")
 
 
-def _told(choice: Choice, best: Array | None, quantities: Sequence[Quantity]) -> Errors:
+def _errors_of(choice: Choice, best: Array | None, quantities: Sequence[Quantity]) -> Errors:
     """The errors of a choice against the reference, or as it tells them."""
-    found, cost = timed(choice.compute)
-    if isinstance(found, Errors):
-        return found
+    result, cost = timed(choice.compute)
+    if isinstance(result, Errors):
+        return result
     assert best is not None, "a knob whose choices do not tell their errors needs a reference"
-    values = np.atleast_2d(np.asarray(found, float))
+    values = np.atleast_2d(np.asarray(result, float))
     deviations = values - best
     for column, quantity in enumerate(quantities):
         if quantity.unit == "%":

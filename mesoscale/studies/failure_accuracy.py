@@ -97,8 +97,10 @@ def _points(response: ReserveResponse, times: float) -> Knob:
     hold_V = response.population.hold_V
 
     def probabilities(samples: int, seeds: int = SEEDS) -> Array:
-        found = [response.sample(times, hold_V, FIRST_SEED + k, samples=samples, repeats=REPEATS) for k in range(seeds)]
-        return np.array([[_logarithm(sampled.probability)] for sampled in found])
+        samples_of_seeds = [
+            response.sample(times, hold_V, FIRST_SEED + k, samples=samples, repeats=REPEATS) for k in range(seeds)
+        ]
+        return np.array([[_logarithm(sampled.probability)] for sampled in samples_of_seeds])
 
     # of fewer than some 400 points OpenTURNS may find a variance below zero, and stops
     counts = (SAMPLES // 4, SAMPLES // 2, SAMPLES)
@@ -140,9 +142,9 @@ def _runs(response: ReserveResponse, sampled: Sampled, times: float) -> Knob:
     count = max(factors.size, 1)
 
     def errors(runs: int) -> Errors:
-        found, own = relative_errors(factors, runs)
+        error, own_error = relative_errors(factors, runs)
         of_runs = Cost(runs * cost.wall_s / count, runs * cost.cpu_s / count, cost.peak_rss_MB)
-        return Errors([found], [own], of_runs)
+        return Errors([error], [own_error], of_runs)
 
     counts = (FAILURE.runs // 4, FAILURE.runs // 2, FAILURE.runs, 2 * FAILURE.runs)
     choices = [Choice(runs, partial(errors, runs)) for runs in counts]
@@ -167,5 +169,5 @@ def relative_errors(factors: Array, runs: int) -> tuple[float, float]:
         return 100.0 * float(values.std(ddof=1) / values.mean() / np.sqrt(runs))
 
     without = np.array([error(np.delete(factors, k)) for k in range(factors.size) if np.delete(factors, k).any()])
-    own = float(np.sqrt((factors.size - 1) / factors.size * ((without - without.mean()) ** 2).sum()))
-    return error(factors), own
+    own_error = float(np.sqrt((factors.size - 1) / factors.size * ((without - without.mean()) ** 2).sum()))
+    return error(factors), own_error

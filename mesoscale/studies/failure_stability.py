@@ -107,10 +107,10 @@ def corrections() -> Iterator[HardCase]:
 
 
 def _corrected(sampled: Sampled, happened: Array, chance: float, exact: float) -> tuple[bool, str]:
-    found = correct(sampled, happened.astype(bool), np.full(happened.size, chance))
-    held = found.low * (1.0 - 1e-9) <= exact <= found.high * (1.0 + 1e-9)
-    inside = 0.0 <= found.low <= found.high <= 1.0
-    return held and inside, f"{found.low:.3g} .. {found.high:.3g} of {exact:.3g}"
+    corrected = correct(sampled, happened.astype(bool), np.full(happened.size, chance))
+    held = corrected.low * (1.0 - 1e-9) <= exact <= corrected.high * (1.0 + 1e-9)
+    inside = 0.0 <= corrected.low <= corrected.high <= 1.0
+    return held and inside, f"{corrected.low:.3g} .. {corrected.high:.3g} of {exact:.3g}"
 
 
 def common_rates() -> Iterator[HardCase]:
@@ -161,11 +161,11 @@ def limits() -> Iterator[HardCase]:
 
 
 def _limit(values: Array, probability: Array, allowed: float, wanted: float | None) -> tuple[bool, str]:
-    found = furthest_allowed(values, probability, allowed)
+    furthest = furthest_allowed(values, probability, allowed)
     falling = furthest_allowed(100.0 - values, probability, allowed)
-    if wanted is None or found is None or falling is None:
-        return found is falling is wanted, f"{found}"
-    return abs(found - wanted) <= 1e-6 and abs(falling - (100.0 - wanted)) <= 1e-6, f"{found:.6g} V"
+    if wanted is None or furthest is None or falling is None:
+        return furthest is falling is wanted, f"{furthest}"
+    return abs(furthest - wanted) <= 1e-6 and abs(falling - (100.0 - wanted)) <= 1e-6, f"{furthest:.6g} V"
 
 
 def reserves() -> Iterator[HardCase]:
@@ -178,8 +178,11 @@ def reserves() -> Iterator[HardCase]:
         slower = partial(_asks_for_more, settings, law)
         yield HardCase(f"{name} let go in time", "a window", "no larger reserve than to let go at all", slower)
     ends: dict[str, tuple[float, Callable[[float], bool]]] = {
-        "a well far deeper than the spring": (1e6, lambda found: found < np.log(FAILURE.least_times) + FAILURE.step),
-        "no adhesion": (0.0, lambda found: found > np.log(FAILURE.most_times) - FAILURE.step),
+        "a well far deeper than the spring": (
+            1e6,
+            lambda log_reserve: log_reserve < np.log(FAILURE.least_times) + FAILURE.step,
+        ),
+        "no adhesion": (0.0, lambda log_reserve: log_reserve > np.log(FAILURE.most_times) - FAILURE.step),
     }
     for name, (adhesion_kPa, holds) in ends.items():
         judge = partial(_at_the_end, made_up_law(adhesion_kPa), holds)

@@ -83,7 +83,7 @@ def _knobs(settings: TopographySettings, quantities: Sequence[Quantity], cleaned
     def few(**changes: Any) -> ScanSet:
         return _counted(truth.model_copy(update=changes), FEW)
 
-    def told(radius_nm: float) -> TopographySettings:
+    def with_tip(radius_nm: float) -> TopographySettings:
         return settings.model_copy(update={"tip_radius_nm": radius_nm})
 
     def knob(name: str, shipped: Any, values: Sequence[Tried]) -> Knob:
@@ -98,13 +98,13 @@ def _knobs(settings: TopographySettings, quantities: Sequence[Quantity], cleaned
     yield knob("sections", 25, sections)
     # side lobes of the window cover steep spectra first
     steep = few(slope=3.8, tip_radius_nm=1.0)
-    windows = [(flat, steep, FEW, partial(estimates, told(1.0), flat=flat)) for flat in FLAT_SHARES]
+    windows = [(flat, steep, FEW, partial(estimates, with_tip(1.0), flat=flat)) for flat in FLAT_SHARES]
     yield knob("flat share of the window, steep spectrum", 0.0, windows)
     yield knob("bins a decade", 12, [(count, truth, FEW, partial(usual, bins=count)) for count in BINS])
-    radii = [(radius, few(tip_radius_nm=radius), FEW, partial(estimates, told(radius))) for radius in TIPS_NM]
+    radii = [(radius, few(tip_radius_nm=radius), FEW, partial(estimates, with_tip(radius))) for radius in TIPS_NM]
     yield knob("tip radius, nm", base.tip_radius_nm, radii)
     told_over_true = [
-        (ratio, truth, FEW, partial(estimates, told(ratio * truth.tip_radius_nm))) for ratio in TOLD_OVER_TRUE
+        (ratio, truth, FEW, partial(estimates, with_tip(ratio * truth.tip_radius_nm))) for ratio in TOLD_OVER_TRUE
     ]
     yield knob("told over true tip radius", 1.0, told_over_true)
 
@@ -123,8 +123,8 @@ def _errors(cleaned: Cleaned, truth: ScanSet, used: tuple[int, int], analysis: A
     for surface in range(SURFACES):
         every = cleaned(truth, surface)
         parts = [*every[:small], *every[truth.small_scans : truth.small_scans + large]]
-        found, cost = timed(partial(analysis, [scan for scan, _ in parts]))
-        deviations.append([100 * _relative(found.get(name), value) for name, value in true_values.items()])
+        estimated, cost = timed(partial(analysis, [scan for scan, _ in parts]))
+        deviations.append([100 * _relative(estimated.get(name), value) for name, value in true_values.items()])
         wall_s = cost.wall_s + sum(part.wall_s for _, part in parts)
         cpu_s = cost.cpu_s + sum(part.cpu_s for _, part in parts)
         costs.append((wall_s, cpu_s, cost.peak_rss_MB))

@@ -82,6 +82,16 @@ def test_options_on_a_file_reach_its_scene(scans, started, tmp_path, monkeypatch
     assert main(["bare.txt", *words[:-2]]) == 1  # the scene of other words stays
 
 
+def test_a_file_is_described_by_one_thread_as_its_scene_does(scans, started, tmp_path, monkeypatch):
+    """Threads cost three times the processor time, and the last digits of the scene's job."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "3")
+    main([str(scans / "place_1.gwy")])
+    assert os.environ["OMP_NUM_THREADS"] == "1"
+    assert os.environ["OPENBLAS_NUM_THREADS"] == "3"  # the user's own
+
+
 def follow(said):
     """Options that a refusal names, with its values; of several channels the first."""
     options = []

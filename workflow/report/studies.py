@@ -136,8 +136,8 @@ def tables_of(stage: str, rows: Sequence[CsvRow]) -> list[KnobTable]:
         if value is None:
             value = Value(row["value"], row["shipped"] == "True", number(row["cpu_s"]))
             knob.values.append(value)
-        told = [number(row.get(name)) for name in ("error", "own_error", "release_V")]
-        value.errors.setdefault(row["case"], Error(row["case"], told[0], told[1], row["unit"], told[2]))
+        numbers = [number(row.get(name)) for name in ("error", "own_error", "release_V")]
+        value.errors.setdefault(row["case"], Error(row["case"], numbers[0], numbers[1], row["unit"], numbers[2]))
     return [knob for knob in knobs.values() if any(value.errors for value in knob.values)]
 
 
@@ -177,8 +177,10 @@ def _in_use(table: KnobTable) -> Error:
 def _short(value: Value | None) -> str:
     """A number shortened, whole numbers and words as they are."""
     text = value.text if value else "–"
-    found = number(text)
-    return show(found) if np.isfinite(found) and not found.is_integer() else text.removesuffix(".0")
+    value_as_number = number(text)
+    if np.isfinite(value_as_number) and not value_as_number.is_integer():
+        return show(value_as_number)
+    return text.removesuffix(".0")
 
 
 def _accuracy(results: Results, tables: Sequence[KnobTable]) -> Iterator[Block]:
@@ -229,11 +231,11 @@ def recommended(table: KnobTable, deviation_V: float = np.nan) -> str:
     if len(curve) < 2:
         return "–"
     errors = np.array([error.error for _, error in curve])
-    own = np.nan_to_num([error.own_error for _, error in curve])
+    own_errors = np.nan_to_num([error.own_error for _, error in curve])
     best, worst = int(errors.argmin()), int(errors.argmax())
-    if errors[worst] - errors[best] <= TOLD_APART * np.hypot(own[best], own[worst]):
+    if errors[worst] - errors[best] <= TOLD_APART * np.hypot(own_errors[best], own_errors[worst]):
         return "values cannot be told apart"
-    rises = np.diff(errors) > TOLD_APART * np.hypot(own[1:], own[:-1])
+    rises = np.diff(errors) > TOLD_APART * np.hypot(own_errors[1:], own_errors[:-1])
     if rises.any() or errors[-1] >= errors[0]:
         return "none: errors do not fall towards the reference"
     small = [_is_small(error, deviation_V) or error.error <= NEAR_BEST * errors[best] for _, error in curve]

@@ -32,11 +32,13 @@ EQUAL = 0.02  # share of neighbours of equal height; medians leave 0.04 to 0.13
 MANY_LEVELS = 10.0  # steps of a digit that neighbours must differ by: else equal heights are chance
 MEDIAN_FALL = 4.1  # q_f times the side of a median's window, on made maps
 MOST_REPEATS = 25  # pixels
-RHYTHM, RHYTHM_ALONE = 25.0, 120.0
+RHYTHM, RHYTHM_ALONE = 25.0, 400.0
 """Power of a period over that of others, along both axes or along one; 17 and 35 on 100 made maps without."""
+STRAIGHT, TWOFOLD_LEFT = 0.43, 0.6  # of bends, and of roughness (`LEFT`): maps enlarged twofold or more have less
 LONGEST_PERIOD = 12.0  # pixels
 MODULATION = 0.15  # of the roughness of pixels by that period; the smoothest interpolation leaves 0.2
-PATTERN = 0.3  # share of the roughness of pixels that all lines have in common, from which a surface has a pattern
+PATTERN = 3.0  # of what all lines have in common over what differs, from which on a surface has a pattern
+DRIFTS = 3  # periods over a map, below which roughness merely differs from place to place
 LINEAR = 0.5  # of the Nyquist wave vector of the points measured, where a linear interpolation passes 0.66 of C
 
 
@@ -208,19 +210,27 @@ def _repeats(heights: np.ndarray) -> int:
 
 
 def rhythm(heights: np.ndarray) -> float:
-    """Distance in pixels of the points between which levelled heights (nx, ny) were interpolated; 0 for none.
-
-    A map that was enlarged less than twofold has the period of another, enlarged more: the larger distance counts.
-    """
+    """Distance in pixels of the points between which levelled heights (nx, ny) were interpolated; 0 for none."""
     periods = [_period(heights), _period(heights.T)]
     powers = [power for power, _ in periods]
     frequencies = [frequency for _, frequency in periods]
     same = abs(frequencies[0] - frequencies[1]) < 1.5 / min(heights.shape)
     if same and min(powers) > RHYTHM:
-        return 1 / min(frequencies)
-    if max(powers) > RHYTHM_ALONE:
-        return 1 / frequencies[int(np.argmax(powers))]
-    return 0.0
+        frequency = min(frequencies)
+    elif max(powers) > RHYTHM_ALONE:
+        frequency = frequencies[int(np.argmax(powers))]
+    else:
+        return 0.0
+    # points further apart than two pixels have the same period as others that are nearer
+    return 1 / frequency if _is_enlarged_twofold(heights) else 1 / (1 - frequency)
+
+
+def _is_enlarged_twofold(heights: np.ndarray) -> bool:
+    """Are interpolated heights smooth at most pixels, or straight?"""
+    bends = heights[1:-1] - (heights[:-2] + heights[2:]) / 2
+    bends = bends - np.median(bends, axis=1)[:, None]
+    straight = np.median(np.abs(bends)) < STRAIGHT * bends.std()
+    return bool(straight or min(_roughness_left(heights), _roughness_left(heights.T)) < TWOFOLD_LEFT)
 
 
 def _period(heights: np.ndarray) -> tuple[float, float]:
@@ -235,6 +245,8 @@ def _period(heights: np.ndarray) -> tuple[float, float]:
     frequency = np.arange(len(wave)) / count
     short = frequency > 1 / LONGEST_PERIOD
     first = int(np.argmax(np.where(short, wave, 0.0)))
+    if wave[DRIFTS:][~short[DRIFTS:]].max(initial=0.0) > 0.1 * wave[first]:  # a pattern, and a harmonic of it
+        return 0.0, 0.0
     near = np.r_[wave[max(first - 8, 0) : max(first - 3, 0)], wave[first + 4 : first + 9]]
     usual = max(float(np.median(wave[short])), float(np.median(near)))
     modulation = 4 * float(np.sqrt(wave[first])) / count  # a Hann window halves a wave

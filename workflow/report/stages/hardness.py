@@ -74,8 +74,8 @@ def _twin_notes(fit: dict[str, Any]) -> Iterator[str]:
             f"{row['pairs']}; the 68 % interval is from the 11 % by which runs of one kind scatter."
         )
     for way, words in (("measured", "bounded by indentation"), ("scales", "as run, both alike")):
-        if found := fit.get("hardness_GPa", {}).get(way):
-            span = f"{show(found['median'])} [{show(found['low'])}, {show(found['high'])}] GPa"
+        if quantiles := fit.get("hardness_GPa", {}).get(way):
+            span = f"{show(quantiles['median'])} [{show(quantiles['low'])}, {show(quantiles['high'])}] GPa"
             yield f"Hardness with the energies {words}: {span} (median and 68 % interval)."
 
 

@@ -132,6 +132,9 @@ def test_a_grating_has_no_rhythm_of_interpolation(honest):
     x = np.arange(PIXELS)
     for period in (4, 6, 8, 16):
         assert rhythm(honest + 20.0 * (x % period < period / 2)[:, None]) == 0
+    edges = np.random.default_rng(1).integers(-1, 2, (1, PIXELS))  # of a pixel, rough ones
+    for period in (20, 32, 48):
+        assert rhythm(honest + 20.0 * ((x[:, None] + edges) % period < period / 3)) == 0
     assert rhythm(enlarged(1, 4)(honest)) == pytest.approx(4.0, rel=0.05)
 
 
