@@ -8,11 +8,9 @@ from mesoscale.uncertainty.surrogate import Surrogate, basis_matrix, scaled
 
 Array = NDArray[np.float64]
 
-
 MEAN = 10.0
-"""Mean of what LARS selects terms for, in deviations. Of a mean of 0 rounding alone gives the sign of the constant term,
-by which LARS takes one way or another: with a voltage changed by 1e-12 the terms were others. Far from 0 the constant
-enters first."""
+"""Mean of what LARS selects terms for, in deviations. At a mean of 0 rounding alone gives the sign of the constant
+term, by which LARS takes one way or another. Far from 0 the constant enters first."""
 
 
 def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity", degree: int = 3) -> Surrogate:
