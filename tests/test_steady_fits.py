@@ -15,8 +15,8 @@ from evidence.pad.closed_form import ClosedForm
 from mesoscale.device.known import fit_additive
 from mesoscale.law.fit import fit_branch
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.description.line_fits import fit_lines
 from mesoscale.topography.description.likelihood import fit, q0_interval
+from mesoscale.topography.description.line_fits import fit_lines
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.uncertainty.censored import censored_chaos
 from mesoscale.uncertainty.regression import sparse_chaos
