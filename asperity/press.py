@@ -155,6 +155,9 @@ def press(
         ends = {"stop_force": step} if by_load else {"stop_separation": -lowest - step}
         path = trace(contact, NUMERICS.force_steps if h_macro else 1, h_macro is not None, **ends, start=row)
         row = path.rows[-1]
+        if not np.isfinite(contact.separation):  # it stays where the highest site just touches
+            what = f"loads_nN = {step:g}" if by_load else f"approach_nm = {step:g}"
+            raise InputError(f"{what}: too little to press one site of this map; give more, or check its units")
         if by_load:
             converged &= abs(row.force / step - 1.0) <= MAX_FORCE_MISS
         else:

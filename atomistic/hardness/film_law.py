@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
+from asperity.guards.errors import InputError
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.size_effect import (
     FIT_RULES,
@@ -157,14 +158,22 @@ LAWS: dict[str, tuple[LawOfHardness, tuple[float, ...]]] = {
 
 
 def fit(name: str, points: FilmPoints) -> np.ndarray:
-    """Values of a law by least squares of ln H; all are positive."""
+    """Values of a law by least squares of ln H; all are positive.
+
+    Raises
+    ------
+    InputError : they do not settle.
+    """
     law, start = LAWS[name]
 
     def misfit(logs: np.ndarray) -> np.ndarray:
         foretold = law(np.exp(logs), points.length_nm, points.thickness_nm)
         return np.log(foretold / points.stress_GPa)
 
-    return np.exp(least_squares(misfit, np.log(start), bounds=(np.log(1e-3), np.log(50.0))).x)
+    solution = least_squares(misfit, np.log(start), bounds=(np.log(1e-3), np.log(50.0)))
+    if not solution.success:
+        raise InputError(f"hardness: the law {name} of films does not settle in {solution.nfev} steps; give more runs")
+    return np.exp(solution.x)
 
 
 def left_out(name: str, points: FilmPoints) -> float:

@@ -9,6 +9,12 @@ from mesoscale.uncertainty.surrogate import Surrogate, basis_matrix, scaled
 Array = NDArray[np.float64]
 
 
+MEAN = 10.0
+"""Mean of what LARS selects terms for, in deviations. Of a mean of 0 rounding alone gives the sign of the constant term,
+by which LARS takes one way or another: with a voltage changed by 1e-12 the terms were others. Far from 0 the constant
+enters first."""
+
+
 def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity", degree: int = 3) -> Surrogate:
     """Sparse Legendre expansion of y, averaged over the scatter that x does not explain.
 
@@ -51,7 +57,7 @@ def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity",
     selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
     chaos = ot.FunctionalChaosAlgorithm(
         ot.Sample(u[:, varying]),
-        ot.Sample(((target - centre) / width)[:, None]),
+        ot.Sample(((target - centre) / width + MEAN)[:, None]),
         ot.JointDistribution([ot.Uniform(-1, 1)] * len(varying)),
         ot.FixedStrategy(basis, size),
         ot.LeastSquaresStrategy(selection),
