@@ -1,6 +1,7 @@
 """Error of a rare probability of failure against run time.
 
-All values are judged at the attraction with which as many switches as allowed fail by the response.
+The response is that of the switches of the answer, whose pads are there: the stage presses a hundred more. All values
+are judged at the attraction with which as many switches as allowed fail by this response.
 """
 
 from collections.abc import Iterator
@@ -8,10 +9,11 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri
 
+from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE, Population
-from mesoscale.failure.rate import ReserveResponse, just_allowed, learn
+from mesoscale.failure.rate import ReserveResponse, just_allowed
 from mesoscale.studies.driver import (
     Array,
     Choice,
@@ -27,13 +29,14 @@ from mesoscale.studies.driver import (
 )
 from mesoscale.uncertainty.rare_events import LEAST, REPEATS, SAMPLES, Process, Sampled
 
-SEEDS = 4
+SEEDS = 3
 """Independent tries of each choice."""
 PARTS = 8
 """Random parts of the switches."""
 FIRST_SEED = 100
 """Beyond those of the stage."""
-RESAMPLES = 400
+TRIED = 32
+"""Switches that are pressed to know the scatter between correcting ones."""
 SAMPLED, LEARNED, RUNS = "points of each level", "switches learned from", "switches that correct a probability"
 UNIT = "% of the probability"
 RATE = Quantity("probability of failure", UNIT)
@@ -48,17 +51,40 @@ def accuracy_points(population: Population, allowed: float, progress: Progress) 
 
     Raises
     ------
-    InputError : see `learn`.
+    InputError : see `response_of_answer`.
     """
-    response, learning = timed(partial(learn, population, lambda share, words: progress(0.4 * share, words)))
+    response = response_of_answer(population)
+    _, one = timed(partial(population.reserves, ndtri(population.solved[0][:1]), population.hold_V))
+    progress(0.3, "response")
     times = just_allowed(response, population.hold_V, allowed)
     sampled = response.sample(times, population.hold_V, FIRST_SEED, repeats=REPEATS)
     knobs = [
         _points(response, times),
-        _learned(response, sampled, times, learning),
+        _learned(response, sampled, times, one),
         _runs(response, sampled, times),
     ]
     yield from rows_of(knobs, lambda share, words: progress(0.5 + 0.5 * share, words))
+
+
+def response_of_answer(population: Population) -> ReserveResponse:
+    """The response of the switches whose pads were pressed for the answer.
+
+    Raises
+    ------
+    InputError : too few of them can be solved.
+    """
+    units, pads = population.solved
+    z = ndtri(units)
+    columns = population.columns(z, np.full(len(z), population.hold_V))
+    reserves = population.reserves(z, population.hold_V, pads)
+    known = reserves > np.log(FAILURE.least_times) + FAILURE.step
+    if known.sum() < FAILURE.fewest:
+        raise InputError(
+            f"pad.points: {known.sum()} of {len(z)} switches can be solved and let go; accepted for the accuracy of a "
+            f"failure rate are at least {FAILURE.fewest}; raise pad.points"
+        )
+    learned = columns[known], reserves[known]
+    return ReserveResponse(population, Process(*learned), len(z), *learned)
 
 
 def _logarithm(probability: float) -> float:
@@ -84,8 +110,8 @@ def _points(response: ReserveResponse, times: float) -> Knob:
     return Knob(SAMPLED, [RATE], choices, SAMPLES, f"{most} points", best, f"{SEEDS} seeds")
 
 
-def _learned(response: ReserveResponse, sampled: Sampled, times: float, learning: Cost) -> Knob:
-    """A response from random parts of the switches. It takes the time of pressing so many.
+def _learned(response: ReserveResponse, sampled: Sampled, times: float, one: Cost) -> Knob:
+    """A response from random parts of the switches. It takes the time of pressing so many, each at the cost `one`.
 
     Failures by the whole response are weighed by what the other one says of them (importance sampling), which costs
     nothing beside a search of its own.
@@ -101,8 +127,7 @@ def _learned(response: ReserveResponse, sampled: Sampled, times: float, learning
             mean, deviation = replace(response, process=process).moments(sampled.points, hold_V)
             chance = ndtr((np.log(times) - mean) / deviation)
             deviations.append([_logarithm(sampled.probability * float(np.mean(chance / sampled.chance)))])
-        share = part / response.switches
-        cost = Cost(share * learning.wall_s, share * learning.cpu_s, learning.peak_rss_MB)
+        cost = Cost(part * one.wall_s, part * one.cpu_s, one.peak_rss_MB)
         return Errors(*root_mean_square(np.array(deviations) - _logarithm(sampled.probability)), cost)
 
     parts = [round(share * count) for share in (0.4, 0.6, 0.8)]
@@ -112,7 +137,7 @@ def _learned(response: ReserveResponse, sampled: Sampled, times: float, learning
 
 
 def _runs(response: ReserveResponse, sampled: Sampled, times: float) -> Knob:
-    """Fewer or more switches that correct the response: standard errors, by drawing so many of those in use."""
+    """Fewer or more switches that correct the response: standard errors by the scatter of some."""
     factors, cost = timed(partial(correcting_factors, response, sampled, times))
     count = max(factors.size, 1)
 
@@ -123,13 +148,13 @@ def _runs(response: ReserveResponse, sampled: Sampled, times: float) -> Knob:
 
     counts = (FAILURE.runs // 4, FAILURE.runs // 2, FAILURE.runs, 2 * FAILURE.runs)
     choices = [Choice(runs, partial(errors, runs)) for runs in counts]
-    words = f"mean of {factors.size} switches that nearly fail"
-    return Knob(RUNS, [RATE], choices, FAILURE.runs, words, samples=f"{RESAMPLES} draws of them")
+    words = f"{(factors > 0).sum()} of {factors.size} switches that should fail do"
+    return Knob(RUNS, [RATE], choices, FAILURE.runs, words, samples="by their scatter")
 
 
 def correcting_factors(response: ReserveResponse, sampled: Sampled, times: float) -> Array:
     """Of switches that fail by the response: 1 over its chance where one does fail, else 0; shape (runs,)."""
-    chosen = np.random.default_rng(FIRST_SEED).permutation(len(sampled.points))[: FAILURE.runs]
+    chosen = np.random.default_rng(FIRST_SEED).permutation(len(sampled.points))[:TRIED]
     population = response.population
     failed = population.failed(sampled.points[chosen], population.hold_V, times)
     return failed / sampled.chance[chosen]

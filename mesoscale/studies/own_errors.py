@@ -59,19 +59,25 @@ def of_switch(point: Point, contact: ContactSettings, cells: int, central: PadLa
     central : the scene's own pad at the point, for the beam.
     """
 
-    def release(settings: ContactSettings = contact, step_nm: float | None = None) -> float:
-        pad = press_pad(point, settings, cells, surfaces_of(0), step_nm=step_nm)
+    def release(settings: ContactSettings = contact, step_nm: float | None = None, at: Point = point) -> float:
+        pad = press_pad(at, settings, cells, surfaces_of(0), step_nm=step_nm)
         return release_or_nan_V(point.device, pad.law)
 
     def knob(name: str, value: float, words: str, in_use: float, finer: float) -> Knob:
         return Knob(name, [RELEASE], [Choice(value, lambda: _sample(in_use))], value, words, lambda: _sample(finer))
 
     half = contact.model_copy(update={"pixels": contact.pixels // 2})
-    half = half.model_copy(update={"q1_per_nm": shared_wave(half)})
-    smooth = contact.model_copy(update={"q1_per_nm": half.q1_per_nm})
+    shortest = shared_wave(half)
+    half = half.model_copy(update={"q1_per_nm": shortest})
+    smooth = contact.model_copy(update={"q1_per_nm": shortest})
+    longer_waves = point
+    if "q1" in point.values:  # an input, which the settings do not limit
+        values = {**point.values, "q1": min(point.values["q1"], shortest)}
+        longer_waves = replace(point, values=values)
+    half_V, all_V = (release(settings, at=longer_waves) for settings in (half, smooth))
     usual_step = min(PAD.step_rms * point.values["rms"], PAD.longest_step_nm)
     knobs = [
-        knob(SITES, contact.pixels, "half as many for waves twice as long", release(half), release(smooth)),
+        knob(SITES, contact.pixels, "half as many for waves twice as long", half_V, all_V),
         knob(STEPS, usual_step, "half as long", release(), release(step_nm=0.5 * usual_step)),
     ]
     if point.device.bends:

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.special import ndtri
 
 from evidence.pad.rare_failures import PLATE, known_pad, population
 from mesoscale.circuit.numerics import CIRCUIT
@@ -10,11 +9,10 @@ from mesoscale.device import points
 from mesoscale.device.beam_kernels import OPENING_NM
 from mesoscale.device.numerics import SWITCH
 from mesoscale.device.points import Pad
+from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE
-from mesoscale.failure.rate import ReserveResponse
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies import answer_accuracy, circuit_accuracy, failure_accuracy
-from mesoscale.uncertainty.rare_events import Process
 from tests.mesoscale.device.test_release import cells_of, model_of
 
 STAGES = {"answer": answer_accuracy, "circuit": circuit_accuracy}
@@ -87,11 +85,6 @@ def test_a_plate_on_a_spring_has_no_such_choices(monkeypatch):
 
 def test_a_failure_rate_tells_what_points_switches_and_runs_leave_open(monkeypatch):
     plates = population()
-    z = ndtri(plates.solved[0])
-    columns = plates.columns(z, np.full(len(z), plates.hold_V))
-    learned = columns, plates.reserves(z, plates.hold_V, plates.solved[1])
-    response = ReserveResponse(plates, Process(*learned), len(z), *learned)
-    monkeypatch.setattr(failure_accuracy, "learn", lambda *_: response)
     monkeypatch.setattr(failure_accuracy, "just_allowed", lambda *_: 1.42)
     monkeypatch.setattr(failure_accuracy, "SEEDS", 2)
     monkeypatch.setattr(failure_accuracy, "PARTS", 2)
@@ -104,3 +97,8 @@ def test_a_failure_rate_tells_what_points_switches_and_runs_leave_open(monkeypat
     assert all(row["unit"] == "% of the probability" and row["error"] > 0.0 for row in rows)
     runs = {row["value"]: row["error"] for row in rows if row["knob"] == failure_accuracy.RUNS}
     assert runs[FAILURE.runs] == pytest.approx(0.5 * runs[FAILURE.runs // 4], rel=1e-9)
+
+
+def test_a_failure_rate_of_few_points_is_refused_in_one_line():
+    with pytest.raises(InputError, match=r"pad.points: \d+ of 8 switches .* at least 32; raise pad.points"):
+        list(failure_accuracy.accuracy_points(population(8), 0.01, lambda *_: None))
