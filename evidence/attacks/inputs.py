@@ -31,8 +31,8 @@ SOFTER = 2.0**-14
 DIGITS = 1e-6
 """Of voltages."""
 PLACE, BALANCE = 0.03, 0.01
-"""Of the landed share and the capacitance, which have not six digits: balances are sought to a thousandth of a
-nanometre of some ten. Of seed 741128 one of 150 beams lands in jerks, where rounding moves its capacitance by 0.15 %."""
+"""Of landed share and capacitance, which have not six digits: balances are sought to a thousandth of a nanometre
+of some ten. Of seed 741128 one of 150 beams lands in jerks, where rounding moves its capacitance by 0.15 %."""
 JUMP = 0.02
 """Of a voltage from one stress to the next, over the largest: a mesh moves a release by some per cent where it tears
 off in jerks (`tests/mesoscale/device/test_hard_beams.py`)."""

@@ -148,7 +148,7 @@ def _runs(response: ReserveResponse, sampled: Sampled, times: float) -> Knob:
 
     counts = (FAILURE.runs // 4, FAILURE.runs // 2, FAILURE.runs, 2 * FAILURE.runs)
     choices = [Choice(runs, partial(errors, runs)) for runs in counts]
-    words = f"mean of {factors.size} switches that nearly fail"
+    words = f"{(factors > 0).sum()} of {factors.size} switches that should fail do"
     return Knob(RUNS, [RATE], choices, FAILURE.runs, words, samples="by their scatter")
 
 

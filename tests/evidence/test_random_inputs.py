@@ -9,10 +9,10 @@ CAMPAIGNS = {
     "maps": lambda: presses(SEED, 200),
     "switches": lambda: devices(SEED, 150),
     "stresses": lambda: stresses(SEED, 1),
-    **{
-        mechanics: lambda mechanics=mechanics: contacts(SEED, 200, mechanics)
-        for mechanics in ("asperity", "coupled", "adhesive")
-    },
+    "asperity": lambda: contacts(SEED, 200, "asperity"),
+    "coupled": lambda: contacts(SEED, 200, "coupled"),
+    # 200 take a minute and more: python -m evidence attacks.inputs
+    "adhesive": lambda: contacts(SEED, 60, "adhesive"),
 }
 
 
