@@ -30,11 +30,12 @@ def basis_matrix(u: Array, degrees: NDArray[np.int_]) -> Array:
     -------
     shape (m, terms).
     """
-    powers = legendre(u, max(1, int(degrees.max(initial=0))))
-    matrix = np.ones((len(u), len(degrees)))
-    for k in range(u.shape[1]):
-        matrix *= powers[degrees[:, k], :, k].T
-    return matrix
+    powers = legendre(np.ascontiguousarray(u.T), max(1, int(degrees.max(initial=0))))
+    columns = np.ones((len(degrees), len(u)))
+    # most terms are of one or two inputs
+    for term, k in zip(*np.nonzero(degrees), strict=True):
+        columns[term] *= powers[degrees[term, k], k]
+    return np.ascontiguousarray(columns.T)
 
 
 def scaled(x: Array, ranges: Array) -> Array:
