@@ -219,7 +219,7 @@ def plan_grid(
     ------
     InputError : the pilot cells never reach the pressure, or their asperities merge before.
     """
-    step_nm = step_nm or min(PAD.step_rms * inputs.rms, PAD.longest_step_nm)
+    step_nm = step_nm or PAD.step_nm(inputs.rms)
     every = -(-len(cells) // PILOTS)
     pilot_cells = _some_of(cells, every)
     others = [cell for k, cell in enumerate(cells) if k % every]

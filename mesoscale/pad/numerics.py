@@ -71,6 +71,10 @@ class PadNumerics:
     coarse_nm: float = 120.0
     same: float = 1e-7
 
+    def step_nm(self, rms_nm: float) -> float:
+        """Step of separation in and near contact on surfaces of this RMS height."""
+        return min(self.step_rms * rms_nm, self.longest_step_nm)
+
 
 PAD = PadNumerics()
 """What every scene uses."""

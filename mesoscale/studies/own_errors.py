@@ -75,7 +75,7 @@ def of_switch(point: Point, contact: ContactSettings, cells: int, central: PadLa
         values = {**point.values, "q1": min(point.values["q1"], shortest)}
         longer_waves = replace(point, values=values)
     half_V, all_V = (release(settings, at=longer_waves) for settings in (half, smooth))
-    usual_step = min(PAD.step_rms * point.values["rms"], PAD.longest_step_nm)
+    usual_step = PAD.step_nm(point.values["rms"])
     knobs = [
         knob(SITES, contact.pixels, "half as many for waves twice as long", half_V, all_V),
         knob(STEPS, usual_step, "half as long", release(), release(step_nm=0.5 * usual_step)),
