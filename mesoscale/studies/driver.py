@@ -54,6 +54,15 @@ class Cost:
     cpu_s: float
     peak_rss_MB: float
 
+    def times(self, count: float) -> "Cost":
+        """Of so many such computations, one after the other."""
+        return Cost(count * self.wall_s, count * self.cpu_s, self.peak_rss_MB)
+
+    def __add__(self, other: "Cost") -> "Cost":
+        """Of both, one after the other."""
+        peak_MB = max(self.peak_rss_MB, other.peak_rss_MB)
+        return Cost(self.wall_s + other.wall_s, self.cpu_s + other.cpu_s, peak_MB)
+
 
 @dataclass(frozen=True)
 class Errors:
@@ -150,7 +159,7 @@ def _errors_of(choice: Choice, best: Array | None, quantities: Sequence[Quantity
             deviations[:, column] /= quantity.scale
     error, own_error = root_mean_square(deviations)
     count = len(values)
-    return Errors(error, own_error, Cost(cost.wall_s / count, cost.cpu_s / count, cost.peak_rss_MB))
+    return Errors(error, own_error, cost.times(1 / count))
 
 
 def root_mean_square(deviations: ArrayLike) -> tuple[Array, Array]:

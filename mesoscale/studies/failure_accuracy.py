@@ -127,8 +127,7 @@ def _learned(response: ReserveResponse, sampled: Sampled, times: float, one: Cos
             mean, deviation = replace(response, process=process).moments(sampled.points, hold_V)
             chance = ndtr((np.log(times) - mean) / deviation)
             deviations.append([_logarithm(sampled.probability * float(np.mean(chance / sampled.chance)))])
-        cost = Cost(part * one.wall_s, part * one.cpu_s, one.peak_rss_MB)
-        return Errors(*root_mean_square(np.array(deviations) - _logarithm(sampled.probability)), cost)
+        return Errors(*root_mean_square(np.array(deviations) - _logarithm(sampled.probability)), one.times(part))
 
     parts = [round(share * count) for share in (0.4, 0.6, 0.8)]
     choices = [Choice(part, partial(errors, part)) for part in parts]
@@ -143,8 +142,7 @@ def _runs(response: ReserveResponse, sampled: Sampled, times: float) -> Knob:
 
     def errors(runs: int) -> Errors:
         error, own_error = relative_errors(factors, runs)
-        of_runs = Cost(runs * cost.wall_s / count, runs * cost.cpu_s / count, cost.peak_rss_MB)
-        return Errors([error], [own_error], of_runs)
+        return Errors([error], [own_error], cost.times(runs / count))
 
     counts = (FAILURE.runs // 4, FAILURE.runs // 2, FAILURE.runs, 2 * FAILURE.runs)
     choices = [Choice(runs, partial(errors, runs)) for runs in counts]

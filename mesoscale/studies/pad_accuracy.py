@@ -27,7 +27,6 @@ from mesoscale.studies.driver import (
     RELEASE,
     Array,
     Choice,
-    Cost,
     Errors,
     Knob,
     Progress,
@@ -138,7 +137,7 @@ def _cells(model: PadModel, contact: ContactSettings, cells: int) -> Knob:
 
 def _steps(pads: Sequence[SamplePad], rms_nm: float) -> Knob:
     """Longer steps, beside half of that in use, at separations from which the pads are opened in any case."""
-    step = min(PAD.step_rms * rms_nm, PAD.longest_step_nm)
+    step = PAD.step_nm(rms_nm)
     grids = [pad.grid() for pad in pads]
 
     def releases(merged: int) -> Array:
@@ -232,8 +231,7 @@ def _points(model: PadModel, contact: ContactSettings, cells: int) -> Iterator[K
         groups = np.arange(release.size) % GROUPS
         without = [quantile_errors(release[groups != group], count) for group in range(GROUPS)]
         spread = np.std(without, axis=0) * np.sqrt(GROUPS - 1)
-        of_count = Cost(count * cost.wall_s, count * cost.cpu_s, cost.peak_rss_MB)
-        return Errors(quantile_errors(release, count), spread, of_count)
+        return Errors(quantile_errors(release, count), spread, cost.times(count))
 
     quantities = [Quantity(f"{end:.0%} quantile of the release", "V", volts=1.0) for end in ENDS]
     counts = [round(factor * release.size) for factor in (0.25, 0.5, 1, 2, 4)]

@@ -4,7 +4,7 @@ Synthetic scans have a known truth. What is told are the deviations of the analy
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache, partial
+from functools import cache, partial, reduce
 from typing import Any
 
 import numpy as np
@@ -125,11 +125,8 @@ def _errors(cleaned: Cleaned, truth: ScanSet, used: tuple[int, int], analysis: A
         parts = [*every[:small], *every[truth.small_scans : truth.small_scans + large]]
         estimated, cost = timed(partial(analysis, [scan for scan, _ in parts]))
         deviations.append([100 * _relative(estimated.get(name), value) for name, value in true_values.items()])
-        wall_s = cost.wall_s + sum(part.wall_s for _, part in parts)
-        cpu_s = cost.cpu_s + sum(part.cpu_s for _, part in parts)
-        costs.append((wall_s, cpu_s, cost.peak_rss_MB))
-    error, own_error = root_mean_square(deviations)
-    return Errors(error, own_error, Cost(*np.mean(costs, axis=0).tolist()))
+        costs += [cost, *(of_cleaning for _, of_cleaning in parts)]
+    return Errors(*root_mean_square(deviations), reduce(Cost.__add__, costs).times(1 / SURFACES))
 
 
 def _relative(estimate: float | None, true_value: float) -> float:

@@ -85,14 +85,7 @@ def cost_of_cycle(table: InputTable, contact: ContactSettings) -> Cost:
     first, *others = random_runs(table, 0, TIMED_CYCLES + 1)
     list(compute_rows([first], contact))  # loads the engine
     _, cost = timed(lambda: list(compute_rows(others, contact)))
-    return Cost(cost.wall_s / TIMED_CYCLES, cost.cpu_s / TIMED_CYCLES, cost.peak_rss_MB)
-
-
-def _times(cost: Cost, count: float, added: Cost | None = None) -> Cost:
-    """So many times a cost, and another one once."""
-    more = added or Cost(0.0, 0.0, 0.0)
-    peak_MB = max(cost.peak_rss_MB, more.peak_rss_MB)
-    return Cost(count * cost.wall_s + more.wall_s, count * cost.cpu_s + more.cpu_s, peak_MB)
+    return cost.times(1 / TIMED_CYCLES)
 
 
 MEANS = [f"mean {row.short}" for row in LAW_OUTPUTS]
@@ -123,7 +116,7 @@ def _runs(direct: Direct, table: InputTable, settings: UncertaintySettings, devi
             first, second = picked[: count // 2], picked[count // 2 :]
             deviations.append(100 * 0.5 * (mean(first) - mean(second)) / deviation)
         _, fit = timed(partial(mean, np.arange(count)))
-        return Errors(*root_mean_square(deviations), _times(cycle, count, fit))
+        return Errors(*root_mean_square(deviations), cycle.times(count) + fit)
 
     counts = [FEWEST]
     while 2 * counts[-1] <= len(x):
@@ -171,7 +164,7 @@ def _degree(direct: Direct, again: Array, table: InputTable) -> Knob:
         error = np.sqrt(excess)
         # of a root: near zero the root of the error itself
         own_error = error_of_excess / (2 * np.maximum(error, np.sqrt(error_of_excess) / 2))
-        return Errors(100 * error, 100 * own_error, _times(cost, 1 / FOLDS))
+        return Errors(100 * error, 100 * own_error, cost.times(1 / FOLDS))
 
     choices = [Choice(degree, partial(errors, degree)) for degree in DEGREES]
     reference = (
@@ -201,7 +194,7 @@ def _seeds(nodes: NodeOutputs, table: InputTable, deviation: Array, cycle: Cost)
 
     def errors(count: int) -> Errors:
         error = scatter / np.sqrt(count)
-        return Errors(error, error * share_unknown, _times(cycle, count * nodes_of_surface))
+        return Errors(error, error * share_unknown, cycle.times(count * nodes_of_surface))
 
     in_use = len(nodes.seeds)
     counts = [1]

@@ -84,6 +84,13 @@ def content(path: Path):
     return result_checksum(path)
 
 
+def take_over(finished, results: Path, *folders: str) -> None:
+    """Copy what stages of scene `ci` have made into the results of another scene."""
+    for folder in folders:
+        shutil.copytree(finished.folder / "results/ci" / folder, results / folder)
+    (results / ".scene").touch()  # as of a scene that has moved
+
+
 def test_every_promised_result_is_there(finished):
     missing = [name for name in (*RESULTS, *OF_POINTS) if not (finished.folder / "results/ci" / name).is_file()]
     assert not missing
@@ -124,9 +131,7 @@ def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_w
     workflow = make_workflow(tmp_path)
     scene = tmp_path / "killed.yaml"
     scene.write_text("extends: ci\nname: killed\npad: {points: 0}\n")
-    for taken_over in ("hardness", "elastic/quenched"):
-        shutil.copytree(finished.folder / "results/ci" / taken_over, tmp_path / "results/killed" / taken_over)
-    (tmp_path / "results/killed/.scene").touch()  # as of a scene that has moved
+    take_over(finished, tmp_path / "results/killed", "hardness", "elastic/quenched")
     logs = tmp_path / "results/killed/logs"
     for job in STAGES.values():
         if not list(logs.glob(f"{job}*.log")):  # a run killed in another stage may have come this far
@@ -145,9 +150,7 @@ def test_another_glass_moves_what_meets_the_contact(finished, make_workflow, tmp
     workflow = make_workflow(tmp_path)
     scene = tmp_path / "other.yaml"
     scene.write_text("extends: ci\nname: other\nelastic: {seed: 4}\n")
-    for stage in ("hardness", "topography"):
-        shutil.copytree(finished.folder / "results/ci" / stage, tmp_path / "results/other" / stage)
-    (tmp_path / "results/other/.scene").touch()  # as of a scene that has moved
+    take_over(finished, tmp_path / "results/other", "hardness", "topography")
     done = workflow.run(str(scene), "inputs")
     assert done.returncode == 0, done.stdout + done.stderr
     before, after = ({row["parameter"]: row for row in load_csv(path)} for path in inputs_of(finished, tmp_path))
