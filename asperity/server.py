@@ -1,10 +1,11 @@
-"""Server of the models over UM-Bridge, protocol 1.0 (Seelinger et al., J. Open Source Softw. 8, 4748, 2023).
+"""Server of the models over UM-Bridge, protocol 1.0 (Seelinger et al., J. Open Source Softw. 8,
+4748, 2023).
 
-`umbridge.serve_models` listens on every address of the machine, has no place for checks, lets clients name shared
-memory to be read, and answers a malformed request with a page of HTML. This one listens where it is told, evaluates in
-worker processes, and answers every mistake in one line. A page in a browser of the same machine cannot use it: requests
-must be JSON and name this machine as their host.
-"""
+`umbridge.serve_models` listens on every address of the machine, has no place for checks, lets
+clients name shared memory to be read, and answers a malformed request with a page of HTML. This one
+listens where it is told, evaluates in worker processes, and answers every mistake in one line. A
+page in a browser of the same machine cannot use it: requests must be JSON and name this machine as
+their host."""
 
 import asyncio
 import ipaddress
@@ -31,7 +32,9 @@ TRIES = 3
 LONGEST_S = 600.0
 """Of one evaluation."""
 BODY_S = 30.0
-"""In which a request must have come: one whose stated length never comes would hold its connection for ever."""
+"""In which a request must have come: one whose stated length never comes would hold its connection
+for ever.
+"""
 
 
 class _Worker:
@@ -86,7 +89,9 @@ class Workers:
         worker = await self.free.get()
         try:
             for _ in range(TRIES):
-                call = asyncio.get_running_loop().run_in_executor(self.threads, worker.evaluate, request)
+                call = asyncio.get_running_loop().run_in_executor(
+                    self.threads, worker.evaluate, request
+                )
                 try:
                     answer = await asyncio.wait_for(call, LONGEST_S)
                 except (EOFError, OSError, asyncio.CancelledError) as error:
@@ -94,7 +99,9 @@ class Workers:
                     worker.process.kill()
                     worker = _Worker()
                     if isinstance(error, TimeoutError):
-                        raise InputError(f"{request[0]}: takes longer than {LONGEST_S:.0f} s; ask for less") from None
+                        raise InputError(
+                            f"{request[0]}: takes longer than {LONGEST_S:.0f} s; ask for less"
+                        ) from None
                     if isinstance(error, asyncio.CancelledError):
                         raise
                     continue
@@ -113,8 +120,12 @@ def _refused(kind: str, message: str, status: int = 400) -> "web.Response":
     return web.json_response({"error": {"type": kind, "message": line}}, status=status)
 
 
-def _malformed(handler: Any, request: Any, status: int = 500, exc: Any = None, message: str | None = None) -> Any:
-    """Answer of aiohttp's connections to what is no HTTP, in place of its plain text; see `serve`."""
+def _malformed(
+    handler: Any, request: Any, status: int = 500, exc: Any = None, message: str | None = None
+) -> Any:
+    """Answer of aiohttp's connections to what is no HTTP, in place of its plain text; see
+    `serve`.
+    """
     if request.writer.output_size > 0:
         raise ConnectionError("the answer has begun: another cannot be sent")
     if status < 500:
@@ -127,7 +138,9 @@ def _malformed(handler: Any, request: Any, status: int = 500, exc: Any = None, m
 
 
 def _by_client(record: logging.LogRecord) -> bool:
-    """Whether a record of the log is to be kept: none of a request that its client broke off or garbled."""
+    """Whether a record of the log is to be kept: none of a request that its client broke off or
+    garbled.
+    """
     from aiohttp import web
 
     error = record.exc_info[1] if record.exc_info else None
@@ -135,14 +148,21 @@ def _by_client(record: logging.LogRecord) -> bool:
 
 
 def application(workers: Workers, host: str) -> "web.Application":
-    """The routes of the protocol, for requests that name `host`, this machine or an address as theirs."""
+    """The routes of the protocol, for requests that name `host`, this machine or an address as
+    theirs.
+    """
     from aiohttp import web
 
     @web.middleware
-    async def in_one_line(request: "web.Request", handler: Callable[..., Any]) -> "web.StreamResponse":
-        # a page of a stranger may name a host of its own that leads here: its requests carry that name
+    async def in_one_line(
+        request: "web.Request", handler: Callable[..., Any]
+    ) -> "web.StreamResponse":
+        # a page of a stranger may name a host of its own that leads here: its requests carry that
+        # name
         if not _is_ours(request.host, host):
-            return _refused("InvalidInput", f"Host: {request.host}: accepted is {host}, localhost or an address")
+            return _refused(
+                "InvalidInput", f"Host: {request.host}: accepted is {host}, localhost or an address"
+            )
         try:
             return await handler(request)
         except web.HTTPException as error:  # no such route, too large
@@ -161,10 +181,18 @@ def application(workers: Workers, host: str) -> "web.Application":
         try:
             content = json.loads(await asyncio.wait_for(request.text(), BODY_S))
         except TimeoutError:
-            raise InputError(f"the request did not come within {BODY_S:.0f} s; is its Content-Length right?") from None
+            raise InputError(
+                f"the request did not come within {BODY_S:.0f} s; is its Content-Length right?"
+            ) from None
         except web.RequestPayloadError:
-            raise InputError("the request cannot be decoded; send it as it is, in good chunks") from None
-        except (ValueError, LookupError, RecursionError):  # LookupError: a charset that nobody knows
+            raise InputError(
+                "the request cannot be decoded; send it as it is, in good chunks"
+            ) from None
+        except (
+            ValueError,
+            LookupError,
+            RecursionError,
+        ):  # LookupError: a charset that nobody knows
             raise InputError("the request is no JSON") from None
         if not isinstance(content, dict):
             raise InputError("the request must be a JSON object")
@@ -216,6 +244,14 @@ def serve(host: str, port: int, workers: int) -> None:
     web.RequestHandler.handle_error = _malformed  # pyright: ignore[reportAttributeAccessIssue]
     logging.getLogger("aiohttp.server").addFilter(_by_client)
     try:
-        web.run_app(application(Workers(workers), host), host=host, port=port, print=None, handler_cancellation=True)
+        web.run_app(
+            application(Workers(workers), host),
+            host=host,
+            port=port,
+            print=None,
+            handler_cancellation=True,
+        )
     except OSError as error:
-        raise InputError(f"{host}:{port}: cannot be used ({error.strerror}); choose another --port") from None
+        raise InputError(
+            f"{host}:{port}: cannot be used ({error.strerror}); choose another --port"
+        ) from None

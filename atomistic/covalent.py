@@ -1,4 +1,6 @@
-"""Covalent networks for LAMMPS: the Tersoff potential with soft cores between like atoms, and random starts."""
+"""Covalent networks for LAMMPS: the Tersoff potential with soft cores between like atoms, and
+random starts.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,8 +18,10 @@ class Quench:
     Attributes
     ----------
     start_distance_A : random start: nothing closer than this
-    melt_K, melt_ps, final_K, rate_K_ps : temperature and time of the melt; temperature of the glass, cooling rate
-    free_below_K : a melt has no shape to keep; below this its network can still change and settles as a glass
+    melt_K, melt_ps, final_K, rate_K_ps : temperature and time of the melt; temperature of the
+        glass, cooling rate
+    free_below_K : a melt has no shape to keep; below this its network can still change and settles
+        as a glass
     timestep_fs : of the molecular dynamics
     attempts : quenches until one passes the gates; of 28 atoms about one in sixty does
     """
@@ -38,9 +42,9 @@ QUENCH = Quench()
 def tersoff_table(parameters: Tersoff) -> str:
     """Tersoff parameters in the format of LAMMPS (and ASE), one line per triplet.
 
-    A pair's own parameters come from the mixing rules of Tersoff, PRB 39, 5566 (1989); `chi` scales the
-    attraction of unlike (and, if given, like) pairs.  The cutoff of a triplet i j k is that of i–k.
-    """
+    A pair's own parameters come from the mixing rules of Tersoff, PRB 39, 5566 (1989); `chi` scales
+    the attraction of unlike (and, if given, like) pairs.  The cutoff of a triplet i j k is that of
+    i–k."""
     elements = parameters.elements
     chi = {frozenset(pair.split("-")): value for pair, value in parameters.chi.items()}
     lines = ["# m gamma lambda3 c d costheta0 n beta lambda2 B R D lambda1 A"]
@@ -64,7 +68,9 @@ def core_commands(cores: Mapping[str, Core], elements: Sequence[str]) -> list[st
     return lines
 
 
-def random_places(number: int, edges_A: np.ndarray, nearest_A: float, rng: np.random.Generator) -> np.ndarray:
+def random_places(
+    number: int, edges_A: np.ndarray, nearest_A: float, rng: np.random.Generator
+) -> np.ndarray:
     """Places in a periodic box, no two nearer than `nearest_A`; shape (number, 3), Å."""
     placed = np.empty((number, 3))
     for k in range(number):

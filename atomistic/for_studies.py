@@ -1,7 +1,7 @@
 """What a stage of atoms tells the driver of all studies: numerical choices to vary, and hard cases.
 
-The driver is `mesoscale.studies.driver`, which this package does not know. The tuples have the fields of its classes.
-"""
+The driver is `mesoscale.studies.driver`, which this package does not know. The tuples have the
+fields of its classes."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -17,7 +17,8 @@ class Deviations(NamedTuple):
     Attributes
     ----------
     values : in the units of the quantities, shape (samples, quantities).
-    noise : standard error of each quantity's error by what the samples do not tell, shape (quantities,).
+    noise : standard error of each quantity's error by what the samples do not tell, shape
+        (quantities,).
     cpu_s : processor seconds.
     """
 
@@ -51,7 +52,9 @@ Verdict = tuple[bool, str]
 
 
 class HardCase(NamedTuple):
-    """A stiff or extreme case: what is hard about it, what must hold, and the judge that runs it."""
+    """A stiff or extreme case: what is hard about it, what must hold, and the judge that runs
+    it.
+    """
 
     name: str
     description: str

@@ -21,8 +21,8 @@ from asperity.guards.errors import InputError
 
 PROTOCOLS = Path(__file__).parent / "protocols"  # the LAMMPS input scripts
 Progress = Callable[[float, str], None]
-# the environment variable with the command that starts several processes (gets -np N): what a machine runs is the
-# machine's matter, never that of a scene or a data file
+# the environment variable with the command that starts several processes (gets -np N): what a
+# machine runs is the machine's matter, never that of a scene or a data file
 MPI_LAUNCHER = "ASPERITY_MPI_LAUNCHER"
 
 
@@ -49,12 +49,20 @@ class Atoms:
     def take(self, keep: np.ndarray) -> "Atoms":
         """The atoms selected by a mask or by indices."""
         velocities = None if self.velocities_A_ps is None else self.velocities_A_ps[keep]
-        return Atoms(self.elements, self.types[keep], self.positions_A[keep], self.cell_A, velocities)
+        return Atoms(
+            self.elements, self.types[keep], self.positions_A[keep], self.cell_A, velocities
+        )
 
 
 def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) -> None:
     """Write a LAMMPS data file (atom_style atomic, units metal)."""
-    lines = ["-".join(atoms.elements), "", f"{len(atoms)} atoms", f"{len(atoms.elements)} atom types", ""]
+    lines = [
+        "-".join(atoms.elements),
+        "",
+        f"{len(atoms)} atoms",
+        f"{len(atoms.elements)} atom types",
+        "",
+    ]
     x, y, z = atoms.cell_A.tolist()
     lines += [f"0 {x!r} xlo xhi", f"0 {y!r} ylo yhi", f"0 {z!r} zlo zhi"]
     lines += ["", "Masses", ""]
@@ -62,16 +70,22 @@ def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) ->
     lines += ["", "Atoms # atomic", ""]
     lines += [
         f"{k} {kind} {x!r} {y!r} {z!r}"
-        for k, (kind, (x, y, z)) in enumerate(zip(atoms.types.tolist(), atoms.positions_A.tolist(), strict=True), 1)
+        for k, (kind, (x, y, z)) in enumerate(
+            zip(atoms.types.tolist(), atoms.positions_A.tolist(), strict=True), 1
+        )
     ]
     if atoms.velocities_A_ps is not None:
         lines += ["", "Velocities", ""]
-        lines += [f"{k} {x!r} {y!r} {z!r}" for k, (x, y, z) in enumerate(atoms.velocities_A_ps.tolist(), 1)]
+        lines += [
+            f"{k} {x!r} {y!r} {z!r}"
+            for k, (x, y, z) in enumerate(atoms.velocities_A_ps.tolist(), 1)
+        ]
     Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
-    """Read a LAMMPS data file as `write_data` or the LAMMPS command `write_data ... nocoeff` makes it.
+    """Read a LAMMPS data file as `write_data` or the LAMMPS command `write_data ... nocoeff` makes
+    it.
 
     Atoms come back in the order of their ids, wrapped into a cell that starts at 0.
 
@@ -91,9 +105,15 @@ def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
     try:
         [count] = (int(fields[0]) for fields in sections[""] if fields[1:] == ["atoms"])
         low, high = np.array(
-            [[float(fields[0]), float(fields[1])] for fields in sections[""] if fields[-1] in ("xhi", "yhi", "zhi")]
+            [
+                [float(fields[0]), float(fields[1])]
+                for fields in sections[""]
+                if fields[-1] in ("xhi", "yhi", "zhi")
+            ]
         ).T
-        table = np.array([[float(value) for value in fields[:5]] for fields in sections["Atoms"]]).reshape(count, 5)
+        table = np.array(
+            [[float(value) for value in fields[:5]] for fields in sections["Atoms"]]
+        ).reshape(count, 5)
         order = np.argsort(table[:, 0])
         positions = np.mod(table[order, 2:5] - low, high - low)
         velocities = None
@@ -107,7 +127,8 @@ def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
 
 
 def load_dump(path: str | Path) -> list[tuple[int, np.ndarray]]:
-    """Frames of a LAMMPS text dump: (step, table of shape (atoms, columns)) in the order of the file.
+    """Frames of a LAMMPS text dump: (step, table of shape (atoms, columns)) in the order of the
+    file.
 
     Raises
     ------
@@ -120,11 +141,15 @@ def load_dump(path: str | Path) -> list[tuple[int, np.ndarray]]:
                 step = int(stream.readline())
                 stream.readline()
                 count = int(stream.readline())
-                columns = len(next(line for line in stream if line.startswith("ITEM: ATOMS")).split()) - 2
+                columns = (
+                    len(next(line for line in stream if line.startswith("ITEM: ATOMS")).split()) - 2
+                )
                 table = np.array("".join(islice(stream, count)).split(), dtype=float)
                 frames.append((step, table.reshape(count, columns)))
     except (ValueError, StopIteration):
-        raise InputError(f"{path}: not a whole LAMMPS dump; delete its folder and run again") from None
+        raise InputError(
+            f"{path}: not a whole LAMMPS dump; delete its folder and run again"
+        ) from None
     return frames
 
 
@@ -134,10 +159,12 @@ def load_averages(path: str | Path) -> np.ndarray:
 
 
 class LammpsFolder:
-    """A directory for what a killed run needs to go on; emptied when anything the run depends on changed.
+    """A directory for what a killed run needs to go on; emptied when anything the run depends on
+    changed.
 
-    It may have come from elsewhere.  What LAMMPS executes is therefore written anew at every start, restart files and
-    data are only read, and one that holds links or special files is emptied: they could lead out of it.
+    It may have come from elsewhere.  What LAMMPS executes is therefore written anew at every start,
+    restart files and data are only read, and one that holds links or special files is emptied: they
+    could lead out of it.
 
     Parameters
     ----------
@@ -147,13 +174,21 @@ class LammpsFolder:
 
     def __init__(self, path: str | Path, identity: Mapping[str, object], script: str) -> None:
         self.path = Path(path)
-        text = json.dumps(identity, sort_keys=True, default=str) + (PROTOCOLS / script).read_text(encoding="utf-8")
+        text = json.dumps(identity, sort_keys=True, default=str) + (PROTOCOLS / script).read_text(
+            encoding="utf-8"
+        )
         fingerprint = hashlib.sha256(text.encode()).hexdigest()
         mark = self.path / "fingerprint"
         if self.path.is_symlink():
             self.path.unlink()
-        plain = self.path.is_dir() and all(item.is_file() and not item.is_symlink() for item in self.path.iterdir())
-        if not (plain and mark.exists() and mark.read_text(encoding="utf-8", errors="replace") == fingerprint):
+        plain = self.path.is_dir() and all(
+            item.is_file() and not item.is_symlink() for item in self.path.iterdir()
+        )
+        if not (
+            plain
+            and mark.exists()
+            and mark.read_text(encoding="utf-8", errors="replace") == fingerprint
+        ):
             shutil.rmtree(self.path, ignore_errors=True)
             self.path.mkdir(parents=True)
             mark.write_text(fingerprint, encoding="utf-8")
@@ -186,14 +221,29 @@ def run_lammps(
     ----------
     variables : index variables of the script; a sequence becomes a variable with several values.
     on_step : called with the time step of every thermo line.
-    processes : MPI processes; more than one are started by the command in `MPI_LAUNCHER`, by default mpirun.
+    processes : MPI processes; more than one are started by the command in `MPI_LAUNCHER`, by
+        default mpirun.
 
     Raises
     ------
     InputError : LAMMPS stopped with an error; its message and the log are named.
     """
-    command = [str(executable()), "-in", str(PROTOCOLS / script), "-log", "none", "-nocite", "-nonbuf"]
-    command += ["-suffix", "omp", "-package", "omp", "1"]  # its pair table is ~15 % faster, also on one thread
+    command = [
+        str(executable()),
+        "-in",
+        str(PROTOCOLS / script),
+        "-log",
+        "none",
+        "-nocite",
+        "-nonbuf",
+    ]
+    command += [
+        "-suffix",
+        "omp",
+        "-package",
+        "omp",
+        "1",
+    ]  # its pair table is ~15 % faster, also on one thread
     for name, value in variables.items():
         values = [value] if isinstance(value, (str, int, float)) else list(value)  # type: ignore[call-overload]
         command += ["-var", name, *map(str, values)]
@@ -213,7 +263,8 @@ def run_lammps(
             stderr=subprocess.STDOUT,
             text=True,
             preexec_fn=_die_with_parent,
-            close_fds=False,  # it inherits what is marked so: the lock of its folder, held as long as it lives
+            # it inherits what is marked so: the lock of its folder, held as long as it lives
+            close_fds=False,
         ) as process,
     ):
         assert process.stdout is not None
@@ -264,7 +315,9 @@ def environment() -> dict[str, str]:
 
 
 def _die_with_parent() -> None:
-    """A killed workflow must not leave a LAMMPS behind that writes into the directory of the next one."""
+    """A killed workflow must not leave a LAMMPS behind that writes into the directory of the next
+    one.
+    """
     if sys.platform == "linux":
         pr_set_pdeathsig = 1
         ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)

@@ -1,8 +1,9 @@
-"""Materials read from data files (config/materials) and checked: crystals, glasses, potentials of the elastic stage.
+"""Materials read from data files (config/materials) and checked: crystals, glasses, potentials of
+the elastic stage.
 
-A file holds what the stages need of it: `oxide_glass` for the hardness stage, `network_glass` for the body that the
-elastic stage computes, `polycrystal` for the body it is pressed against, `crystals` as anchors.
-"""
+A file holds what the stages need of it: `oxide_glass` for the hardness stage, `network_glass` for
+the body that the elastic stage computes, `polycrystal` for the body it is pressed against,
+`crystals` as anchors."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -20,7 +21,9 @@ SHORTEST_BOND_A = 1.2  # the first peak of g(r) is sought beyond this
 
 def _rising(values: tuple[float, float]) -> tuple[float, float]:
     if not values[0] < values[1]:
-        raise ValueError(f"must rise: the low value {values[0]:g} is not below the high one {values[1]:g}")
+        raise ValueError(
+            f"must rise: the low value {values[0]:g} is not below the high one {values[1]:g}"
+        )
     return values
 
 
@@ -50,7 +53,9 @@ class _Section(Settings):
 
 
 class Published(_Section):
-    """Known bulk modulus and volume of a crystal of `atoms` atoms; numbers as the source prints them."""
+    """Known bulk modulus and volume of a crystal of `atoms` atoms; numbers as the source prints
+    them.
+    """
 
     B_GPa: Annotated[int | float, Field(gt=0)]
     V0_A3: Annotated[int | float, Field(gt=0)] | None
@@ -68,7 +73,9 @@ class Crystal(_Section):
     primitive: bool = False
     supercell: Supercell
     source: str
-    cutoff_Ha: Positive | None = Field(default=None, description="of the density; None: that of the scene")
+    cutoff_Ha: Positive | None = Field(
+        default=None, description="of the density; None: that of the scene"
+    )
     published: dict[Literal["GGA", "LDA", "experiment"], Published] = Field(default={})
 
     @model_validator(mode="after")
@@ -92,13 +99,17 @@ class OxideGlass(_Section):
 
     density_g_cm3: Positive
     density_range_g_cm3: Range
-    bond_A: float = Field(gt=SHORTEST_BOND_A, lt=SEARCHED_A, description="first peak of g(r) of cation and oxygen")
+    bond_A: float = Field(
+        gt=SHORTEST_BOND_A, lt=SEARCHED_A, description="first peak of g(r) of cation and oxygen"
+    )
     bond_range_A: Range
     cation_coordination: Positive
     coordination_range: Range
     cutoff_A: Distance = Field(description="first minimum of that g(r)")
     quenched: Quenched
-    indentation_GPa: Range | None = Field(None, description="hardness by a Berkovich tip, lowest and highest found")
+    indentation_GPa: Range | None = Field(
+        None, description="hardness by a Berkovich tip, lowest and highest found"
+    )
     sources: tuple[str, ...] = Field(min_length=1)
 
     @model_validator(mode="after")
@@ -111,7 +122,9 @@ class OxideGlass(_Section):
             if not low <= value <= high:
                 raise ValueError(f"{key} = {value:g} must lie in its range {low:g} to {high:g}")
         if self.cutoff_A <= self.bond_A:
-            raise ValueError(f"cutoff_A = {self.cutoff_A:g} must be longer than bond_A = {self.bond_A:g}")
+            raise ValueError(
+                f"cutoff_A = {self.cutoff_A:g} must be longer than bond_A = {self.bond_A:g}"
+            )
         return self
 
 
@@ -161,8 +174,12 @@ class NetworkGlass(_Section):
     coordination: dict[Element, Range]
     shortest_A: dict[ElementPair, Distance]
     gap_eV: Positive = Field(description="least gap after relaxation")
-    bond_spread_A: Positive = Field(description="standard deviation of bond lengths: below it the cell is crystalline")
-    symmetry_tolerance_A: Positive = Field(description="by which atoms may miss each other under a symmetry operation")
+    bond_spread_A: Positive = Field(
+        description="standard deviation of bond lengths: below it the cell is crystalline"
+    )
+    symmetry_tolerance_A: Positive = Field(
+        description="by which atoms may miss each other under a symmetry operation"
+    )
     cutoff_A: Distance = Field(description="longest bond of unlike elements")
     start_density_g_cm3: Positive
     edges: tuple[Positive, Positive, Positive] = Field(description="ratio of the cell's edges")
@@ -171,7 +188,11 @@ class NetworkGlass(_Section):
     cores: dict[ElementPair, Core]
     masses_u: dict[Element, Positive]
     ions_follow: tuple[Positive, float] | None = Field(
-        None, description="bulk modulus with ions that follow a strain, over that of clamped ions: mean, deviation"
+        None,
+        description=(
+            "bulk modulus with ions that follow a strain, over that of clamped ions: mean,"
+            " deviation"
+        ),
     )
 
 
@@ -193,13 +214,16 @@ class Polycrystal(_Section):
 
 
 class Eam(_Section):
-    """Embedded-atom potential of a metal in closed form (Zhou, Johnson and Wadley, doi:10.1103/PhysRevB.69.144113).
+    """Embedded-atom potential of a metal in closed form (Zhou, Johnson and Wadley,
+    doi:10.1103/PhysRevB.69.144113).
 
-    Energies in eV, distances in Å; `r` is the nearest distance, `f` and `rho` are electron densities of one unit.
-    """
+    Energies in eV, distances in Å; `r` is the nearest distance, `f` and `rho` are electron
+    densities of one unit."""
 
     mass_u: Positive
-    lattice_A: tuple[Positive, Positive] = Field(description="a and c of the hexagonal crystal at 0 K")
+    lattice_A: tuple[Positive, Positive] = Field(
+        description="a and c of the hexagonal crystal at 0 K"
+    )
     r_A: Positive
     f: Positive
     rho: Positive
@@ -209,7 +233,9 @@ class Eam(_Section):
     B_eV: Positive
     kappa: Positive
     lambda_: Positive = Field(alias="lambda")
-    F_inner_eV: tuple[float, float, float, float] = Field(description="F_n of densities below 0.85 rho")
+    F_inner_eV: tuple[float, float, float, float] = Field(
+        description="F_n of densities below 0.85 rho"
+    )
     F_middle_eV: tuple[float, float, float, float] = Field(description="F up to 1.15 rho")
     F_outer_eV: float = Field(description="F_e beyond")
     eta: Positive
@@ -231,13 +257,20 @@ class FilmBase(_Section):
     """
 
     grain_nm: Positive | None = Field(
-        default=None, description="of a metal, whose grains make it soft: diameter of a sphere of their mean volume"
+        default=None,
+        description=(
+            "of a metal, whose grains make it soft: diameter of a sphere of their mean volume"
+        ),
     )
-    timestep_factor: float = Field(default=1.0, gt=0, le=1, description="on the time step of a closing")
+    timestep_factor: float = Field(
+        default=1.0, gt=0, le=1, description="on the time step of a closing"
+    )
     bonds: dict[ElementPair, MorseBond] = Field(min_length=1)
     repelled: tuple[ElementPair, ...] = Field(description="pairs that only repel each other")
     area_error: float = Field(
-        ge=0, le=0.1, description="largest of the contact area on a film or on the body by itself, as a fraction"
+        ge=0,
+        le=0.1,
+        description="largest of the contact area on a film or on the body by itself, as a fraction",
     )
     source: str
 
@@ -259,9 +292,13 @@ class Material(_Section):
     @property
     def formula_text(self) -> str:
         """The formula in a word, as scenes and potentials name an oxide: SiO2."""
-        return "".join(f"{element}{count if count > 1 else ''}" for element, count in self.formula.items())
+        return "".join(
+            f"{element}{count if count > 1 else ''}" for element, count in self.formula.items()
+        )
 
-    def part(self, section: Literal["oxide_glass", "network_glass", "polycrystal", "eam", "film_base"]) -> Any:
+    def part(
+        self, section: Literal["oxide_glass", "network_glass", "polycrystal", "eam", "film_base"]
+    ) -> Any:
         """A section that a stage cannot do without.
 
         Raises
@@ -271,26 +308,39 @@ class Material(_Section):
         data = getattr(self, section)
         if data is None:
             raise InputError(
-                f"material {self.name}: its file has no section {section}; add one as docs/extending.md says, "
-                "or choose another material"
+                f"material {self.name}: its file has no section {section}; add one as"
+                " docs/extending.md says, or choose another material"
             )
         return data
 
     @model_validator(mode="after")
     def _consistent(self) -> "Material":
-        if unknown := sorted(_named_sources(self.model_dump(exclude={"sources"})) - set(self.sources)):
+        if unknown := sorted(
+            _named_sources(self.model_dump(exclude={"sources"})) - set(self.sources)
+        ):
             raise ValueError(f"source {unknown[0]!r:.60} is used but not listed under `sources`")
-        of_sections = {f"crystals.{name}.sites": set(crystal.sites) for name, crystal in self.crystals.items()}
+        of_sections = {
+            f"crystals.{name}.sites": set(crystal.sites) for name, crystal in self.crystals.items()
+        }
         if (glass := self.network_glass) is not None:
-            of_sections |= {f"network_glass.{key}": set(getattr(glass, key)) for key in ("valence", "masses_u")}
+            of_sections |= {
+                f"network_glass.{key}": set(getattr(glass, key)) for key in ("valence", "masses_u")
+            }
             of_sections["network_glass.tersoff.elements"] = set(glass.tersoff.elements)
         for key, elements in of_sections.items():
             if elements != set(self.formula):
-                raise ValueError(f"{key} has {', '.join(sorted(elements))}; it must have {', '.join(self.formula)}")
+                raise ValueError(
+                    f"{key} has {', '.join(sorted(elements))}; it must have"
+                    f" {', '.join(self.formula)}"
+                )
         if self.oxide_glass is not None and (len(self.formula) != 2 or "O" not in self.formula):
-            raise ValueError(f"oxide_glass: needs a formula of one cation and O, got {self.formula_text}")
+            raise ValueError(
+                f"oxide_glass: needs a formula of one cation and O, got {self.formula_text}"
+            )
         if self.film_base is not None and (self.eam is None) == (self.network_glass is None):
-            raise ValueError("film_base: needs the potential of its body; add a section eam or network_glass")
+            raise ValueError(
+                "film_base: needs the potential of its body; add a section eam or network_glass"
+            )
         if self.film_base is not None and (self.eam is None) != (self.film_base.grain_nm is None):
             raise ValueError("film_base: grain_nm is of a metal, and every metal needs it")
         if self.eam is not None and len(self.formula) != 1:
@@ -315,12 +365,14 @@ def load_material(path: str | Path) -> Material:
 
     Raises
     ------
-    InputError : unreadable or malformed file, unknown key, missing or non-physical value, unnamed source.
-    """
+    InputError : unreadable or malformed file, unknown key, missing or non-physical value, unnamed
+        source."""
     path = Path(path)
     material = load_settings(Material, path, "material", "config/materials/silicon_dioxide.yaml")
     if material.name != path.stem:
-        raise InputError(f"{path}: name: must be that of the file, {path.stem!r} (got {material.name!r})")
+        raise InputError(
+            f"{path}: name: must be that of the file, {path.stem!r} (got {material.name!r})"
+        )
     return material
 
 
@@ -329,8 +381,8 @@ def load_materials(folder: str | Path) -> dict[str, Material]:
 
     Raises
     ------
-    InputError : a file is not accepted, or two name the same crystal or have an oxide glass of the same formula.
-    """
+    InputError : a file is not accepted, or two name the same crystal or have an oxide glass of the
+        same formula."""
     paths = sorted(Path(folder).glob("*.yaml"))
     materials = {path.stem: load_material(path) for path in paths}
     kept: dict[str, Path] = {}
@@ -345,4 +397,8 @@ def load_materials(folder: str | Path) -> dict[str, Material]:
 
 def oxide_glasses(materials: Iterable[Material]) -> Mapping[str, Material]:
     """The materials with an oxide glass by formula, as a scene's hardness.material names them."""
-    return {material.formula_text: material for material in materials if material.oxide_glass is not None}
+    return {
+        material.formula_text: material
+        for material in materials
+        if material.oxide_glass is not None
+    }

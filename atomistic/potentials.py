@@ -1,8 +1,7 @@
 """Rigid-ion pair potentials read from data files, checked, and written as LAMMPS tables.
 
-All terms of a pair, Coulomb included, go into one table: 3-5 times faster than the sum of their own pair
-styles, and its twin with all energies halved is the same table times one half.
-"""
+All terms of a pair, Coulomb included, go into one table: 3-5 times faster than the sum of their own
+pair styles, and its twin with all energies halved is the same table times one half."""
 
 import io
 from collections.abc import Callable, Mapping
@@ -42,7 +41,10 @@ class Morse(_Sourced):
 
     def energy_and_slope(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         decay = np.exp(-self.a_1_per_A * (r - self.r0_A))
-        return self.D_eV * ((1 - decay) ** 2 - 1), 2 * self.D_eV * self.a_1_per_A * (1 - decay) * decay
+        return (
+            self.D_eV * ((1 - decay) ** 2 - 1),
+            2 * self.D_eV * self.a_1_per_A * (1 - decay) * decay,
+        )
 
 
 class Power(_Sourced):
@@ -74,7 +76,9 @@ class Pair(Settings):
     """All short-range terms between two species."""
 
     species: tuple[Name, Name]
-    terms: tuple[Annotated[Morse | Power | Buckingham, Field(discriminator="term")], ...] = Field(min_length=1)
+    terms: tuple[Annotated[Morse | Power | Buckingham, Field(discriminator="term")], ...] = Field(
+        min_length=1
+    )
 
 
 class Species(_Sourced):
@@ -100,7 +104,8 @@ class Source(Settings):
 
 
 class AreaCalibration(Settings):
-    """How the definition of contact area was tested on bodies of known section with a potential's glass.
+    """How the definition of contact area was tested on bodies of known section with a potential's
+    glass.
 
     Attributes
     ----------
@@ -133,7 +138,9 @@ class Potential(Settings):
         """Mass of each element."""
         return {name: ion.mass_u for name, ion in self.species.items()}
 
-    def energy_and_force(self, first: str, second: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def energy_and_force(
+        self, first: str, second: str, r: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Energy (eV) and force (eV/Å, positive = repulsion) of a pair at distances `r` (Å).
 
         Short-range terms are shifted so that energy and force vanish at the cutoff, as the damped
@@ -155,14 +162,18 @@ class Potential(Settings):
 
         def bare(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             screened = erfc(alpha * x) / x
-            return screened, screened / x + 2 * alpha / np.sqrt(np.pi) * np.exp(-((alpha * x) ** 2)) / x
+            return (
+                screened,
+                screened / x + 2 * alpha / np.sqrt(np.pi) * np.exp(-((alpha * x) ** 2)) / x,
+            )
 
         value, force = bare(r)
         value_c, force_c = bare(np.array([r_c]))
         return strength * (value - value_c + force_c * (r - r_c)), strength * (force - force_c)
 
     def table(self, elements: tuple[str, ...], energy_scale: float = 1.0) -> str:
-        """LAMMPS `pair_style table` file: a section A_B for every pair of `elements`, and `contact` (`pair_table`).
+        """LAMMPS `pair_style table` file: a section A_B for every pair of `elements`, and `contact`
+        (`pair_table`).
 
         Parameters
         ----------
@@ -177,7 +188,8 @@ class Potential(Settings):
         return pair_table(title, sections, self.cutoff_A, energy_scale)
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
-        """What LAMMPS needs by the name of its file: the table, and in `pairs` the commands that use it.
+        """What LAMMPS needs by the name of its file: the table, and in `pairs` the commands that
+        use it.
 
         Parameters
         ----------
@@ -192,7 +204,9 @@ class Potential(Settings):
 
 
 class ForceField(Protocol):
-    """What of a `Potential` molecular dynamics uses: a metal, and an oxide on a metal, have it too."""
+    """What of a `Potential` molecular dynamics uses: a metal, and an oxide on a metal, have it
+    too.
+    """
 
     @property
     def masses_u(self) -> Mapping[str, float]:
@@ -207,8 +221,11 @@ class ForceField(Protocol):
 EnergyAndForce = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def pair_table(title: str, sections: Mapping[str, EnergyAndForce], cutoff_A: float, energy_scale: float) -> str:
-    """LAMMPS `pair_style table` file of these sections and of `contact` (`contact_energy_and_force`).
+def pair_table(
+    title: str, sections: Mapping[str, EnergyAndForce], cutoff_A: float, energy_scale: float
+) -> str:
+    """LAMMPS `pair_style table` file of these sections and of `contact`
+    (`contact_energy_and_force`).
 
     Parameters
     ----------
@@ -222,7 +239,9 @@ def pair_table(title: str, sections: Mapping[str, EnergyAndForce], cutoff_A: flo
     for name, of in {**sections, "contact": contact_energy_and_force}.items():
         energy, force = of(r)
         lines.write(f"\n{name}\nN {points} RSQ {TABLE_START_A} {cutoff_A}\n\n")
-        rows = np.column_stack([np.arange(1, points + 1), r, energy_scale * energy, energy_scale * force])
+        rows = np.column_stack(
+            [np.arange(1, points + 1), r, energy_scale * energy, energy_scale * force]
+        )
         np.savetxt(lines, rows, fmt="%d %.12g %.12g %.12g")
     return lines.getvalue()
 
@@ -244,7 +263,8 @@ def load_potential(path: str | Path) -> Potential:
 
     Raises
     ------
-    InputError : unreadable or malformed file, missing pair, unknown species or source, charged formula unit,
+    InputError : unreadable or malformed file, missing pair, unknown species or source, charged
+        formula unit,
         or a pair without a repulsive core.
     """
     path = Path(path)
@@ -265,19 +285,28 @@ def _check(path: Path, potential: Potential) -> None:
     for pair in potential.pairs:
         label = "-".join(pair.species)
         if set(pair.species) - set(potential.species):
-            raise InputError(f"{path}: pair {label} names a species that is not listed under `species`")
+            raise InputError(
+                f"{path}: pair {label} names a species that is not listed under `species`"
+            )
         if frozenset(pair.species) in seen:
             raise InputError(f"{path}: pair {label} stands twice; keep one")
         seen.add(frozenset(pair.species))
     for first, second in combinations_with_replacement(potential.species, 2):
         if frozenset((first, second)) not in seen:
-            raise InputError(f"{path}: pair {first}-{second} is missing; add its terms under `pairs`")
+            raise InputError(
+                f"{path}: pair {first}-{second} is missing; add its terms under `pairs`"
+            )
     for name, formula in potential.materials.items():
         if set(formula) - set(potential.species):
-            raise InputError(f"{path}: material {name} names a species that is not listed under `species`")
+            raise InputError(
+                f"{path}: material {name} names a species that is not listed under `species`"
+            )
         charge = sum(count * potential.species[ion].charge_e for ion, count in formula.items())
         if abs(charge) > 1e-9:
-            raise InputError(f"{path}: material {name} has charge {charge:+g} e per formula unit; it must be neutral")
+            raise InputError(
+                f"{path}: material {name} has charge {charge:+g} e per formula unit; it must be"
+                " neutral"
+            )
     core_A = 0.9  # below this every pair must repel; the shortest bond (Si-O) is 1.6 A
     r = np.linspace(TABLE_START_A, core_A, 200)
     for first, second in combinations_with_replacement(potential.species, 2):

@@ -1,4 +1,6 @@
-"""The documentation site. `make docs` writes it to docs/_build/html, without network; every warning is an error."""
+"""The documentation site. `make docs` writes it to docs/_build/html, without network; every warning
+is an error.
+"""
 
 import importlib.metadata
 from pathlib import Path
@@ -36,9 +38,12 @@ myst_substitutions = figures()  # numbers that pages quote, from evidence/data
 nb_custom_formats = {".py": ["jupytext.reads", {"fmt": "py:percent"}]}
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 600  # seconds a cell: beside lint and tests, two cores are shared by seven processes
+nb_execution_timeout = (
+    600  # seconds a cell: beside lint and tests, two cores are shared by seven processes
+)
 
-# the API reference: a page per room and module. Settings have their own page, written from the same classes
+# the API reference: a page per room and module. Settings have their own page, written from the same
+# classes
 apidoc_modules = [
     {
         "path": ROOT / package,
@@ -60,11 +65,17 @@ suppress_warnings = [
 
 
 def collapse_navigation(app, pagename, templatename, context, doctree):
-    """List beside a page its own branch, not all 200 pages of the API: most of the build's time went there."""
+    """List beside a page its own branch, not all 200 pages of the API: most of the build's time
+    went there.
+    """
     if whole := context.get("toctree"):
         level = 'role="heading"', 'role="heading" aria-level="2"'  # which screen readers need
-        context["toctree"] = lambda **options: (whole(**{**options, "collapse": True}) or "").replace(*level)
+        context["toctree"] = lambda **options: (
+            whole(**{**options, "collapse": True}) or ""
+        ).replace(*level)
 
 
 def setup(app):
-    app.connect("html-page-context", collapse_navigation, priority=400)  # before the theme's, which is 500
+    app.connect(
+        "html-page-context", collapse_navigation, priority=400
+    )  # before the theme's, which is 500

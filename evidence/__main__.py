@@ -22,7 +22,9 @@ def studies() -> dict[str, str]:
     for path in sorted(here.glob("*/*.py")):
         module = ast.parse(path.read_text(encoding="utf-8"))
         if any(isinstance(node, ast.FunctionDef) and node.name == "rows" for node in module.body):
-            known[f"{path.parent.name}.{path.stem}"] = (ast.get_docstring(module) or "").partition("\n")[0]
+            known[f"{path.parent.name}.{path.stem}"] = (ast.get_docstring(module) or "").partition(
+                "\n"
+            )[0]
     return known
 
 
@@ -30,11 +32,16 @@ def main() -> None:
     """The command line."""
     known, past = studies(), ended()
     if sys.argv[1:] in ([], ["-h"], ["--help"]):
-        print("python -m evidence NAME [options]   runs a study and adds its rows to evidence/data/\n")
+        print(
+            "python -m evidence NAME [options]   runs a study and adds its rows to evidence/data/\n"
+        )
         for name, question in known.items():
             print(f"{name:<28} {question}\n{'':<28} {_state(name)}")
         for name, study in past.items():
-            print(f"{name:<28} {study['question']}\n{'':<28} {_state(name)}; its code is at {study['commit']}")
+            print(
+                f"{name:<28} {study['question']}\n{'':<28} {_state(name)}; its code is at"
+                f" {study['commit']}"
+            )
         return
     name = sys.argv[1]
     if name in past:
@@ -72,7 +79,11 @@ def _run_at(commit: str, arguments: list[str]) -> None:
 def _state(name: str) -> str:
     """What there is of a study by now."""
     rows = load(name)
-    return f"{len(rows)} rows, last of {rows[-1]['date']} at {rows[-1]['commit']}" if rows else "never run"
+    return (
+        f"{len(rows)} rows, last of {rows[-1]['date']} at {rows[-1]['commit']}"
+        if rows
+        else "never run"
+    )
 
 
 if __name__ == "__main__":

@@ -1,4 +1,6 @@
-"""What the documentation takes from the tables: a page for each study, and the numbers that other pages quote."""
+"""What the documentation takes from the tables: a page for each study, and the numbers that other
+pages quote.
+"""
 
 import ast
 import importlib
@@ -13,7 +15,9 @@ MOST_ROWS = 40
 
 
 def figures() -> dict[str, str]:
-    """Numbers that pages quote as `{{ room_name_number }}`, each with its commit and command under the pointer."""
+    """Numbers that pages quote as `{{ room_name_number }}`, each with its commit and command under
+    the pointer.
+    """
     quoted = {}
     for name in (*studies(), *ended()):
         for key, value in _figures(name).items():
@@ -38,7 +42,10 @@ def write_pages(folder: Path) -> None:
     lines = [
         "# Evidence",
         "",
-        "These studies were done once, to show that a method is right. Each page has its command, its commit and its",
+        (
+            "These studies were done once, to show that a method is right. Each page has its"
+            " command, its commit and its"
+        ),
         "table. `python -m evidence` lists the studies and runs them again.",
         "",
         "| study | question |",
@@ -58,7 +65,9 @@ def _page(name: str, rows: list[dict[str, str]]) -> str:
     question, more = _asked(name)
     table = table_of(name).relative_to(ROOT)
     columns = [column for column in rows[0] if column not in PROVENANCE]
-    made = sorted({(row["date"], row["commit"], row["processor"] or "not recorded") for row in rows})
+    made = sorted(
+        {(row["date"], row["commit"], row["processor"] or "not recorded") for row in rows}
+    )
     numbers = [f"| {key} | {_cell(value)} |" for key, value in _figures(name).items()]
     return "\n".join(
         [
@@ -68,7 +77,10 @@ def _page(name: str, rows: list[dict[str, str]]) -> str:
             "",
             f"Command: `{rows[-1]['command']}`",
             "",
-            *(f"- {date}, commit {commit}, processor {processor}" for date, commit, processor in made),
+            *(
+                f"- {date}, commit {commit}, processor {processor}"
+                for date, commit, processor in made
+            ),
             "",
             *(["| number | value |", "| --- | --- |", *numbers, ""] if numbers else []),
             f"{len(rows)} row{'s' * (len(rows) != 1)} in `{table}`"
@@ -76,7 +88,10 @@ def _page(name: str, rows: list[dict[str, str]]) -> str:
             "",
             "| " + " | ".join(columns) + " |",
             "| " + " | ".join("---" for _ in columns) + " |",
-            *("| " + " | ".join(_cell(row[column]) for column in columns) + " |" for row in rows[:MOST_ROWS]),
+            *(
+                "| " + " | ".join(_cell(row[column]) for column in columns) + " |"
+                for row in rows[:MOST_ROWS]
+            ),
             "",
         ]
     )
@@ -85,9 +100,14 @@ def _page(name: str, rows: list[dict[str, str]]) -> str:
 def _asked(name: str) -> tuple[str, str]:
     """What a study asks, and how it answers."""
     if study := ended().get(name):
-        return study["question"], f"{study['about']}\nThe study ended; its code is at commit {study['commit']}."
+        return (
+            study["question"],
+            f"{study['about']}\nThe study ended; its code is at commit {study['commit']}.",
+        )
     path = ROOT / "evidence" / f"{name.replace('.', '/')}.py"
-    question, _, more = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").partition("\n")
+    question, _, more = (
+        ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+    ).partition("\n")
     return question, more
 
 

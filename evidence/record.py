@@ -1,4 +1,6 @@
-"""The tables of the studies: grown row by row, each row with commit, date, processor and command."""
+"""The tables of the studies: grown row by row, each row with commit, date, processor and
+command.
+"""
 
 import csv
 import datetime
@@ -19,7 +21,9 @@ DIGITS = 4
 
 
 def ended() -> dict[str, dict[str, Any]]:
-    """Studies that ended, by name: commit of their code, question, what was done, and the numbers that pages quote."""
+    """Studies that ended, by name: commit of their code, question, what was done, and the numbers
+    that pages quote.
+    """
     return yaml.safe_load((ROOT / "evidence" / "ended.yaml").read_text(encoding="utf-8"))
 
 
@@ -42,7 +46,8 @@ def load_table(path: Path) -> list[dict[str, str]]:
 
 
 def record(study: str, rows: Iterable[Mapping[str, Any]], command: str) -> int:
-    """Add rows to the table of a study as they come, so that one cut short has its part, and count them.
+    """Add rows to the table of a study as they come, so that one cut short has its part, and count
+    them.
 
     Raises
     ------
@@ -58,14 +63,18 @@ def record(study: str, rows: Iterable[Mapping[str, Any]], command: str) -> int:
             if not columns:
                 columns = list(whole)
                 writer.writeheader()
-            rounded = {key: f"{x:.{DIGITS}g}" if isinstance(x, float) else x for key, x in whole.items()}
+            rounded = {
+                key: f"{x:.{DIGITS}g}" if isinstance(x, float) else x for key, x in whole.items()
+            }
             writer.writerow(rounded)
             stream.flush()
     return counted
 
 
 def provenance(command: str) -> dict[str, str]:
-    """Commit (marked + where files differ from it), date, processor and command, as each row carries them."""
+    """Commit (marked + where files differ from it), date, processor and command, as each row
+    carries them.
+    """
     commit = _git("rev-parse", "--short=10", "HEAD")
     changed = _git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!evidence/data")
     return {
@@ -77,12 +86,16 @@ def provenance(command: str) -> dict[str, str]:
 
 
 def _git(*arguments: str) -> str:
-    return subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+    return subprocess.run(
+        ["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.strip()
 
 
 def _processor() -> str:
     """Name of the processor, as the system gives it."""
-    for line in Path("/proc/cpuinfo").read_text().splitlines() if Path("/proc/cpuinfo").is_file() else ():
+    for line in (
+        Path("/proc/cpuinfo").read_text().splitlines() if Path("/proc/cpuinfo").is_file() else ()
+    ):
         if line.startswith("model name"):
             return line.split(":", 1)[1].strip()
     return platform.processor() or platform.machine()

@@ -1,4 +1,6 @@
-"""Refusals of numbers and arrays that Python callers pass, each one line that says what is accepted."""
+"""Refusals of numbers and arrays that Python callers pass, each one line that says what is
+accepted.
+"""
 
 import math
 import os
@@ -10,18 +12,27 @@ import numpy as np
 from mesoscale.errors import InputError
 
 MIN_ROUGHNESS, MAX_ROUGHNESS = 1e-9, 1e5
-"""RMS height over side beyond which the two are in different units: a factor of 1e9 misses any real surface."""
+"""RMS height over side beyond which the two are in different units: a factor of 1e9 misses any real
+surface.
+"""
 MIN_LENGTH_NM, MAX_LENGTH_NM = 0.1, 1e9
 FEWEST_PERIODIC = 4
 """Sites a side of a map that repeats: with fewer, neighbours on both sides are the same one."""
 TILTED = 3.0
-"""Tilt of a map from edge to edge, over its roughness: a wave as long as the map seems tilted by 4.3 of it, but has no
-cliff at its edge; of maps that were levelled, tilts are 0."""
-SITE_MB = {"asperity": 62e-6, "coupled": 140e-6, "adhesive": 260e-6}  # 4096^2 sites take 1.1 GB, 1024^2 323 and 515 MB
+"""Tilt of a map from edge to edge, over its roughness: a wave as long as the map seems tilted by
+4.3 of it, but has no cliff at its edge; of maps that were levelled, tilts are 0."""
+SITE_MB = {
+    "asperity": 62e-6,
+    "coupled": 140e-6,
+    "adhesive": 260e-6,
+}  # 4096^2 sites take 1.1 GB, 1024^2 323 and 515 MB
 
 
-def check_number(name: str, value: Any, low: float, high: float, unit: str, zero: bool = False) -> None:
-    """Refuse what is no finite real number within low .. high, both included; `zero` allows 0 besides.
+def check_number(
+    name: str, value: Any, low: float, high: float, unit: str, zero: bool = False
+) -> None:
+    """Refuse what is no finite real number within low .. high, both included; `zero` allows 0
+    besides.
 
     Raises
     ------
@@ -51,7 +62,8 @@ def machine_MB() -> int:
 
 
 def check_memory(sites: int, mechanics: str, maps_MB: float = 0.0) -> None:
-    """Refuse a surface whose contact, and maps beside it, need more memory than this machine has, before it is made.
+    """Refuse a surface whose contact, and maps beside it, need more memory than this machine has,
+    before it is made.
 
     Raises
     ------
@@ -63,8 +75,8 @@ def check_memory(sites: int, mechanics: str, maps_MB: float = 0.0) -> None:
         maps = f", with {maps_MB / 1000:.3g} GB of maps," if maps_MB else ""
         loads = ", or fewer loads" if maps_MB else ""
         raise InputError(
-            f"a contact of {sites} sites{maps} needs {needed:.3g} GB of memory, this machine has {present:.3g}; take a "
-            f"part of the surface, or every second site{loads}"
+            f"a contact of {sites} sites{maps} needs {needed:.3g} GB of memory, this machine has"
+            f" {present:.3g}; take a part of the surface, or every second site{loads}"
         )
 
 
@@ -85,40 +97,57 @@ def checked_array(name: str, values: Any, unit: str, missing: bool = False) -> n
     try:
         array = np.asarray(values)
     except ValueError:
-        raise InputError(f"{name}: rows of different length; accepted is a rectangular array in {unit}") from None
+        raise InputError(
+            f"{name}: rows of different length; accepted is a rectangular array in {unit}"
+        ) from None
     if array.dtype.kind not in "fiu":
-        raise InputError(f"{name}: values of type {array.dtype}; accepted are real numbers in {unit}")
+        raise InputError(
+            f"{name}: values of type {array.dtype}; accepted are real numbers in {unit}"
+        )
     array = np.ascontiguousarray(array, dtype=float)
     if not missing and (strange := int(np.count_nonzero(~np.isfinite(array)))):
-        raise InputError(f"{name}: {strange} values are not finite; accepted are numbers in {unit}; fill or cut them")
+        raise InputError(
+            f"{name}: {strange} values are not finite; accepted are numbers in {unit}; fill or cut"
+            " them"
+        )
     return array
 
 
-def checked_heights(heights: Any, length_nm: float, square: bool = True, name: str = "heights") -> np.ndarray:
-    """Heights (N, N) in nm of a square of the side `length_nm`, N >= 4; or of any rectangle from 3 sites a side on.
+def checked_heights(
+    heights: Any, length_nm: float, square: bool = True, name: str = "heights"
+) -> np.ndarray:
+    """Heights (N, N) in nm of a square of the side `length_nm`, N >= 4; or of any rectangle from 3
+    sites a side on.
 
     Raises
     ------
-    InputError : not square, not real and finite, or heights and side in units that do not fit each other.
-    """
+    InputError : not square, not real and finite, or heights and side in units that do not fit each
+        other."""
     check_number("length_nm", length_nm, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
     array = checked_array(name, heights, "nm")
     fewest = FEWEST_PERIODIC if square else 3
-    if array.ndim != 2 or min(array.shape) < fewest or (square and array.shape[0] != array.shape[1]):
+    if (
+        array.ndim != 2
+        or min(array.shape) < fewest
+        or (square and array.shape[0] != array.shape[1])
+    ):
         what = "a square array" if square else "a map"
-        raise InputError(f"{name}: accepted is {what} of at least {fewest} x {fewest} sites, not {array.shape}")
+        raise InputError(
+            f"{name}: accepted is {what} of at least {fewest} x {fewest} sites, not {array.shape}"
+        )
     rms = float(np.std(array))
     flat = rms <= 1e-12 * float(np.abs(array).max())  # to rounding
     if not flat and not MIN_ROUGHNESS <= rms / length_nm <= MAX_ROUGHNESS:
         raise InputError(
-            f"{name}: RMS {rms:.3g} nm on a side of {length_nm:.3g} nm; accepted is a ratio of {MIN_ROUGHNESS:g} .. "
-            f"{MAX_ROUGHNESS:g}; give both in nm"
+            f"{name}: RMS {rms:.3g} nm on a side of {length_nm:.3g} nm; accepted is a ratio of"
+            f" {MIN_ROUGHNESS:g} .. {MAX_ROUGHNESS:g}; give both in nm"
         )
     return array
 
 
 def check_periodic(heights: np.ndarray) -> None:
-    """Refuse a map (N, N) that repeats, but is too small for it or tilted, so that it has a cliff at its edge.
+    """Refuse a map (N, N) that repeats, but is too small for it or tilted, so that it has a cliff
+    at its edge.
 
     Raises
     ------
@@ -126,19 +155,26 @@ def check_periodic(heights: np.ndarray) -> None:
     """
     if len(heights) < FEWEST_PERIODIC:
         raise InputError(
-            f"heights: periodic maps have at least {FEWEST_PERIODIC} x {FEWEST_PERIODIC} sites, not {heights.shape}"
+            f"heights: periodic maps have at least {FEWEST_PERIODIC} x {FEWEST_PERIODIC} sites, not"
+            f" {heights.shape}"
         )
     position = np.linspace(-0.5, 0.5, len(heights))
     level = heights - heights.mean()
     share = position / (position @ position)
-    tilts = np.array([share @ level.mean(axis=1), share @ level.mean(axis=0)])  # from one edge to the other, nm
+    tilts = np.array(
+        [share @ level.mean(axis=1), share @ level.mean(axis=0)]
+    )  # from one edge to the other, nm
     cliffs = np.array([(level[-1] - level[0]).mean(), (level[:, -1] - level[:, 0]).mean()])
     rough = float(np.std(level - tilts[0] * position[:, None] - tilts[1] * position))
     for axis, tilt, cliff in zip("xy", tilts.tolist(), cliffs.tolist(), strict=True):
-        if min(tilt * cliff, tilt**2) > (TILTED * rough) ** 2 and abs(tilt) > 1e-9 * np.abs(heights).max():
+        if (
+            min(tilt * cliff, tilt**2) > (TILTED * rough) ** 2
+            and abs(tilt) > 1e-9 * np.abs(heights).max()
+        ):
             raise InputError(
-                f"heights: tilted by {tilt:.4g} nm along {axis}, the roughness is {rough:.3g} nm; a map that repeats "
-                "would have a cliff at its edge: level it, or press it alone by asp.press(..., periodic=False)"
+                f"heights: tilted by {tilt:.4g} nm along {axis}, the roughness is {rough:.3g} nm; a"
+                " map that repeats would have a cliff at its edge: level it, or press it alone by"
+                " asp.press(..., periodic=False)"
             )
 
 

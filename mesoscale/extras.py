@@ -20,5 +20,6 @@ def needs(extra: str) -> Iterator[None]:
         yield
     except ModuleNotFoundError as error:
         raise MissingExtra(
-            f"{error.name} is not installed; it belongs to an extra: pip install 'asperity-contact[{extra}]'"
+            f"{error.name} is not installed; it belongs to an extra: pip install"
+            f" 'asperity-contact[{extra}]'"
         ) from None

@@ -25,7 +25,9 @@ def foreign_table(path: str | Path, named: str) -> tuple[list[str], list[dict[st
     InputError : see `foreign_columns`.
     """
     columns = foreign_columns(path, named)
-    return list(columns), [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    return list(columns), [
+        dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)
+    ]
 
 
 def foreign_columns(path: str | Path, named: str) -> Columns:
@@ -35,7 +37,8 @@ def foreign_columns(path: str | Path, named: str) -> Columns:
 
     Raises
     ------
-    InputError : too large, unreadable or no text; two columns of one name; a row that is longer than the header. Each
+    InputError : too large, unreadable or no text; two columns of one name; a row that is longer
+        than the header. Each
         begins with `named`.
     """
     try:
@@ -46,7 +49,13 @@ def foreign_columns(path: str | Path, named: str) -> Columns:
             return _kept_columns(str(path), (status.st_ino, status.st_mtime_ns, status.st_size))
         return _columns(str(path))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        why = error.strerror if isinstance(error, OSError) else "no text" if isinstance(error, ValueError) else error
+        why = (
+            error.strerror
+            if isinstance(error, OSError)
+            else "no text"
+            if isinstance(error, ValueError)
+            else error
+        )
         raise InputError(f"{named}: cannot be read ({why}); give a CSV file") from None
     except InputError as error:
         raise InputError(f"{named}: {error}") from None
@@ -64,17 +73,25 @@ def _columns(path: str) -> Columns:
         raise InputError(f"more than {MAX_TABLE_BYTES >> 20} MB; give fewer rows")
     text = io.StringIO(content.decode("utf-8-sig"), newline="")
     reader = csv.reader(line for line in text if line.strip() and not line.startswith("#"))
-    names = [name.strip() or f"column {place}" for place, name in enumerate(next(reader, []), start=1)]
+    names = [
+        name.strip() or f"column {place}" for place, name in enumerate(next(reader, []), start=1)
+    ]
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"{names.count(name)} columns are named {name}; rename or remove all but one")
+            raise InputError(
+                f"{names.count(name)} columns are named {name}; rename or remove all but one"
+            )
     rows: list[list[Any]] = list(reader)
     for number, row in enumerate(rows, start=1):
         if len(row) != len(names):
             if any(value.strip() for value in row[len(names) :]):
                 raise InputError(
-                    f"row {number} has {len(row)} values, the header {len(names)} names; write decimal points, one "
-                    "value a column"
+                    f"row {number} has {len(row)} values, the header {len(names)} names; write"
+                    " decimal points, one value a column"
                 )
             rows[number - 1] = (row + [None] * len(names))[: len(names)]
-    return dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else {name: () for name in names}
+    return (
+        dict(zip(names, zip(*rows, strict=True), strict=True))
+        if rows
+        else {name: () for name in names}
+    )

@@ -1,8 +1,8 @@
-"""Rounding moves no result: inputs changed by 1e-12 move what fits of the code say by less than 1e-6.
+"""Rounding moves no result: inputs changed by 1e-12 move what fits of the code say by less than
+1e-6.
 
-Processors with other instructions round otherwise. A fit that stops before it has settled, or that chooses its terms by
-the last digits, makes visible differences of that.
-"""
+Processors with other instructions round otherwise. A fit that stops before it has settled, or that
+chooses its terms by the last digits, makes visible differences of that."""
 
 from dataclasses import replace
 
@@ -61,7 +61,10 @@ def causes(change):
 
 
 def roughness(change):
-    changed = [replace(item, spectrum=replace(item.spectrum, psd=change(item.spectrum.psd))) for item in spectra()]
+    changed = [
+        replace(item, spectrum=replace(item.spectrum, psd=change(item.spectrum.psd)))
+        for item in spectra()
+    ]
     fitted = fit(changed)
     low, high = q0_interval(changed, fitted, 2.0)
     lines = fit_lines(changed)
@@ -72,7 +75,10 @@ def roughness(change):
         "slope": fitted.slope,
         "low": low,
         "high": high,
-        **{f"line {name}": getattr(lines, name) for name in ("plateau", "q0", "slope", "slope_low", "slope_high")},
+        **{
+            f"line {name}": getattr(lines, name)
+            for name in ("plateau", "q0", "slope", "slope_low", "slope_high")
+        },
         **{name: estimate.value for name, estimate in estimates.items()},
     }
 
@@ -90,7 +96,11 @@ def films(change):
     points, curves = made_up(noise=0.02)
     data = film_law.points_of(points, curves)
     changed = data._replace(stress_GPa=change(data.stress_GPa))
-    return {(name, k): value for name in film_law.LAWS for k, value in enumerate(film_law.fit(name, changed))}
+    return {
+        (name, k): value
+        for name in film_law.LAWS
+        for k, value in enumerate(film_law.fit(name, changed))
+    }
 
 
 def equation_of_state(change):
@@ -101,7 +111,9 @@ def equation_of_state(change):
     return {name: getattr(fitted, name) for name in ("V0_A3", "B_GPa", "B_prime", "B_vinet_GPa")}
 
 
-@pytest.mark.parametrize("of", [responses, sticking, causes, roughness, law, films, equation_of_state])
+@pytest.mark.parametrize(
+    "of", [responses, sticking, causes, roughness, law, films, equation_of_state]
+)
 def test_rounding_moves_no_result_of_a_fit(of):
     """And chooses no other terms."""
     exact = of(np.asarray)
@@ -109,4 +121,6 @@ def test_rounding_moves_no_result_of_a_fit(of):
         other = of(lambda values, turn=turn: rounded(values, turn))
         assert other.keys() == exact.keys()
         for name, value in exact.items():
-            assert other[name] == pytest.approx(value, rel=MOVED, abs=MOVED * max(map(abs, exact.values()))), name
+            assert other[name] == pytest.approx(
+                value, rel=MOVED, abs=MOVED * max(map(abs, exact.values()))
+            ), name

@@ -19,12 +19,18 @@ PAGES = [
     for path in sorted((ROOT / folder).rglob("*"))
     if path.suffix in SUFFIXES and not any(path.is_relative_to(built) for built in BUILT)
 ]
-CODE = [path for path in PAGES if path.suffix == ".py" and not path.is_relative_to(ROOT / "evidence")]
+CODE = [
+    path for path in PAGES if path.suffix == ".py" and not path.is_relative_to(ROOT / "evidence")
+]
 
 OTHER_MEANINGS = {
-    "surface is roughness; a fitted function is a response": r"(response|linear|regression|polynomial) surface",
+    "surface is roughness; a fitted function is a response": (
+        r"(response|linear|regression|polynomial) surface"
+    ),
     "files are loaded; a reading is an interpretation of the paper": r"def read_\w+\(",
-    "a study is done once, in evidence; a switch is driven": r"study_(switch|surfaces)|studied|case study",
+    "a study is done once, in evidence; a switch is driven": (
+        r"study_(switch|surfaces)|studied|case study"
+    ),
     "a design is where the engine is run": r"design (matrix|choice|decision)|^\s*design = ",
 }
 VAGUE_NAMES = {"alone", "along", "each", "facts", "found", "own", "told"}
@@ -43,12 +49,16 @@ def test_no_word_has_another_meaning(rule):
 
 
 def test_collocation_belongs_to_uncertainty():
-    """Elsewhere it would mean another thing; the workflow and the settings name the design as such."""
+    """Elsewhere it would mean another thing; the workflow and the settings name the design as
+    such.
+    """
     names = [
         f"{path.relative_to(ROOT)}: {name}"
         for path in CODE
         if "uncertainty" not in path.parts
-        for name in re.findall(r"^(?:def|class) (\w*collocation\w*)", path.read_text(encoding="utf-8"), re.MULTILINE)
+        for name in re.findall(
+            r"^(?:def|class) (\w*collocation\w*)", path.read_text(encoding="utf-8"), re.MULTILINE
+        )
     ]
     assert names == []
 
@@ -56,7 +66,9 @@ def test_collocation_belongs_to_uncertainty():
 def test_names_say_what_they_hold():
     uses = []
     for path in CODE:
-        for token in tokenize.generate_tokens(io.StringIO(path.read_text(encoding="utf-8")).readline):
+        for token in tokenize.generate_tokens(
+            io.StringIO(path.read_text(encoding="utf-8")).readline
+        ):
             if token.type == tokenize.NAME and token.string in VAGUE_NAMES:
                 uses.append(f"{path.relative_to(ROOT)}:{token.start[0]}: {token.string}")
     assert uses == []
@@ -64,7 +76,11 @@ def test_names_say_what_they_hold():
 
 def _is_record(node):
     kinds = [*node.bases, *node.decorator_list] if isinstance(node, ast.ClassDef) else []
-    return any(word in ast.unparse(kind) for kind in kinds for word in ("dataclass", "NamedTuple", "Settings"))
+    return any(
+        word in ast.unparse(kind)
+        for kind in kinds
+        for word in ("dataclass", "NamedTuple", "Settings")
+    )
 
 
 def test_fields_are_described_in_the_docstring_of_their_class():
@@ -76,5 +92,8 @@ def test_fields_are_described_in_the_docstring_of_their_class():
             for field, below in pairwise([*record.body, record]):
                 commented = isinstance(field, ast.AnnAssign) and "#" in lines[field.lineno - 1]
                 if commented or (isinstance(field, ast.AnnAssign) and isinstance(below, ast.Expr)):
-                    uses.append(f"{path.relative_to(ROOT)}:{field.lineno}: {record.name}.{ast.unparse(field.target)}")
+                    uses.append(
+                        f"{path.relative_to(ROOT)}:{field.lineno}:"
+                        f" {record.name}.{ast.unparse(field.target)}"
+                    )
     assert uses == []

@@ -1,8 +1,9 @@
-"""Compare two folders of results: `asperity compare results/before results/after`, or `python -m workflow.compare`.
+"""Compare two folders of results: `asperity compare results/before results/after`.
 
-Prints what each scene says of its switch and one line for each file that differs; exits 1 if any does. Provenance
-(versions, input hashes, git commit) and machine times do not count. Logs, work folders and the report page, which is
-drawn from the other files and shows their times, are left out.
+Prints what each scene says of its switch and one line for each file that differs; exits 1 if any
+does. Provenance (versions, input hashes, git commit) and machine times do not count. Logs, work
+folders and the report page, which is drawn from the other files and shows their times, are left
+out. Without the command: `python -m workflow.compare`.
 """
 
 import argparse
@@ -38,27 +39,43 @@ def differences(first: Path, second: Path) -> Iterator[str]:
         try:
             difference = first_difference(*(content(folder / name) for folder in (first, second)))
         except Exception as error:  # a stranger's files may hold anything
-            difference = f"cannot be read ({' '.join(f'{type(error).__name__}: {error}'.split())[:200]})"
+            difference = (
+                f"cannot be read ({' '.join(f'{type(error).__name__}: {error}'.split())[:200]})"
+            )
         if difference:
-            damaged = [f"; damaged in {folder}" for folder in (first, second) if is_damaged(folder / name)]
+            damaged = [
+                f"; damaged in {folder}" for folder in (first, second) if is_damaged(folder / name)
+            ]
             yield f"{name}: {difference}{''.join(damaged)}"
 
 
 def _result_files(folder: Path) -> set[str]:
     files = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
-    left_out = ("logs", "work", "report.html")  # and what is hidden: locks and files that are being written
-    return {str(path) for path in files if path.parts[0] not in left_out and not path.name.startswith(".")}
+    left_out = (
+        "logs",
+        "work",
+        "report.html",
+    )  # and what is hidden: locks and files that are being written
+    return {
+        str(path)
+        for path in files
+        if path.parts[0] not in left_out and not path.name.startswith(".")
+    }
 
 
 def content(path: Path) -> Any:
-    """What a result file says, as nested mappings and lists, less its provenance and machine times."""
+    """What a result file says, as nested mappings and lists, less its provenance and machine
+    times.
+    """
     if path.suffix == ".h5":
         return _h5_content(path)
     if path.suffix == ".csv":
         with path.open(encoding="utf-8", newline="") as stream:
             return without_machine_times(list(csv.DictReader(stream)))
     if path.suffix == ".json":
-        return _without_provenance(without_machine_times(json.loads(path.read_text(encoding="utf-8"))))
+        return _without_provenance(
+            without_machine_times(json.loads(path.read_text(encoding="utf-8")))
+        )
     if path.suffix == ".yaml":
         return _without_provenance(load_mapping(path, "record of a run"))
     return path.read_bytes()
@@ -72,7 +89,10 @@ def _h5_content(path: Path) -> dict[str, Any]:
             attributes[name] = _attributes(item)
             if isinstance(item, h5py.Dataset):
                 values[name] = item[()]
-    return {"values": values, "attributes": attributes}  # values first: the first difference is the one that is named
+    return {
+        "values": values,
+        "attributes": attributes,
+    }  # values first: the first difference is the one that is named
 
 
 def _attributes(item: Any) -> dict[str, Any]:
@@ -94,16 +114,21 @@ def first_difference(first: Any, second: Any, place: str = "") -> str:
     if isinstance(first, dict) and isinstance(second, dict):
         if list(first) != list(second):
             gone, new = (
-                ", ".join(sorted(one.keys() - other.keys())) for one, other in ((first, second), (second, first))
+                ", ".join(sorted(one.keys() - other.keys()))
+                for one, other in ((first, second), (second, first))
             )
             return (
-                f"{place} keys in another order" if not gone + new else f"{place} keys gone: {gone:.99}; new: {new:.99}"
+                f"{place} keys in another order"
+                if not gone + new
+                else f"{place} keys gone: {gone:.99}; new: {new:.99}"
             )
         pairs = ((f"{place}/{key}", first[key], second[key]) for key in first)
     elif isinstance(first, list) and isinstance(second, list):
         if len(first) != len(second):
             return f"{place} {len(first)} entries | {len(second)} entries".strip()
-        pairs = ((f"{place}[{k}]", *items) for k, items in enumerate(zip(first, second, strict=True)))
+        pairs = (
+            (f"{place}[{k}]", *items) for k, items in enumerate(zip(first, second, strict=True))
+        )
     else:
         return _value_difference(first, second, place)
     return next(filter(None, (first_difference(a, b, where) for where, a, b in pairs)), "")
@@ -126,22 +151,36 @@ def _said(folder: Path) -> str:
     try:
         said = verdict(results_in(folder))
     except Exception as error:
-        return f"{folder.name}: its switch cannot be read ({type(error).__name__}): damaged, or of another version"
-    return f"{folder.name}: {said.sentence if said else 'no switch on a pad'}".replace("\u00a0", " ")
+        return (
+            f"{folder.name}: its switch cannot be read ({type(error).__name__}): damaged, or of"
+            " another version"
+        )
+    return f"{folder.name}: {said.sentence if said else 'no switch on a pad'}".replace(
+        "\u00a0", " "
+    )
 
 
 def main() -> None:
     """The command line."""
-    parser = argparse.ArgumentParser(prog="asperity compare", description=(__doc__ or "").splitlines()[2])
+    parser = argparse.ArgumentParser(
+        prog="asperity compare", description=(__doc__ or "").splitlines()[2]
+    )
     parser.add_argument("first", type=Path)
     parser.add_argument("second", type=Path)
     chosen = parser.parse_args()
     for folder in (chosen.first, chosen.second):
         if not os.path.isfile(folder / "scene.yaml"):
-            parser.error(f"{shown(str(folder))}: no results of a scene are there; give two folders such as results/ci")
+            parser.error(
+                f"{shown(str(folder))}: no results of a scene are there; give two folders such as"
+                " results/ci"
+            )
         print(shown(_said(folder)))
     lines = list(differences(chosen.first, chosen.second))
-    print("\n".join(map(shown, lines)) if lines else "no difference beyond provenance and machine times")
+    print(
+        "\n".join(map(shown, lines))
+        if lines
+        else "no difference beyond provenance and machine times"
+    )
     sys.exit(bool(lines))
 
 

@@ -1,4 +1,6 @@
-"""Where the workflow, its scenes and its data lie: inside an installed package, or in the checkout."""
+"""Where the workflow, its scenes and its data lie: inside an installed package, or in the
+checkout.
+"""
 
 from pathlib import Path
 

@@ -1,8 +1,8 @@
 """The environment of everything that is started: the command, its jobs, the workers of the server.
 
-Python and several packages look for modules and settings in the working folder, and a working folder may come from a
-stranger. Here each is told where to look instead. What the user set himself stays.
-"""
+Python and several packages look for modules and settings in the working folder, and a working
+folder may come from a stranger. Here each is told where to look instead. What the user set himself
+stays."""
 
 import locale
 import os
@@ -21,7 +21,9 @@ READ = {
     "ano": "PySCF would take it for a basis set and run what stands in it",
     "minao": "PySCF would take it for a basis set and run what stands in it",
 }
-"""What packages read of the working folder and cannot be told to leave: a folder that holds one is refused."""
+"""What packages read of the working folder and cannot be told to leave: a folder that holds one is
+refused.
+"""
 
 
 class UnsafeFolder(Exception):
@@ -35,7 +37,9 @@ def secure() -> None:
     ------
     UnsafeFolder
     """
-    os.environ["PYTHONSAFEPATH"] = "1"  # no module is taken from the working folder or from beside a job's script
+    os.environ["PYTHONSAFEPATH"] = (
+        "1"  # no module is taken from the working folder or from beside a job's script
+    )
     given = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     paths = [str(ROOT), *(path for path in given if os.path.isabs(path))]
     os.environ["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(paths))
@@ -53,7 +57,9 @@ def secure() -> None:
         os.environ["NUMBA_CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] or cache
     state = Path(".snakemake")
     if os.path.lexists(state) and not state.is_dir():
-        raise UnsafeFolder(f"{state}: a file, or a link to nowhere, where a folder belongs; move it away")
+        raise UnsafeFolder(
+            f"{state}: a file, or a link to nowhere, where a folder belongs; move it away"
+        )
     if state.is_dir():
         _check_state(state)
     for name, why in READ.items():
@@ -65,10 +71,14 @@ def secure() -> None:
 def _check_state(path: Path) -> None:
     """See that what Snakemake keeps is no link, and may be read and written."""
     if path.is_symlink():
-        raise UnsafeFolder(f"{path}: a link to {os.readlink(path)}, to which Snakemake would write; remove it")
+        raise UnsafeFolder(
+            f"{path}: a link to {os.readlink(path)}, to which Snakemake would write; remove it"
+        )
     is_folder = path.is_dir()
     if not os.access(path, os.R_OK | os.W_OK | (os.X_OK if is_folder else 0)):
-        raise UnsafeFolder(f"{path}: may not be read and written; change its permissions, or remove it")
+        raise UnsafeFolder(
+            f"{path}: may not be read and written; change its permissions, or remove it"
+        )
     # packages of other workflows are full of links; no rule here uses them
     if is_folder and path.name not in {"conda", "conda-archive", "singularity", "apptainer"}:
         for entry in path.iterdir():
@@ -84,7 +94,9 @@ def _writable(folder: Path) -> bool:
 
 
 def _own_cache() -> str:
-    """A folder of this user alone where the home folder is read-only; the next run finds it again."""
+    """A folder of this user alone where the home folder is read-only; the next run finds it
+    again.
+    """
     folder = Path(tempfile.gettempdir()) / f"asperity-cache-{os.getuid()}"
     try:
         folder.mkdir(mode=0o700, exist_ok=True)

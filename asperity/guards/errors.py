@@ -2,4 +2,6 @@
 
 
 class InputError(ValueError):
-    """Bad input: the message is one line naming file, key, value, what is accepted and what to do."""
+    """Bad input: the message is one line naming file, key, value, what is accepted and what to
+    do.
+    """

@@ -1,4 +1,6 @@
-"""Text of a stranger: shown on the terminal, in tables that a spreadsheet opens, and handed to Snakemake."""
+"""Text of a stranger: shown on the terminal, in tables that a spreadsheet opens, and handed to
+Snakemake.
+"""
 
 import difflib
 import re
@@ -10,21 +12,33 @@ PLAIN = re.compile(r"[A-Za-z0-9_./-]*[A-Za-z][A-Za-z0-9_./-]*")
 ENCODED = "percent:"
 COLUMNS = 80
 COMPUTED = "=+@\uff1d\uff0b\uff20\uff0d-"
-"""Begin what a spreadsheet computes; those of full width do in the Excel of East Asia. The last is one in brackets."""
+"""Begin what a spreadsheet computes; those of full width do in the Excel of East Asia. The last is
+one in brackets.
+"""
 
 
 def shown(text: str) -> str:
-    """Text on one line without control characters: they could colour, hide or overwrite what a terminal shows."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape", "surrogatepass").decode() for c in text)
+    """Text on one line without control characters: they could colour, hide or overwrite what a
+    terminal shows.
+    """
+    return "".join(
+        c if c.isprintable() else c.encode("unicode_escape", "surrogatepass").decode() for c in text
+    )
 
 
 def wrapped(text: str) -> str:
-    """A line broken at the 80 columns of a terminal, its rest indented; one that fits stays as it is."""
-    return textwrap.fill(text, COLUMNS, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+    """A line broken at the 80 columns of a terminal, its rest indented; one that fits stays as it
+    is.
+    """
+    return textwrap.fill(
+        text, COLUMNS, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False
+    )
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """End of a line on an unknown word: the nearest of the known ones; empty where it is known or none is near."""
+    """End of a line on an unknown word: the nearest of the known ones; empty where it is known or
+    none is near.
+    """
     close = difflib.get_close_matches(word, list(known), n=1)
     return f"; did you mean {close[0]}?" if close and close[0] != word else ""
 
@@ -46,7 +60,9 @@ def as_cell(text: str) -> str:
 
 
 def as_word(text: str) -> str:
-    """Text as a word that YAML, Snakemake and a shell hand on unchanged; plain names stay as they are."""
+    """Text as a word that YAML, Snakemake and a shell hand on unchanged; plain names stay as they
+    are.
+    """
     return text if PLAIN.fullmatch(text) and text[0].isalpha() else ENCODED + quote(text)
 
 

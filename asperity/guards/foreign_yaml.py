@@ -1,9 +1,9 @@
-"""YAML of a stranger: plain data only, and what looks like a number is one only if everybody reads it so.
+"""YAML of a stranger: plain data only, and what looks like a number is one only if everybody reads
+it so.
 
-YAML 1.1 reads `16:40` as 1000 (base 60), `0200` as 128 (octal), `1_000` as 1000 and 2026-11-22 as a date; here they
-stay text, which a number's key then refuses.  Aliases are refused: a file of 342 bytes can unfold to gigabytes.
-Tags are refused: `!!int ""` is an error deep inside PyYAML.
-"""
+YAML 1.1 reads `16:40` as 1000 (base 60), `0200` as 128 (octal), `1_000` as 1000 and 2026-11-22 as a
+date; here they stay text, which a number's key then refuses.  Aliases are refused: a file of 342
+bytes can unfold to gigabytes. Tags are refused: `!!int ""` is an error deep inside PyYAML."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,9 @@ from typing import Any
 
 import yaml
 
-ODD_BREAK = re.compile(r"\r(?!\n)|[\x85\u2028\u2029]")  # a comment ends there, though no editor shows it
+ODD_BREAK = re.compile(
+    r"\r(?!\n)|[\x85\u2028\u2029]"
+)  # a comment ends there, though no editor shows it
 MAX_BYTES = 1_000_000
 MAX_NODES = 50_000  # a second of reading; the largest scene has 400
 MAX_DEPTH = 20  # the settings need 6
@@ -27,7 +29,9 @@ class MistakenYaml(Exception):
 
 
 class _Loader(yaml.SafeLoader):
-    """Safe YAML without aliases, tags, merge keys, duplicate keys, deep nesting, and numbers in disguise."""
+    """Safe YAML without aliases, tags, merge keys, duplicate keys, deep nesting, and numbers in
+    disguise.
+    """
 
     yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}  # noqa: RUF012 (PyYAML's own interface)
     tags: tuple[str, ...] = ()
@@ -40,7 +44,9 @@ class _Loader(yaml.SafeLoader):
         if isinstance(event, yaml.AliasEvent):
             self._refuse(f"alias *{event.anchor:.60}: write the value out", event.start_mark)
         tag = getattr(event, "tag", None)
-        if tag is not None and not (tag in self.tags and isinstance(event, yaml.SequenceStartEvent)):
+        if tag is not None and not (
+            tag in self.tags and isinstance(event, yaml.SequenceStartEvent)
+        ):
             self._refuse(f"tag {tag:.60}: plain values only, delete it", event.start_mark)
         self.nodes += 1
         if self.nodes > self.most_nodes:
@@ -84,7 +90,9 @@ def _prepare() -> None:
         kept = [(tag, pattern) for tag, pattern in pairs if tag.endswith((":bool", ":null"))]
         _Loader.yaml_implicit_resolvers[first] = kept
     for kind, pattern in NUMBERS.items():
-        _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{kind}", re.compile(pattern), list("-+0123456789."))
+        _Loader.add_implicit_resolver(
+            f"tag:yaml.org,2002:{kind}", re.compile(pattern), list("-+0123456789.")
+        )
     _ContainerLoader.yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
     _ContainerLoader.add_constructor(TUPLE, _tuple)
 
@@ -100,10 +108,15 @@ def parse(text: str | bytes, tuples: bool = False) -> Any:
     MistakenYaml : no valid YAML, or more than plain data.
     """
     if odd := ODD_BREAK.search(text if isinstance(text, str) else text.decode(errors="replace")):
-        raise MistakenYaml(f"{odd[0]!r} begins a line only for YAML 1.1, what follows it may be hidden; delete it")
+        raise MistakenYaml(
+            f"{odd[0]!r} begins a line only for YAML 1.1, what follows it may be hidden; delete it"
+        )
     try:
         return yaml.load(text, _ContainerLoader if tuples else _Loader)
-    except (yaml.YAMLError, ValueError) as error:  # also: text that is no Unicode, numbers of 5000 digits
+    except (
+        yaml.YAMLError,
+        ValueError,
+    ) as error:  # also: text that is no Unicode, numbers of 5000 digits
         raise MistakenYaml(f"not valid YAML ({' '.join(str(error).split()):.300})") from None
 
 

@@ -1,4 +1,6 @@
-"""Settings: keys with default, meaning, accepted range and unit in one line each, and the base of their classes."""
+"""Settings: keys with default, meaning, accepted range and unit in one line each, and the base of
+their classes.
+"""
 
 import inspect
 import re
@@ -21,7 +23,8 @@ def key(default: Any, meaning: str, accepted: str = "", **others: Any) -> Any:
     ----------
     default : its default; ``...``: it must be given.
     meaning : one thought, as the documentation shows it.
-    accepted : interval and unit of a quantity, such as ``"(0, 30] nm"`` or ``"[1, inf)"``; a unit alone, ``"MPa"``,
+    accepted : interval and unit of a quantity, such as ``"(0, 30] nm"`` or ``"[1, inf)"``; a unit
+        alone, ``"MPa"``,
         for a list whose entries have an interval of their own; empty: what the type says.
     others : further keywords of `pydantic.Field`, such as `min_length`.
     """
@@ -30,7 +33,9 @@ def key(default: Any, meaning: str, accepted: str = "", **others: Any) -> Any:
         left, low, high, right, unit = match.groups()
         ends = {"ge" if left == "[" else "gt": low, "le" if right == "]" else "lt": high}
         others |= {bound: _number(end) for bound, end in ends.items() if not end.endswith("inf")}
-    return Field(default, description=meaning, json_schema_extra={"unit": unit} if unit else None, **others)
+    return Field(
+        default, description=meaning, json_schema_extra={"unit": unit} if unit else None, **others
+    )
 
 
 def _number(text: str) -> int | float:
@@ -38,7 +43,9 @@ def _number(text: str) -> int | float:
 
 
 class _OneLine(type(BaseModel)):
-    """Calling a class of settings from Python gives one line for all its mistakes; scenes are explained elsewhere."""
+    """Calling a class of settings from Python gives one line for all its mistakes; scenes are
+    explained elsewhere.
+    """
 
     if not TYPE_CHECKING:  # type checkers read the arguments off the fields
 
@@ -86,9 +93,14 @@ class Settings(BaseModel, metaclass=_OneLine):
             value = field.get_default(call_default_factory=True)
             default = type(value).__name__ if isinstance(value, BaseModel) else _shown(value)
             head = f"{name} : {'required' if field.is_required() else f'default {default}'}"
-            lines += [head if unit is None else f"{head}, {unit}", f"    {field.description or ''}".rstrip()]
+            lines += [
+                head if unit is None else f"{head}, {unit}",
+                f"    {field.description or ''}".rstrip(),
+            ]
         if lines:
-            cls.__doc__ = "\n".join([inspect.cleandoc(cls.__doc__ or ""), "", "Parameters", "----------", *lines])
+            cls.__doc__ = "\n".join(
+                [inspect.cleandoc(cls.__doc__ or ""), "", "Parameters", "----------", *lines]
+            )
 
 
 Content = TypeVar("Content", bound=Settings)
@@ -114,5 +126,7 @@ def load_settings(kind: type[Content], path: Path, what: str, example: str) -> C
         first = error.errors()[0]
         where = " ".join(".".join(map(str, first["loc"])).split())
         said = first["msg"].removeprefix("Value error, ")
-        got = "" if first["type"] in ("missing", "value_error") else f" (got {first['input']!r:.80})"
+        got = (
+            "" if first["type"] in ("missing", "value_error") else f" (got {first['input']!r:.80})"
+        )
         raise InputError(f"{path}: {where + ': ' if where else ''}{said}{got}") from None

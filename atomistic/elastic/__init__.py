@@ -1,1 +1,3 @@
-"""Effective modulus E* from energy-volume curves and elastic constants of amorphous networks (docs/elastic.md)."""
+"""Effective modulus E* from energy-volume curves and elastic constants of amorphous networks
+(docs/elastic.md).
+"""

@@ -1,9 +1,8 @@
 """Error of the bulk modulus of a scene's glasses against run time, one numerical choice at a time.
 
-The choices are the width of the strains, their number, the cut-off of the density, the steps of the relaxation and the
-number of glasses. Energies of the scene's own scans are used again, and orbitals as well: every calculation starts from
-those of the ones before.
-"""
+The choices are the width of the strains, their number, the cut-off of the density, the steps of the
+relaxation and the number of glasses. Energies of the scene's own scans are used again, and orbitals
+as well: every calculation starts from those of the ones before."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -31,7 +30,9 @@ WIDTHS = (0.05, 0.03, 0.02, 0.01)
 EVERY = 0.005
 """Strain between the points of the reference for the number of strains."""
 DEGREE = 5
-"""Of the reference curve of all strains: degree 3 misses energies of a glass by 0.9 meV, degree 5 by 0.01 meV."""
+"""Of the reference curve of all strains: degree 3 misses energies of a glass by 0.9 meV, degree 5
+by 0.01 meV.
+"""
 CUTOFF = 0.8
 FINER_CUTOFF = 1.4
 """Cut-offs over the one in use; at six tenths of 50 Ha a modulus is wrong by half."""
@@ -86,7 +87,9 @@ class ScannedGlass:
             self.seconds.append(time.process_time() - started)
         self.solutions = calculator.history
         volume = self.atoms.get_volume()
-        return [volume * (1 + strain) ** 3 for strain in strains], [self.energies_eV[strain] for strain in strains]
+        return [volume * (1 + strain) ** 3 for strain in strains], [
+            self.energies_eV[strain] for strain in strains
+        ]
 
     def with_cutoff(self, cutoff_Ha: float) -> "ScannedGlass":
         """The same atoms on another mesh, without energies."""
@@ -110,7 +113,9 @@ class ScannedGlass:
         return calculator
 
 
-def variations(glasses: Sequence[ScannedGlass], moduli_GPa: Sequence[float], scan_s: float) -> list[Variation]:
+def variations(
+    glasses: Sequence[ScannedGlass], moduli_GPa: Sequence[float], scan_s: float
+) -> list[Variation]:
     """The numerical choices of the stage.
 
     Parameters
@@ -124,7 +129,9 @@ def variations(glasses: Sequence[ScannedGlass], moduli_GPa: Sequence[float], sca
     InputError : no glass.
     """
     if not glasses:
-        raise InputError("elastic: no glass of the scene has a whole scan, so that there is nothing to study")
+        raise InputError(
+            "elastic: no glass of the scene has a whole scan, so that there is nothing to study"
+        )
     choices = [_widths(glasses), _numbers(glasses), _cutoffs(glasses)]
     if glasses[0].dft.relaxation_steps:
         choices.append(_relaxations(glasses))
@@ -147,7 +154,9 @@ def _widths(glasses: Sequence[ScannedGlass]) -> Variation:
         fitted = partial(_by_strains, five_strains(width))
         values.append((width, _each(glasses, fitted, reference, partial(_scan_s, glasses))))
     words = f"a polynomial of degree {DEGREE} through the energies of all widths"
-    return Variation("largest strain", MODULUS, values, max(STRAINS), words, samples=_counted(glasses))
+    return Variation(
+        "largest strain", MODULUS, values, max(STRAINS), words, samples=_counted(glasses)
+    )
 
 
 def _numbers(glasses: Sequence[ScannedGlass]) -> Variation:
@@ -159,9 +168,13 @@ def _numbers(glasses: Sequence[ScannedGlass]) -> Variation:
     values = []
     for number in numbers:
         fitted = partial(_by_strains, even_strains(largest, number))
-        values.append((number, _each(glasses, fitted, reference, partial(_scan_s, glasses, number))))
+        values.append(
+            (number, _each(glasses, fitted, reference, partial(_scan_s, glasses, number)))
+        )
     words = f"{finest} strains"
-    return Variation("number of strains", MODULUS, values, len(STRAINS), words, samples=_counted(glasses))
+    return Variation(
+        "number of strains", MODULUS, values, len(STRAINS), words, samples=_counted(glasses)
+    )
 
 
 def _cutoffs(glasses: Sequence[ScannedGlass]) -> Variation:
@@ -180,10 +193,17 @@ def _cutoffs(glasses: Sequence[ScannedGlass]) -> Variation:
 
     values = []
     for factor in (CUTOFF, 1.0):
-        deviations = _each(glasses, partial(fitted, factor), partial(fitted, FINER_CUTOFF), partial(seconds, factor))
+        deviations = _each(
+            glasses,
+            partial(fitted, factor),
+            partial(fitted, FINER_CUTOFF),
+            partial(seconds, factor),
+        )
         values.append((round(factor * used, 6), deviations))
     words = f"{FINER_CUTOFF * used:g} Ha"
-    return Variation("cut-off of the density, Ha", MODULUS, values, used, words, samples=_counted(glasses))
+    return Variation(
+        "cut-off of the density, Ha", MODULUS, values, used, words, samples=_counted(glasses)
+    )
 
 
 def _relaxations(glasses: Sequence[ScannedGlass]) -> Variation:
@@ -224,7 +244,9 @@ def _each(
     reference: Callable[[ScannedGlass], Fitted],
     seconds: Callable[[], float],
 ) -> Callable[[], Deviations]:
-    """How far a value is off on some glasses; the misfit of each fit says how well that is known."""
+    """How far a value is off on some glasses; the misfit of each fit says how well that is
+    known.
+    """
 
     def deviations() -> Deviations:
         fitted = np.array([value(glass) for glass in glasses])
@@ -256,7 +278,9 @@ def five_strains(largest: float) -> list[float]:
 
 
 def even_strains(largest: float, number: int) -> list[float]:
-    """An odd number of strains between both signs of the largest; those of the same value are equal to the last bit."""
+    """An odd number of strains between both signs of the largest; those of the same value are equal
+    to the last bit.
+    """
     half = number // 2
     return [round(largest * k / half, 9) for k in range(-half, half + 1)]
 
@@ -275,7 +299,9 @@ def modulus_of_polynomial(volumes_A3: ArrayLike, energies_eV: ArrayLike, degree:
     rest = [
         root.real
         for root in curve.deriv().roots()
-        if abs(root.imag) < 1e-12 and x.min() < root.real < x.max() and curve.deriv(2)(root.real) > 0
+        if abs(root.imag) < 1e-12
+        and x.min() < root.real < x.max()
+        and curve.deriv(2)(root.real) > 0
     ]
     if not rest:
         raise InputError("elastic: energies of the study have no minimum between its strains")

@@ -1,9 +1,9 @@
-"""Periodic density functional theory behind ASE's calculator interface: PySCF at the Γ point of a supercell.
+"""Periodic density functional theory behind ASE's calculator interface: PySCF at the Γ point of a
+supercell.
 
-Energies in eV, lengths in Å, forces in eV/Å outside; PySCF's atomic units inside.  Pseudopotentials are GTH, the
-basis a short-ranged MOLOPT one.  The real-space mesh can be held fixed while the cell is strained: without that
-the number of grid points jumps along E(V) and so does the energy.
-"""
+Energies in eV, lengths in Å, forces in eV/Å outside; PySCF's atomic units inside.  Pseudopotentials
+are GTH, the basis a short-ranged MOLOPT one.  The real-space mesh can be held fixed while the cell
+is strained: without that the number of grid points jumps along E(V) and so does the energy."""
 
 import hashlib
 from collections.abc import MutableMapping, Sequence
@@ -33,13 +33,16 @@ class ScfNumerics:
 
     Attributes
     ----------
-    energy_tolerance_Ha : of the SCF, per cell; B of β-Si3N4 is then within 0.01 % of its value at 1e-8
+    energy_tolerance_Ha : of the SCF, per cell; B of β-Si3N4 is then within 0.01 % of its value at
+        1e-8
     forces_tolerance_Ha : the same where forces are computed
     max_cycles : of an SCF; a glass with a gap takes 8 to 14
-    coarse : mesh on which an SCF without a former one starts, over the mesh itself: a fifth of the points
+    coarse : mesh on which an SCF without a former one starts, over the mesh itself: a fifth of the
+        points
     coarse_tolerance_Ha : of that start
     single_precision_Ha : SCF tolerance from which orbitals on the grid need no double precision
-    rounding_Ha : per atom: the energy's jitter from cycle to cycle in single precision stays below it
+    rounding_Ha : per atom: the energy's jitter from cycle to cycle in single precision stays below
+        it
     history : former solutions a start is extrapolated from
     guess_damping : of the weights' normal equations
     """
@@ -59,7 +62,9 @@ SCF = ScfNumerics()
 
 
 class Solution(NamedTuple):
-    """What the start of the next calculation needs of a finished one: overlap of the basis, occupied orbitals."""
+    """What the start of the next calculation needs of a finished one: overlap of the basis,
+    occupied orbitals.
+    """
 
     overlap: np.ndarray
     orbitals: np.ndarray
@@ -79,7 +84,9 @@ def commensurate_mesh(cell: np.ndarray, cutoff_Ha: float) -> tuple[int, int, int
     return a, b, c
 
 
-def build_cell(atoms: Atoms, xc: str, basis: str, mesh: tuple[int, int, int], precision: float = 1e-8):
+def build_cell(
+    atoms: Atoms, xc: str, basis: str, mesh: tuple[int, int, int], precision: float = 1e-8
+):
     """PySCF cell of an ASE structure; positions stay in the cell they were given in.
 
     Raises
@@ -92,7 +99,9 @@ def build_cell(atoms: Atoms, xc: str, basis: str, mesh: tuple[int, int, int], pr
     cell: Any = gto.Cell()  # PySCF declares its attributes as None
     cell.unit = "B"
     cell.a = atoms.cell.array / Bohr
-    cell.atom = [(s, p / Bohr) for s, p in zip(atoms.get_chemical_symbols(), atoms.positions, strict=True)]
+    cell.atom = [
+        (s, p / Bohr) for s, p in zip(atoms.get_chemical_symbols(), atoms.positions, strict=True)
+    ]
     cell.basis = basis
     cell.pseudo = FUNCTIONALS[xc][1]
     cell.precision = precision
@@ -101,7 +110,8 @@ def build_cell(atoms: Atoms, xc: str, basis: str, mesh: tuple[int, int, int], pr
     cell.build(dump_input=False, parse_arg=False)
     if cell.nelectron % 2:
         raise CalculationFailed(
-            f"{atoms.get_chemical_formula()} has an odd number of electrons: closed shells only; give it another atom"
+            f"{atoms.get_chemical_formula()} has an odd number of electrons: closed shells only;"
+            " give it another atom"
         )
     return cell
 
@@ -114,16 +124,16 @@ class PyscfGamma(Calculator):
     xc : "GGA" (PBE) or "LDA" (Teter–Padé, the functional of the GTH-PADE pseudopotentials)
     basis : PySCF's name of a GTH basis
     cutoff_Ha : plane-wave cutoff of the density mesh, hartree
-    mesh : grid points along each lattice vector; None takes it from `cutoff_Ha` and the cell at hand
+    mesh : grid points along each lattice vector; None takes it from `cutoff_Ha` and the cell at
+        hand
     tolerance_Ha : SCF convergence of the energy per cell, hartree
     max_cycles : SCF cycles before giving up
     store : finished calculations; one found there is not repeated
 
-    The potential is that of `atomistic.elastic.gamma_scf`.
-    Each calculation starts from the occupied orbitals of the last ones, extrapolated to the new geometry
-    (`extrapolated_orbitals`), which saves more than half of the cycles.  They are part of the key in `store`, so a
-    series that is interrupted and replayed gives the same numbers to the last bit.
-    """
+    The potential is that of `atomistic.elastic.gamma_scf`. Each calculation starts from the
+    occupied orbitals of the last ones, extrapolated to the new geometry (`extrapolated_orbitals`),
+    which saves more than half of the cycles.  They are part of the key in `store`, so a series that
+    is interrupted and replayed gives the same numbers to the last bit."""
 
     parameters: Any  # a dictionary with attributes (ASE)
 
@@ -160,8 +170,12 @@ class PyscfGamma(Calculator):
         self.gap_eV = float(solved["gap_Ha"]) * Hartree
         if not bool(solved["converged"]):
             self.history = []
-            raise ScfNotConverged(f"SCF not converged in {p.max_cycles} cycles (gap {self.gap_eV:.2f} eV)")
-        self.history = [*self.history, Solution(solved["overlap"], solved["orbitals"])][-SCF.history :]
+            raise ScfNotConverged(
+                f"SCF not converged in {p.max_cycles} cycles (gap {self.gap_eV:.2f} eV)"
+            )
+        self.history = [*self.history, Solution(solved["overlap"], solved["orbitals"])][
+            -SCF.history :
+        ]
         energy = float(solved["energy_Ha"]) * Hartree
         self.results: dict[str, Any] = {"energy": energy, "free_energy": energy}
         if wanted == "forces":
@@ -172,7 +186,9 @@ class PyscfGamma(Calculator):
 
     def _key(self, mesh, wanted: str) -> str:
         assert self.atoms is not None
-        digest = hashlib.sha256(repr((sorted(self.parameters.items()), tuple(mesh), wanted)).encode())
+        digest = hashlib.sha256(
+            repr((sorted(self.parameters.items()), tuple(mesh), wanted)).encode()
+        )
         digest.update(" ".join(self.atoms.get_chemical_symbols()).encode())
         before = [solution.orbitals for solution in self.history]
         for array in (self.atoms.cell.array, self.atoms.positions, *before):
@@ -196,13 +212,16 @@ class PyscfGamma(Calculator):
         mf.conv_tol = max(p.tolerance_Ha, SCF.rounding_Ha * cell.natm) if single else p.tolerance_Ha
         mf.conv_tol_grad = np.sqrt(p.tolerance_Ha) * (1 if single else 10)
         mf.max_cycle = p.max_cycles
-        mf.conv_check = False  # the extra cycle after convergence would change the energy by less than the tolerance
+        # the extra cycle after convergence would change the energy by less than the tolerance
+        mf.conv_check = False
         mf._numint = CachedGrid(cell, np.float32 if single else np.float64)
         return mf
 
     def _solve(self, mesh, wanted: str) -> dict[str, np.ndarray]:
         mf = self._mean_field(mesh)
-        overlap = np.asarray(mf.cell.pbc_intor("int1e_ovlp", hermi=1))  # half the time of PySCF's own call
+        overlap = np.asarray(
+            mf.cell.pbc_intor("int1e_ovlp", hermi=1)
+        )  # half the time of PySCF's own call
         self._keep_overlap(mf, overlap)
         energy = mf.kernel(self._guess(mf.cell, overlap))
         converged = bool(mf.converged) and bool(np.isfinite(energy))
@@ -215,7 +234,9 @@ class PyscfGamma(Calculator):
             "cycles": np.array(mf.cycles),
             "orbitals": occupied,
             "overlap": overlap,
-            "gap_Ha": np.array(levels[~filled].min() - levels[filled].max() if not filled.all() else np.inf),
+            "gap_Ha": np.array(
+                levels[~filled].min() - levels[filled].max() if not filled.all() else np.inf
+            ),
         }
         if wanted == "forces" and converged:
             solved["forces"] = mf._numint.forces(mf)
@@ -227,29 +248,41 @@ class PyscfGamma(Calculator):
         mf._numint.basis_overlap = overlap
 
     def _guess(self, cell, overlap: np.ndarray) -> Any:
-        """Density matrix of extrapolated orbitals; where none fit, that of a loose SCF on a coarse mesh."""
+        """Density matrix of extrapolated orbitals; where none fit, that of a loose SCF on a coarse
+        mesh.
+        """
         from pyscf import lib
 
         shape = (cell.nao, cell.nelectron // 2)
-        c = extrapolated_orbitals([old for old in self.history if old.orbitals.shape == shape], overlap)
+        c = extrapolated_orbitals(
+            [old for old in self.history if old.orbitals.shape == shape], overlap
+        )
         if c is not None:
             return lib.tag_array(2 * c @ c.T, mo_coeff=c, mo_occ=np.full(c.shape[1], 2.0))
         coarse = self._mean_field(tuple(int(np.ceil(SCF.coarse * n)) for n in cell.mesh))
         self._keep_overlap(coarse, overlap)
-        coarse.conv_tol, coarse.conv_tol_grad = SCF.coarse_tolerance_Ha, 10 * np.sqrt(SCF.coarse_tolerance_Ha)
+        coarse.conv_tol, coarse.conv_tol_grad = (
+            SCF.coarse_tolerance_Ha,
+            10 * np.sqrt(SCF.coarse_tolerance_Ha),
+        )
         coarse.kernel()  # where it does not converge the fine mesh goes on from where it ended
         return coarse.make_rdm1()
 
 
 def make_calculator(
-    dft: DftSettings, xc: str, largest_cell: np.ndarray, store: Store | None = None, forces: bool = False
+    dft: DftSettings,
+    xc: str,
+    largest_cell: np.ndarray,
+    store: Store | None = None,
+    forces: bool = False,
 ) -> PyscfGamma:
     """The DFT engine of the settings.
 
     Parameters
     ----------
     xc : "GGA" or "LDA"
-    largest_cell : (3, 3) Å; the mesh is fixed to what this cell needs, so that it does not jump along a scan
+    largest_cell : (3, 3) Å; the mesh is fixed to what this cell needs, so that it does not jump
+        along a scan
     store : finished calculations
     forces : whether forces are wanted, not only energies
     """
@@ -265,12 +298,13 @@ def make_calculator(
 
 
 def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> np.ndarray | None:
-    """Occupied orbitals where the basis functions overlap as in `overlap`, orthonormal there; None without a history.
+    """Occupied orbitals where the basis functions overlap as in `overlap`, orthonormal there; None
+    without a history.
 
-    The overlap describes the geometry: the combination of former ones, with weights that add to one, which comes
-    nearest to it also combines the former orbitals, once each set is rotated onto the last one.  Along a line this is
-    polynomial extrapolation; after Polack et al., J. Chem. Theory Comput. 17, 6965 (2021).
-    """
+    The overlap describes the geometry: the combination of former ones, with weights that add to
+    one, which comes nearest to it also combines the former orbitals, once each set is rotated onto
+    the last one.  Along a line this is polynomial extrapolation; after Polack et al., J. Chem.
+    Theory Comput. 17, 6965 (2021)."""
     if not history:
         return None
     *older, last = history
@@ -279,7 +313,8 @@ def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> n
         known = np.stack([(old.overlap - last.overlap).ravel() for old in older])
         wanted = (overlap - last.overlap).ravel()
         gram = known @ known.T
-        # also by the size of what is wanted: former geometries that differ by rounding alone get no weight
+        # also by the size of what is wanted: former geometries that differ by rounding alone get no
+        # weight
         gram += SCF.guess_damping * (np.trace(gram) + wanted @ wanted) * np.eye(len(older))
         weights = np.linalg.lstsq(gram, known @ wanted)[0]  # tolerates repeated geometries
         c = (1 - weights.sum()) * c

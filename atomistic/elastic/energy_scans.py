@@ -1,8 +1,7 @@
 """Energy-volume scans E(V) under isotropic strain, and the bulk modulus of each.
 
-Ions keep their fractional coordinates (they are "clamped": every bond scales), as in the paper.  A glass whose ions
-follow the strain is softer.
-"""
+Ions keep their fractional coordinates (they are "clamped": every bond scales), as in the paper.  A
+glass whose ions follow the strain is softer."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -20,13 +19,16 @@ from atomistic.lammps import Progress
 from atomistic.settings import DftSettings
 
 STRAINS = (-0.03, -0.015, 0.0, 0.015, 0.03)
-"""Linear isotropic strains of a scan. Kim et al. (2013) took 5 %, which makes B 0.2 to 0.5 % smaller and misses the
-curve by more (study `elastic.strains`); `accuracy/elastic.csv` has the errors of a scene's own glasses."""
+"""Linear isotropic strains of a scan. Kim et al. (2013) took 5 %, which makes B 0.2 to 0.5 %
+smaller and misses the curve by more (study `elastic.strains`); `accuracy/elastic.csv` has the
+errors of a scene's own glasses."""
 
 
 @dataclass(frozen=True)
 class ScanPoint:
-    """One volume of an E(V) scan; `energy_eV` is NaN where the calculation failed, and `detail` says why."""
+    """One volume of an E(V) scan; `energy_eV` is NaN where the calculation failed, and `detail`
+    says why.
+    """
 
     strain: float
     volume_A3: float
@@ -41,9 +43,8 @@ def scan_volumes(
 ) -> list[ScanPoint]:
     """Energy of a structure at each isotropic strain, ions clamped.
 
-    The smallest strain comes first, then they go outwards: each calculation starts from its neighbours'.  One that
-    fails is reported in its point and the scan goes on.
-    """
+    The smallest strain comes first, then they go outwards: each calculation starts from its
+    neighbours'.  One that fails is reported in its point and the scan goes on."""
     points: dict[float, ScanPoint] = {}
     for strain in sorted(strains, key=lambda strain: (abs(strain), -strain)):
         if progress:
@@ -54,10 +55,17 @@ def scan_volumes(
         energy, detail = float("nan"), ""
         try:
             energy = float(trial.get_potential_energy())
-        except (CalculationFailed, NotImplementedError, np.linalg.LinAlgError, FloatingPointError) as error:
+        except (
+            CalculationFailed,
+            NotImplementedError,
+            np.linalg.LinAlgError,
+            FloatingPointError,
+        ) as error:
             detail = f"strain {strain:+.3f}: {error}"
         seconds = time.perf_counter() - start
-        points[strain] = ScanPoint(strain, float(trial.get_volume()), energy, not detail, seconds, detail)
+        points[strain] = ScanPoint(
+            strain, float(trial.get_volume()), energy, not detail, seconds, detail
+        )
     return [points[strain] for strain in sorted(points)]
 
 
@@ -82,7 +90,10 @@ def scan_rows(
         atoms = strained(atoms, -0.012)  # its volume is some 4 % smaller than that of GGA
     if rejected:
         volumes = [float(strained(atoms, strain).get_volume()) for strain in STRAINS]
-        points = [ScanPoint(s, v, float("nan"), False, 0.0, rejected) for s, v in zip(STRAINS, volumes, strict=True)]
+        points = [
+            ScanPoint(s, v, float("nan"), False, 0.0, rejected)
+            for s, v in zip(STRAINS, volumes, strict=True)
+        ]
     else:
         calculator = make_calculator(dft, xc, atoms.cell.array * (1 + max(STRAINS)), store)
         calculator.history = list(start)
@@ -94,16 +105,24 @@ def scan_rows(
 def fit_scan(scan: Sequence[Mapping[str, str]]) -> dict[str, Any]:
     """Row of `bulk_moduli.csv` from the rows of one scan: the fit, or why there is none.
 
-    Points that did not converge are named in `flags`; with fewer than five left the structure is rejected.
-    """
+    Points that did not converge are named in `flags`; with fewer than five left the structure is
+    rejected."""
     good = [row for row in scan if row["converged"] == "True"]
     failed = list(dict.fromkeys(row["detail"] for row in scan if row["converged"] != "True"))
     result: dict[str, Any] = {key: scan[0][key] for key in ("structure", "xc", "ions", "atoms")}
     empty = ("B_GPa", "B_prime", "V0_A3", "B_vinet_GPa", "B_error_GPa", "residual_meV")
     if len(good) < MIN_POINTS:
         flags = [f"{len(good)} of {len(scan)} strains converged, {MIN_POINTS} are needed", *failed]
-        return {**result, **dict.fromkeys(empty), "points": len(good), "flags": "; ".join(flags), "failed": ""}
-    fit = fit_equation_of_state([float(r["volume_A3"]) for r in good], [float(r["energy_eV"]) for r in good])
+        return {
+            **result,
+            **dict.fromkeys(empty),
+            "points": len(good),
+            "flags": "; ".join(flags),
+            "failed": "",
+        }
+    fit = fit_equation_of_state(
+        [float(r["volume_A3"]) for r in good], [float(r["energy_eV"]) for r in good]
+    )
     return {
         **result,
         **{key: getattr(fit, key) for key in empty},

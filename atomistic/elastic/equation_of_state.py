@@ -1,4 +1,5 @@
-"""Equations of state: bulk modulus and equilibrium volume from E(V), with the checks that make them trustworthy.
+"""Equations of state: bulk modulus and equilibrium volume from E(V), with the checks that make them
+trustworthy.
 
 Birch–Murnaghan (third order, Phys. Rev. 71, 809 (1947)),
 
@@ -20,7 +21,10 @@ from asperity.guards.errors import InputError
 from atomistic.constants import EV_PER_A3_IN_GPA
 
 MIN_POINTS = 5
-B_PRIME_RANGE = (2.0, 7.0)  # outside it, a solid this side of melting is unlikely and the fit suspect
+B_PRIME_RANGE = (
+    2.0,
+    7.0,
+)  # outside it, a solid this side of melting is unlikely and the fit suspect
 FORMS_AGREE = 0.02  # Birch–Murnaghan and Vinet must give the same B within this
 
 
@@ -72,7 +76,8 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
     volume, energy = np.asarray(volumes_A3, float), np.asarray(energies_eV, float)
     if len(np.unique(volume)) < MIN_POINTS:
         raise InputError(
-            f"equation of state: {len(np.unique(volume))} different volumes, at least {MIN_POINTS} are needed"
+            f"equation of state: {len(np.unique(volume))} different volumes, at least {MIN_POINTS}"
+            " are needed"
         )
     if not (np.all(np.isfinite(energy)) and np.all(volume > 0)):
         raise InputError("equation of state: volumes must be positive and energies finite")
@@ -90,7 +95,9 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
         nan = float("nan")
         return EquationOfState(nan, nan, nan, nan, nan, residual, len(volume), tuple(flags))
     if not volume.min() < V0 < volume.max():
-        flags.append(f"V0 {V0:.1f} Å3 outside the scanned {volume.min():.1f} to {volume.max():.1f} Å3")
+        flags.append(
+            f"V0 {V0:.1f} Å3 outside the scanned {volume.min():.1f} to {volume.max():.1f} Å3"
+        )
     if not B_PRIME_RANGE[0] <= B_prime <= B_PRIME_RANGE[1]:
         flags.append(f"B' {B_prime:.1f} outside {B_PRIME_RANGE[0]:g} to {B_PRIME_RANGE[1]:g}")
     scale = np.ptp(energy) or 1.0
@@ -103,8 +110,8 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
     B_vinet = float(solution.x[2] * B)
     if not solution.success or abs(B_vinet / B - 1) > FORMS_AGREE:
         flags.append(
-            f"Birch-Murnaghan {B * EV_PER_A3_IN_GPA:.1f} and Vinet {B_vinet * EV_PER_A3_IN_GPA:.1f} GPa "
-            f"differ by more than {FORMS_AGREE:.0%}"
+            f"Birch-Murnaghan {B * EV_PER_A3_IN_GPA:.1f} and Vinet {B_vinet * EV_PER_A3_IN_GPA:.1f}"
+            f" GPa differ by more than {FORMS_AGREE:.0%}"
         )
     # B moves by row k of `slopes` when energy k does
     step = 1e-6 * scale
@@ -112,20 +119,33 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
         (_minimum(coefficients + step * column, float(centre), volume)[2] - B) / step
         for column in np.linalg.pinv(basis).T
     ]
-    error = float(np.linalg.norm(slopes) * np.linalg.norm(misfits) / np.sqrt(len(volume) - len(coefficients)))
+    error = float(
+        np.linalg.norm(slopes) * np.linalg.norm(misfits) / np.sqrt(len(volume) - len(coefficients))
+    )
     unit = EV_PER_A3_IN_GPA
     # beyond, it says less than the difference of the functionals, 8 % in silicon nitride
     if not error <= 0.1 * B:
-        flags.append(f"B {B * unit:.0f} +- {error * unit:.0f} GPa: the energies scatter about the fitted curve")
-    return EquationOfState(V0, B * unit, B_prime, B_vinet * unit, error * unit, residual, len(volume), tuple(flags))
+        flags.append(
+            f"B {B * unit:.0f} +- {error * unit:.0f} GPa: the energies scatter about the fitted"
+            " curve"
+        )
+    return EquationOfState(
+        V0, B * unit, B_prime, B_vinet * unit, error * unit, residual, len(volume), tuple(flags)
+    )
 
 
-def _minimum(coefficients: np.ndarray, centre: float, volume: np.ndarray) -> tuple[float, float, float, float]:
-    """V0, E(V0), B (eV/Å³) and B' of the cubic in x = (V/centre)^(-2/3); NaN where there is no minimum."""
+def _minimum(
+    coefficients: np.ndarray, centre: float, volume: np.ndarray
+) -> tuple[float, float, float, float]:
+    """V0, E(V0), B (eV/Å³) and B' of the cubic in x = (V/centre)^(-2/3); NaN where there is no
+    minimum.
+    """
     a0, a1, a2, a3 = coefficients
     slope = np.polynomial.Polynomial([a1, 2 * a2, 3 * a3])
     candidates = [
-        root.real for root in slope.roots() if abs(root.imag) < 1e-12 and root.real > 0 and slope.deriv()(root.real) > 0
+        root.real
+        for root in slope.roots()
+        if abs(root.imag) < 1e-12 and root.real > 0 and slope.deriv()(root.real) > 0
     ]
     if not candidates:
         nan = float("nan")
@@ -138,4 +158,9 @@ def _minimum(coefficients: np.ndarray, centre: float, volume: np.ndarray) -> tup
     x1, x2, x3 = -2 / 3 * x / V, 10 / 9 * x / V**2, -80 / 27 * x / V**3
     second = d2 * x1**2 + d1 * x2
     third = d3 * x1**3 + 3 * d2 * x1 * x2 + d1 * x3
-    return V, float(a0 + a1 * x + a2 * x**2 + a3 * x**3), float(V * second), float(-1 - V * third / second)
+    return (
+        V,
+        float(a0 + a1 * x + a2 * x**2 + a3 * x**3),
+        float(V * second),
+        float(-1 - V * third / second),
+    )

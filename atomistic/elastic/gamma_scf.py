@@ -1,18 +1,19 @@
 """Γ-point Kohn–Sham potential with all orbitals kept on one uniform grid, for PySCF's `RKS`.
 
-PySCF's multigrid evaluates every pair of Gaussians again in each cycle.  For cells of tens of atoms the orbital
-values on the grid fit into memory (4 or 8 B × grid points × orbitals; 0.4 GB for 28 atoms of Si3N4 at 100 Ha), so here
-they are computed once per geometry and everything after that is matrix algebra and FFTs::
+PySCF's multigrid evaluates every pair of Gaussians again in each cycle.  For cells of tens of atoms
+the orbital values on the grid fit into memory (4 or 8 B × grid points × orbitals; 0.4 GB for 28
+atoms of Si3N4 at 100 Ha), so here they are computed once per geometry and everything after that is
+matrix algebra and FFTs::
 
     ρ(r) = Σ_i |Σ_µ C_µi φ_µ(r)|²,   V_µν = Σ_r w φ_µ(r) v(r) φ_ν(r),
     v = v_loc + v_Hartree + ∂f/∂ρ − ∇·(2 ∂f/∂σ ∇ρ),
 
-with the GTH local pseudopotential v_loc, v_Hartree and all gradients by FFT.  For LDA this is PySCF's FFTDF
-exactly, on the same grid.  For GGA, ∇ρ here is the derivative of the gridded density (as in PySCF's multigrid and
-in plane-wave codes), whereas FFTDF takes it from orbital gradients: the two differ by the error of the mesh.
-Because gradient and divergence are each other's negative adjoints on the grid, V is the exact derivative of the
-discrete energy, and so are forces.  Atomic units throughout.
-"""
+with the GTH local pseudopotential v_loc, v_Hartree and all gradients by FFT.  For LDA this is
+PySCF's FFTDF exactly, on the same grid.  For GGA, ∇ρ here is the derivative of the gridded density
+(as in PySCF's multigrid and in plane-wave codes), whereas FFTDF takes it from orbital gradients:
+the two differ by the error of the mesh. Because gradient and divergence are each other's negative
+adjoints on the grid, V is the exact derivative of the discrete energy, and so are forces.  Atomic
+units throughout."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -29,26 +30,31 @@ from atomistic.elastic.orbitals_on_grid import atom_orbitals, collocate, pulay_t
 if TYPE_CHECKING:
     from pyscf.pbc.gto import Cell
 
-LAG = 0.002  # share of the electrons that may have moved since the last full matrix; 0.02 costs a cycle now and then
+# share of the electrons that may have moved since the last full matrix; 0.02 costs a cycle now and
+# then
+LAG = 0.002
 BLOCK = 4096  # grid points per matrix product: a block of 364 orbitals stays in the cache
 
 
 class CachedGrid(MultiGridNumInt2):
     """Numerical integration of `RKS` on a cached uniform grid (Γ point, closed shells, LDA or GGA).
 
-    Use it as ``mf._numint = CachedGrid(cell)``; the local pseudopotential and the Hartree term are then part of
-    `get_veff`, and `get_pp` returns the nonlocal pseudopotential only.
+    Use it as ``mf._numint = CachedGrid(cell)``; the local pseudopotential and the Hartree term are
+    then part of `get_veff`, and `get_pp` returns the nonlocal pseudopotential only.
 
     Parameters
     ----------
     cell : built PySCF cell, all atoms with GTH pseudopotentials; its `mesh` is the grid
-    precision : of the orbitals on the grid and of products with them; single precision rounds the energy by some 1e-7
-        hartree per atom, much the same for neighbouring geometries, and leaves 1e-8 hartree from cycle to cycle
+    precision : of the orbitals on the grid and of products with them; single precision rounds the
+        energy by some 1e-7
+        hartree per atom, much the same for neighbouring geometries, and leaves 1e-8 hartree from
+        cycle to cycle
 
     Attributes
     ----------
     waves : orbitals of the last density on the grid, (orbitals, grid points)
-    basis_overlap : of the basis functions, None until it is set; with it only the first potential of an SCF is a full
+    basis_overlap : of the basis functions, None until it is set; with it only the first potential
+        of an SCF is a full
         matrix (`_matrix_of`)
     """
 
@@ -79,7 +85,9 @@ class CachedGrid(MultiGridNumInt2):
         return field.reshape(*spectrum.shape[:-3], -1)
 
     def _spectrum(self, field: np.ndarray) -> np.ndarray:
-        return np.asarray(scipy.fft.rfftn(field.reshape(*field.shape[:-1], *self.mesh), axes=(-3, -2, -1)))
+        return np.asarray(
+            scipy.fft.rfftn(field.reshape(*field.shape[:-1], *self.mesh), axes=(-3, -2, -1))
+        )
 
     def _phase(self, position: np.ndarray) -> np.ndarray:
         """exp(-iG·R) on the half spectrum."""
@@ -96,11 +104,15 @@ class CachedGrid(MultiGridNumInt2):
 
     def divergence(self, vector: np.ndarray) -> np.ndarray:
         """∇· of a real vector field by FFT, shape (grid points,)."""
-        return self._to_grid(np.einsum("xijk,xijk->ijk", 1j * self.wave_vectors[0], self._spectrum(vector)))
+        return self._to_grid(
+            np.einsum("xijk,xijk->ijk", 1j * self.wave_vectors[0], self._spectrum(vector))
+        )
 
     # -- density and potential
     def occupied_orbitals(self, density_matrix: Any) -> tuple[np.ndarray, np.ndarray]:
-        """Factor F (orbitals, n) and signs s with D = F diag(s) Fᵀ; from the orbitals if the matrix carries them."""
+        """Factor F (orbitals, n) and signs s with D = F diag(s) Fᵀ; from the orbitals if the matrix
+        carries them.
+        """
         coefficients = getattr(density_matrix, "mo_coeff", None)
         if coefficients is not None:
             occupation = density_matrix.mo_occ
@@ -128,9 +140,8 @@ class CachedGrid(MultiGridNumInt2):
     def matrix(self, potential: np.ndarray) -> np.ndarray:
         """Σ_r w φ_µ v φ_ν, shape (orbitals, orbitals).
 
-        Products of a block run in single precision and are summed in double: the energy is stationary in the orbitals
-        and feels this error (1e-6 hartree per element) only squared.
-        """
+        Products of a block run in single precision and are summed in double: the energy is
+        stationary in the orbitals and feels this error (1e-6 hartree per element) only squared."""
         total = np.zeros((len(self.orbitals),) * 2)
         weights = (self.weight * potential).astype(np.float32)
         for start in range(0, self.points, BLOCK):
@@ -150,7 +161,9 @@ class CachedGrid(MultiGridNumInt2):
         return float(self.weight * (rho @ energy)), potential[0] - self.divergence(potential[1:4])
 
     def potential(self, xc_code: str, rho: np.ndarray) -> tuple[np.ndarray, float, float]:
-        """Whole local potential, its electrostatic energy (Hartree + local pseudopotential) and E_xc."""
+        """Whole local potential, its electrostatic energy (Hartree + local pseudopotential) and
+        E_xc.
+        """
         hartree = self._to_grid(self.coulomb * self._spectrum(rho))
         electrostatic = float(self.weight * (rho @ (self.local + 0.5 * hartree)))
         exc, vxc = self.exchange_correlation(xc_code, rho)
@@ -162,16 +175,23 @@ class CachedGrid(MultiGridNumInt2):
             raise NotImplementedError("CachedGrid is for the Γ point only: use a supercell")
         rho = self.density(dm_kpts)
         v, electrostatic, exc = self.potential(xc_code, rho)
-        veff = lib.tag_array(self._matrix_of(dm_kpts, rho, v), ecoul=electrostatic, exc=exc, vj=None, vk=None)
+        veff = lib.tag_array(
+            self._matrix_of(dm_kpts, rho, v), ecoul=electrostatic, exc=exc, vj=None, vk=None
+        )
         return float(rho.sum() * self.weight), exc, veff
 
     def _matrix_of(self, density_matrix: Any, rho: np.ndarray, potential: np.ndarray) -> np.ndarray:
-        """`matrix` of a potential, which after the first one of an SCF lags behind between empty orbitals.
+        """`matrix` of a potential, which after the first one of an SCF lags behind between empty
+        orbitals.
 
-        With δ the change since the last full matrix and Q the projector onto empty orbitals, δ − Qᵀ δ Q is added to it:
-        half the work or less.  The gradient of the orbitals is exact, so the SCF ends at the same solution.
-        """
-        if self.basis_overlap is not None and getattr(density_matrix, "mo_coeff", None) is not None and self._full:
+        With δ the change since the last full matrix and Q the projector onto empty orbitals, δ − Qᵀ
+        δ Q is added to it: half the work or less.  The gradient of the orbitals is exact, so the
+        SCF ends at the same solution."""
+        if (
+            self.basis_overlap is not None
+            and getattr(density_matrix, "mo_coeff", None) is not None
+            and self._full
+        ):
             matrix, old_rho, old_potential = self._full
             if self.weight * float(abs(rho - old_rho).sum()) < LAG * self.cell.nelectron:
                 c = self.occupied_orbitals(density_matrix)[0] * np.sqrt(0.5)
@@ -183,7 +203,9 @@ class CachedGrid(MultiGridNumInt2):
         return self._full[0]
 
     def _onto_waves(self, potential: np.ndarray) -> np.ndarray:
-        """Σ_r w φ_µ v ψ_i with the orbitals ψ of the last density, shape (basis functions, orbitals)."""
+        """Σ_r w φ_µ v ψ_i with the orbitals ψ of the last density, shape (basis functions,
+        orbitals).
+        """
         weighted = (self.weight * potential).astype(self.precision)
         total = np.zeros((len(self.orbitals), len(self.waves)))
         for start in range(0, self.points, BLOCK):
@@ -198,8 +220,8 @@ class CachedGrid(MultiGridNumInt2):
     def forces(self, mf: Any) -> np.ndarray:
         """Forces (atoms, 3), hartree/bohr: the exact derivative of the discrete energy.
 
-        The grid breaks translation symmetry a little ("egg box"), so forces sum to ~1e-3: their mean is subtracted.
-        """
+        The grid breaks translation symmetry a little ("egg box"), so forces sum to ~1e-3: their
+        mean is subtracted."""
         cell = self.cell
         dm = np.asarray(mf.make_rdm1())
         energy_weighted = (mf.mo_coeff * (mf.mo_occ * mf.mo_energy)) @ mf.mo_coeff.T
@@ -213,7 +235,8 @@ class CachedGrid(MultiGridNumInt2):
         waves = self.waves * (self.weight * v).astype(self.precision)
         spectrum = self._spectrum(rho)
         slices = cell.aoslice_by_atom()
-        # half spectrum: every wave vector but those in the planes k_z = 0 and Nyquist stands for two
+        # half spectrum: every wave vector but those in the planes k_z = 0 and Nyquist stands for
+        # two
         twice = np.full(spectrum.shape[-1], 2.0)
         twice[0] = 1.0
         if self.mesh[2] % 2 == 0:
@@ -221,9 +244,14 @@ class CachedGrid(MultiGridNumInt2):
         for atom in range(cell.natm):
             a, b = slices[atom, 2:]
             gradient[atom] += 2 * np.einsum("xuv,uv->x", np.real(kinetic[:, a:b]), dm[a:b])
-            gradient[atom] -= 2 * np.einsum("xuv,uv->x", np.real(overlap[:, a:b]), energy_weighted[a:b])
+            gradient[atom] -= 2 * np.einsum(
+                "xuv,uv->x", np.real(overlap[:, a:b]), energy_weighted[a:b]
+            )
             gradient[atom] -= 2 * pulay_term(
-                self.atoms[atom], self.lattice, tuple(self.mesh), factor[a:b].astype(self.precision) @ waves
+                self.atoms[atom],
+                self.lattice,
+                tuple(self.mesh),
+                factor[a:b].astype(self.precision) @ waves,
             )
             form = self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
             product = np.imag(form * spectrum.conj()) * twice
@@ -232,7 +260,8 @@ class CachedGrid(MultiGridNumInt2):
 
 
 def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
-    """dE/dR of every ion of E = Σ D_µν <µ|p> h <p|ν> (Hartwigsen et al., PRB 58, 3641 (1998)), (ions, 3) hartree/bohr.
+    """dE/dR of every ion of E = Σ D_µν <µ|p> h <p|ν> (Hartwigsen et al., PRB 58, 3641 (1998)),
+    (ions, 3) hartree/bohr.
 
     An overlap of a projector and an orbital depends on the vector between their centres alone.
 
@@ -246,9 +275,16 @@ def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
     overlaps = pp_int._int_vnl(cell, projectors, strengths, gamma)
     # <p|∇µ>; the first <∇p|µ>
     slopes = pp_int._int_vnl(
-        cell, projectors, strengths, gamma, ("int1e_ipovlp", "int1e_r2_origi_ip2", "int1e_r4_origi_ip2"), 3
+        cell,
+        projectors,
+        strengths,
+        gamma,
+        ("int1e_ipovlp", "int1e_r2_origi_ip2", "int1e_r4_origi_ip2"),
+        3,
     )
-    atoms = np.repeat(np.arange(cell.natm), np.diff(cell.aoslice_by_atom()[:, 2:]).ravel())  # of every orbital
+    atoms = np.repeat(
+        np.arange(cell.natm), np.diff(cell.aoslice_by_atom()[:, 2:]).ravel()
+    )  # of every orbital
     by_ion = np.zeros((cell.natm, 3))
     taken = [0, 0, 0]
     for block, strength in enumerate(strengths):
@@ -259,7 +295,9 @@ def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
         onto = [np.real(overlaps[j][0][rows[j]]) @ dm for j in range(len(strength))]
         for i, row in enumerate(rows):
             # 2 from bra and ket; the orbital's centre moves against ∇µ
-            weight = (-2 if i else 2) * sum(h * part for h, part in zip(strength[i], onto, strict=True))
+            weight = (-2 if i else 2) * sum(
+                h * part for h, part in zip(strength[i], onto, strict=True)
+            )
             per_orbital = np.einsum("xpu,pu->ux", np.real(slopes[i][0][:, row]), weight)
             np.add.at(by_ion, atoms, per_orbital)
             by_ion[projectors.bas_atom(block)] -= per_orbital.sum(axis=0)
@@ -267,27 +305,38 @@ def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
 
 
 def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
-    """Fourier transform of the local GTH pseudopotential (Goedecker et al., PRB 54, 1703 (1996), eq. 5).
+    """Fourier transform of the local GTH pseudopotential (Goedecker et al., PRB 54, 1703 (1996),
+    eq. 5).
 
     Parameters
     ----------
     pseudo : PySCF's parsed GTH entry
-    g2 : squared length of G, 1/bohr²; at G = 0 the divergence is left out (it cancels against Hartree and Ewald terms)
-    """
+    g2 : squared length of G, 1/bohr²; at G = 0 the divergence is left out (it cancels against
+        Hartree and Ewald terms)"""
     charge = sum(pseudo[0])
     radius, n, c = pseudo[1:4]
     c = list(c[:n]) + [0.0] * (4 - n)
     x2 = g2 * radius**2
-    polynomial = c[0] + c[1] * (3 - x2) + c[2] * (15 - 10 * x2 + x2**2) + c[3] * (105 - 105 * x2 + 21 * x2**2 - x2**3)
+    polynomial = (
+        c[0]
+        + c[1] * (3 - x2)
+        + c[2] * (15 - 10 * x2 + x2**2)
+        + c[3] * (105 - 105 * x2 + 21 * x2**2 - x2**3)
+    )
     gauss = np.exp(-0.5 * x2)
     coulomb = np.divide(
-        -4 * np.pi * charge * gauss, g2, out=np.full_like(g2, 2 * np.pi * charge * radius**2), where=g2 > 0
+        -4 * np.pi * charge * gauss,
+        g2,
+        out=np.full_like(g2, 2 * np.pi * charge * radius**2),
+        where=g2 > 0,
     )
     return coulomb + (2 * np.pi) ** 1.5 * radius**3 * gauss * polynomial
 
 
 def _wave_vectors(cell: "Cell", mesh: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Half-spectrum wave vectors, shape (3, n0, n1, n2//2+1): for derivatives (Nyquist zeroed), and as they are."""
+    """Half-spectrum wave vectors, shape (3, n0, n1, n2//2+1): for derivatives (Nyquist zeroed), and
+    as they are.
+    """
     indices = [scipy.fft.fftfreq(mesh[0], 1 / mesh[0]), scipy.fft.fftfreq(mesh[1], 1 / mesh[1])]
     indices.append(scipy.fft.rfftfreq(mesh[2], 1 / mesh[2]))
     odd = [np.where(abs(2 * k) == n, 0.0, k) for k, n in zip(indices, mesh, strict=True)]

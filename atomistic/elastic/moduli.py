@@ -1,4 +1,5 @@
-"""The effective modulus E* with its uncertainty, from bulk moduli by E(V) and a stated range of Poisson's ratio.
+"""The effective modulus E* with its uncertainty, from bulk moduli by E(V) and a stated range of
+Poisson's ratio.
 
 E = 3 B (1 − 2ν),   1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂          (Kim et al. 2013, eq. 5)
 """
@@ -27,7 +28,9 @@ SAMPLES = 20_000
 
 @dataclass(frozen=True)
 class Modulus:
-    """A bulk modulus that entered or was kept out of E*; `error_GPa` is its standard error by the misfit of its fit."""
+    """A bulk modulus that entered or was kept out of E*; `error_GPa` is its standard error by the
+    misfit of its fit.
+    """
 
     structure: str
     xc: str
@@ -40,7 +43,9 @@ class Modulus:
 def plane_strain_modulus(B_GPa, nu, other_E_GPa, other_nu):
     """E* of two bodies in GPa (eq. 5); arrays broadcast."""
     E = 3 * np.asarray(B_GPa) * (1 - 2 * np.asarray(nu))
-    return 1 / ((1 - np.asarray(nu) ** 2) / E + (1 - np.asarray(other_nu) ** 2) / np.asarray(other_E_GPa))
+    return 1 / (
+        (1 - np.asarray(nu) ** 2) / E + (1 - np.asarray(other_nu) ** 2) / np.asarray(other_E_GPa)
+    )
 
 
 def share_of_glass(summary: Mapping[str, Any]) -> float:
@@ -56,7 +61,10 @@ def share_of_glass(summary: Mapping[str, Any]) -> float:
 
 def functional_shift(moduli: Sequence[Modulus]) -> dict[str, Any]:
     """LDA − GGA of the bulk modulus over the structures that have both: mean and spread."""
-    by_xc = {xc: {m.structure: m.B_GPa for m in moduli if m.xc == xc and m.trusted} for xc in ("GGA", "LDA")}
+    by_xc = {
+        xc: {m.structure: m.B_GPa for m in moduli if m.xc == xc and m.trusted}
+        for xc in ("GGA", "LDA")
+    }
     both = sorted(set(by_xc["GGA"]) & set(by_xc["LDA"]))
     differences = np.array([by_xc["LDA"][s] - by_xc["GGA"][s] for s in both])
     mean = float(differences.mean()) if both else float("nan")
@@ -75,10 +83,10 @@ def mean_and_deviation(
 ) -> tuple[float, float]:
     """Mean and standard deviation of E*, GPa, without sampling error.
 
-    The inputs are independent: structure (the ensemble, equal weights), the error of its fit (normal), functional
-    (GGA or GGA + shift, equal weights), ions that follow the strain (a normal factor on B), ν (uniform), E of the other
-    body (normal).  Gauss quadrature makes a weighted grid of them.
-    """
+    The inputs are independent: structure (the ensemble, equal weights), the error of its fit
+    (normal), functional (GGA or GGA + shift, equal weights), ions that follow the strain (a normal
+    factor on B), ν (uniform), E of the other body (normal).  Gauss quadrature makes a weighted grid
+    of them."""
     B, B_error = np.asarray(B_GPa, float), np.asarray(B_error_GPa, float)
     normal, normal_weights = np.polynomial.hermite_e.hermegauss(5)
     nodes_nu, weights_nu = np.polynomial.legendre.leggauss(12)
@@ -103,9 +111,11 @@ def mean_and_deviation(
 def effective_modulus(
     moduli: Sequence[Modulus], material: Material, counter_body: Material, settings: ElasticSettings
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """E* as a distribution: mixture of GGA and GGA shifted by LDA − GGA, ν uniform, counter body from experiment.
+    """E* as a distribution: mixture of GGA and GGA shifted by LDA − GGA, ν uniform, counter body
+    from experiment.
 
-    Scans clamp the ions. Where the material states how much those that follow soften it, B is corrected.
+    Scans clamp the ions. Where the material states how much those that follow soften it, B is
+    corrected.
 
     Parameters
     ----------
@@ -115,8 +125,8 @@ def effective_modulus(
 
     Returns
     -------
-    Content of e_star.json, with `inputs` and `gate`, and the arrays of SAMPLE_COLUMNS; none without structures.
-    """
+    Content of e_star.json, with `inputs` and `gate`, and the arrays of SAMPLE_COLUMNS; none without
+    structures."""
     used = [m for m in moduli if m.xc == "GGA" and m.trusted]
     B, B_error = np.array([(m.B_GPa, m.error_GPa) for m in used]).reshape(-1, 2).T
     shift = functional_shift(moduli)
@@ -124,12 +134,14 @@ def effective_modulus(
     low, high = settings.poisson_ratio
     glass: NetworkGlass = material.part("network_glass")
     films = {
-        name: plane_strain_modulus(
-            np.array(film.young_GPa) / (3 - 6 * np.array(film.poisson_ratio)),
-            film.poisson_ratio,
-            other.young_GPa,
-            other.poisson_ratio,
-        ).tolist()
+        name: (
+            plane_strain_modulus(
+                np.array(film.young_GPa) / (3 - 6 * np.array(film.poisson_ratio)),
+                film.poisson_ratio,
+                other.young_GPa,
+                other.poisson_ratio,
+            ).tolist()
+        )
         for name, film in material.films.items()
     }
     summary: dict[str, Any] = {
@@ -172,29 +184,55 @@ def effective_modulus(
     e_star = plane_strain_modulus(B_samples, nu, E, other.poisson_ratio)
     quantiles = (0.025, 0.16, 0.5, 0.84, 0.975)
     summary |= {
-        "quantiles_GPa": dict(zip(map(str, quantiles), np.quantile(e_star, quantiles).tolist(), strict=True)),
-        "inputs": {"e_star": {"distribution": "normal", "a": summary["mean_GPa"], "b": summary["std_GPa"]}},
+        "quantiles_GPa": dict(
+            zip(map(str, quantiles), np.quantile(e_star, quantiles).tolist(), strict=True)
+        ),
+        "inputs": {
+            "e_star": {"distribution": "normal", "a": summary["mean_GPa"], "b": summary["std_GPa"]}
+        },
     }
-    return summary, {"e_star_GPa": e_star, "B_GPa": B_samples, "nu": nu, "counter_E_GPa": E, "xc": lda}
+    return summary, {
+        "e_star_GPa": e_star,
+        "B_GPa": B_samples,
+        "nu": nu,
+        "counter_E_GPa": E,
+        "xc": lda,
+    }
 
 
-def _notes(max_defects: int, follow: tuple[float, float] | None, films: Mapping[str, Sequence[float]]) -> list[str]:
+def _notes(
+    max_defects: int, follow: tuple[float, float] | None, films: Mapping[str, Sequence[float]]
+) -> list[str]:
     """What the numbers leave out, for the page."""
     notes = [
-        f"Up to {max_defects} atoms of a quenched cell may lack or exceed their valence. Cells without a gap are left "
-        "out, so of the broken bonds only those without levels in the gap are represented."
-        if max_defects
-        else "The glasses are quenched as ideal networks: every Si has four N and every N three Si. Films hold a few "
-        "per cent of broken bonds, which may soften them: take B and E* for upper estimates.",
-        f"Scans clamp the ions; those that follow a strain have {follow[0]:g} ± {follow[1]:g} of that bulk modulus."
-        if follow
-        else "Ions clamped to fractional coordinates stiffen the glass: take E* for an upper estimate.",
+        (
+            f"Up to {max_defects} atoms of a quenched cell may lack or exceed their valence. Cells"
+            " without a gap are left out, so of the broken bonds only those without levels in the"
+            " gap are represented."
+            if max_defects
+            else (
+                "The glasses are quenched as ideal networks: every Si has four N and every N three"
+                " Si. Films hold a few per cent of broken bonds, which may soften them: take B and"
+                " E* for upper estimates."
+            )
+        ),
+        (
+            f"Scans clamp the ions; those that follow a strain have {follow[0]:g} ± {follow[1]:g}"
+            " of that bulk modulus."
+            if follow
+            else (
+                "Ions clamped to fractional coordinates stiffen the glass: take E* for an upper"
+                " estimate."
+            )
+        ),
     ]
     if films:
-        measured = "; ".join(f"{name} {low:.0f} to {high:.0f}" for name, (low, high) in films.items())
+        measured = "; ".join(
+            f"{name} {low:.0f} to {high:.0f}" for name, (low, high) in films.items()
+        )
         notes.append(
-            "The glass has no hydrogen, no pores and no excess of silicon. By measured moduli, E* of films is in GPa: "
-            f"{measured}. For such a film state it as inputs.e_star."
+            "The glass has no hydrogen, no pores and no excess of silicon. By measured moduli, E*"
+            f" of films is in GPa: {measured}. For such a film state it as inputs.e_star."
         )
     return notes
 
@@ -204,7 +242,8 @@ def _gate(structures: int, shift: Mapping[str, Any]) -> dict[str, Any]:
     reasons, needed = [], 4  # fewer say too little about their scatter
     if structures < needed:
         reasons.append(
-            f"{structures} amorphous structures with a trusted clamped-ion GGA bulk modulus, {needed} are needed"
+            f"{structures} amorphous structures with a trusted clamped-ion GGA bulk modulus,"
+            f" {needed} are needed"
         )
     if not shift["structures"]:
         reasons.append("no structure has both LDA and GGA: the model-form shift is unknown")

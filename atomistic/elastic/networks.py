@@ -1,9 +1,10 @@
-"""Structures for the elastic stage: crystals from data files, amorphous silicon nitride by melt and quench.
+"""Structures for the elastic stage: crystals from data files, amorphous silicon nitride by melt and
+quench.
 
-Lengths in Å.  A glass cell is melted at the density of experiment and quenched with a Tersoff potential and soft cores
-in LAMMPS, its shape free as soon as it is stiff.  At rest it must be a network without symmetry in which (almost)
-every atom has its valence, and none that the ensemble already has.
-"""
+Lengths in Å.  A glass cell is melted at the density of experiment and quenched with a Tersoff
+potential and soft cores in LAMMPS, its shape free as soon as it is stiff.  At rest it must be a
+network without symmetry in which (almost) every atom has its valence, and none that the ensemble
+already has."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -35,11 +36,14 @@ def crystal(material: Material, name: str, supercell: Supercell | None = None) -
     known = material.crystals
     if name not in known:
         raise InputError(
-            f"elastic.crystals: {material.name} has no crystal {name!r}; it has {', '.join(known) or 'none'}"
+            f"elastic.crystals: {material.name} has no crystal {name!r}; it has"
+            f" {', '.join(known) or 'none'}"
         )
     data = known[name]
     repeats = np.array(supercell or data.supercell)
-    symbols, sites = zip(*((element, site) for element, places in data.sites.items() for site in places), strict=True)
+    symbols, sites = zip(
+        *((element, site) for element, places in data.sites.items() for site in places), strict=True
+    )
     atoms = from_spacegroup(
         list(symbols),
         list(sites),
@@ -50,7 +54,9 @@ def crystal(material: Material, name: str, supercell: Supercell | None = None) -
     )
     atoms = make_supercell(atoms, np.diag(repeats) if repeats.ndim == 1 else repeats)
     atoms.wrap()
-    return Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
+    return Atoms(
+        atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True
+    )
 
 
 @dataclass(frozen=True)
@@ -78,7 +84,8 @@ class NetworkVerdict:
 
 
 def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None) -> NetworkVerdict:
-    """Measure density, coordination, shortest distances and symmetry and hold them against `criteria`.
+    """Measure density, coordination, shortest distances and symmetry and hold them against
+    `criteria`.
 
     Parameters
     ----------
@@ -99,9 +106,13 @@ def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None
         reasons.append(f"density {density:.2f} outside {low} to {high} g/cm3")
     coordination = {}
     for element, (low, high) in criteria.coordination.items():
-        coordination[element] = float(counts[symbols == element].mean()) if np.any(symbols == element) else 0.0
+        coordination[element] = (
+            float(counts[symbols == element].mean()) if np.any(symbols == element) else 0.0
+        )
         if not low <= coordination[element] <= high:
-            reasons.append(f"coordination of {element} {coordination[element]:.2f} outside {low} to {high}")
+            reasons.append(
+                f"coordination of {element} {coordination[element]:.2f} outside {low} to {high}"
+            )
     shortest = {}
     for pair, limit in criteria.shortest_A.items():
         a, b = pair.split("-")
@@ -118,11 +129,15 @@ def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None
     operations = symmetry_operations(atoms, criteria.symmetry_tolerance_A)
     if operations > 1:
         reasons.append(f"{operations} symmetry operations: a crystal")
-    return NetworkVerdict(density, coordination, shortest, spread, operations, defects, tuple(reasons))
+    return NetworkVerdict(
+        density, coordination, shortest, spread, operations, defects, tuple(reasons)
+    )
 
 
 def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
-    """Operations that map the cell onto itself within a tolerance; one, the identity, where there is no symmetry."""
+    """Operations that map the cell onto itself within a tolerance; one, the identity, where there
+    is no symmetry.
+    """
     import spglib.error
 
     spglib.error.OLD_ERROR_HANDLING = False  # it shall raise
@@ -137,29 +152,43 @@ def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
 
 
 def same_network(atoms: Atoms, others: Mapping[str, Atoms]) -> str | None:
-    """Name of the first of `others` that is this cell again: turned, mirrored, shifted or described by other edges.
+    """Name of the first of `others` that is this cell again: turned, mirrored, shifted or described
+    by other edges.
 
     A small cell has few good networks, so that independent quenches end in the same one.
     """
     from ase.utils.structure_comparator import SymmetryEquivalenceCheck
 
     comparison = SymmetryEquivalenceCheck()
-    return next((name for name, other in others.items() if comparison.compare(atoms.copy(), other.copy())), None)
+    return next(
+        (name for name, other in others.items() if comparison.compare(atoms.copy(), other.copy())),
+        None,
+    )
 
 
 def no_insulator(gap_eV: float, criteria: NetworkGlass) -> list[str]:
-    """Why a cell with this gap is no insulator; nothing where it is one or the engine does not tell its gap (NaN)."""
+    """Why a cell with this gap is no insulator; nothing where it is one or the engine does not tell
+    its gap (NaN).
+    """
     return [f"gap {gap_eV:.2f} eV: no insulator"] if gap_eV < criteria.gap_eV else []
 
 
 def random_structure(
-    formula: Mapping[str, int], units: int, density_g_cm3: float, seed: int, edges: Sequence[float] = (1, 1, 1)
+    formula: Mapping[str, int],
+    units: int,
+    density_g_cm3: float,
+    seed: int,
+    edges: Sequence[float] = (1, 1, 1),
 ) -> Atoms:
-    """Formula units at random in a box of the given density and ratio of edges, no two atoms closer than 1.4 Å."""
+    """Formula units at random in a box of the given density and ratio of edges, no two atoms closer
+    than 1.4 Å.
+    """
     symbols = [element for element, n in formula.items() for _ in range(n * units)]
     atoms = Atoms(symbols, pbc=True)
     shape = np.asarray(edges, float)
-    edge = shape * (atoms.get_masses().sum() * AMU_PER_A3_IN_G_CM3 / density_g_cm3 / shape.prod()) ** (1 / 3)
+    edge = shape * (
+        atoms.get_masses().sum() * AMU_PER_A3_IN_G_CM3 / density_g_cm3 / shape.prod()
+    ) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 5]))
     atoms.set_cell(edge)
     atoms.positions = random_places(len(symbols), edge, QUENCH.start_distance_A, rng)
@@ -184,14 +213,16 @@ def make_glass(
 
     Returns
     -------
-    The first cell that passes, or the last one tried, and one row per attempt with its numbers and verdict.
-    """
+    The first cell that passes, or the last one tried, and one row per attempt with its numbers and
+    verdict."""
     attempts: list[dict[str, Any]] = []
     atoms, network = Atoms(), material.part("network_glass")
     for attempt in range(QUENCH.attempts):
         if progress:
             progress(attempt / QUENCH.attempts, f"melt and quench, attempt {attempt + 1}")
-        quench_seed = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
+        quench_seed = (
+            int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
+        )
         atoms = quench(material, settings, quench_seed, work)
         verdict = examine(atoms, network, settings.max_defects)
         reasons = verdict.reasons
@@ -212,9 +243,9 @@ def make_glass(
 def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: Path) -> Atoms:
     """One melt and quench, then ions and cell at rest together (LAMMPS, `protocols/nitride.in`).
 
-    Down to `QUENCH.free_below_K` the volume is constant; below it volume and shape follow a pressure of zero.  In the
-    box of the melt a network is left under up to 30 GPa of shear stress, and slides far when it is let go.
-    """
+    Down to `QUENCH.free_below_K` the volume is constant; below it volume and shape follow a
+    pressure of zero.  In the box of the melt a network is left under up to 30 GPa of shear stress,
+    and slides far when it is let go."""
     from ase.io import read
 
     from atomistic.lammps import Atoms as LammpsAtoms
@@ -222,7 +253,9 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
 
     elements = tuple(material.formula)
     network: NetworkGlass = material.part("network_glass")
-    start = random_structure(material.formula, settings.formula_units, network.start_density_g_cm3, seed, network.edges)
+    start = random_structure(
+        material.formula, settings.formula_units, network.start_density_g_cm3, seed, network.edges
+    )
     symbols = start.get_chemical_symbols()
     types = np.array([elements.index(symbol) + 1 for symbol in symbols])
     identity = {
@@ -233,7 +266,9 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
     }
     workspace = LammpsFolder(work, identity, "nitride.in")
     (workspace / "potential.tersoff").write_text(tersoff_table(network.tersoff), encoding="utf-8")
-    (workspace / "cores.in").write_text("\n".join(core_commands(network.cores, elements)) + "\n", encoding="utf-8")
+    (workspace / "cores.in").write_text(
+        "\n".join(core_commands(network.cores, elements)) + "\n", encoding="utf-8"
+    )
     write_data(
         workspace / "start.data",
         LammpsAtoms(elements, types, start.positions, np.diag(start.cell.array)),
@@ -257,6 +292,13 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         },
     )
     numbers = {kind: atomic_numbers[element] for kind, element in enumerate(elements, 1)}
-    quenched: Any = read(workspace / "glass.data", format="lammps-data", atom_style="atomic", Z_of_type=numbers)
+    quenched: Any = read(
+        workspace / "glass.data", format="lammps-data", atom_style="atomic", Z_of_type=numbers
+    )
     workspace.remove()
-    return Atoms(quenched.get_chemical_symbols(), positions=quenched.positions, cell=quenched.cell.array, pbc=True)
+    return Atoms(
+        quenched.get_chemical_symbols(),
+        positions=quenched.positions,
+        cell=quenched.cell.array,
+        pbc=True,
+    )

@@ -1,10 +1,10 @@
-"""Contracted Gaussian orbitals on a uniform periodic grid: values, and the force a potential exerts on them.
+"""Contracted Gaussian orbitals on a uniform periodic grid: values, and the force a potential exerts
+on them.
 
-Atomic units throughout (bohr, hartree).  The orbitals are PySCF's: real solid harmonics times contracted
-Gaussians, in PySCF's order, summed over all periodic images within `radius`.  Along a grid line the Gaussians
-follow a two-term recurrence (exp of a quadratic), which is why this is an order of magnitude faster than
-evaluating each point by itself.
-"""
+Atomic units throughout (bohr, hartree).  The orbitals are PySCF's: real solid harmonics times
+contracted Gaussians, in PySCF's order, summed over all periodic images within `radius`.  Along a
+grid line the Gaussians follow a two-term recurrence (exp of a quadratic), which is why this is an
+order of magnitude faster than evaluating each point by itself."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -20,8 +20,9 @@ P0 = 0.488602511902919921  # sqrt(3/4π)
 D0 = 1.092548430592079070  # sqrt(15/4π)
 D1 = 0.315391565252520002  # sqrt(5/16π)
 D2 = 0.546274215296039535  # sqrt(15/16π)
-# sums in any order; what compiled loops call is put into them (forceinline): each library has a copy of its own, and
-# which of them runs, and so the last digits, would depend on what was compiled and what was loaded
+# sums in any order; what compiled loops call is put into them (forceinline): each library has a
+# copy of its own, and which of them runs, and so the last digits, would depend on what was compiled
+# and what was loaded
 FAST = {"contract", "reassoc"}
 
 
@@ -52,7 +53,8 @@ def atom_orbitals(cell: "Cell", precision: float | None = None) -> list[AtomOrbi
 
     Parameters
     ----------
-    precision : orbital values (bohr^-3/2) below this are cut off; default: the precision of the cell
+    precision : orbital values (bohr^-3/2) below this are cut off; default: the precision of the
+        cell
 
     Raises
     ------
@@ -73,7 +75,8 @@ def atom_orbitals(cell: "Cell", precision: float | None = None) -> list[AtomOrbi
             degree = cell.bas_angular(shell)
             if degree > 2:
                 raise NotImplementedError(
-                    f"angular momentum {degree} of {cell.atom_symbol(atom)}; s, p and d are supported"
+                    f"angular momentum {degree} of {cell.atom_symbol(atom)}; s, p and d are"
+                    " supported"
                 )
             where = np.searchsorted(exponents, cell.bas_exp(shell))
             for k, column in enumerate(cell._libcint_ctr_coeff(shell).T):
@@ -85,11 +88,20 @@ def atom_orbitals(cell: "Cell", precision: float | None = None) -> list[AtomOrbi
         contraction = np.array(rows)
         radii = np.linspace(0.5, 40.0, 1581)
         gaussians = np.exp(-np.outer(radii**2, exponents))
-        size = np.max(np.abs(gaussians @ contraction.T) * radii[:, None] ** np.array(angular), axis=1)
+        size = np.max(
+            np.abs(gaussians @ contraction.T) * radii[:, None] ** np.array(angular), axis=1
+        )
         large = np.nonzero(size > precision)[0]
         radius = float(radii[min(large[-1] + 1, len(radii) - 1)]) if len(large) else 0.5
         atoms.append(
-            AtomOrbitals(coordinates[atom], exponents, np.array(angular), contraction, np.array(first), radius)
+            AtomOrbitals(
+                coordinates[atom],
+                exponents,
+                np.array(angular),
+                contraction,
+                np.array(first),
+                radius,
+            )
         )
     return atoms
 
@@ -101,7 +113,9 @@ def collocate(
     n_orbitals: int,
     precision: type[np.floating] = np.float64,
 ):
-    """Values of all orbitals on the grid, shape (orbitals, grid points), grid in C order of `mesh`."""
+    """Values of all orbitals on the grid, shape (orbitals, grid points), grid in C order of
+    `mesh`.
+    """
     values = np.zeros((n_orbitals, int(np.prod(mesh))), dtype=precision)
     for atom in orbitals:
         _collocate_atom(values, lattice, np.array(mesh), *_arguments(atom, lattice, mesh))
@@ -109,7 +123,10 @@ def collocate(
 
 
 def pulay_term(
-    atom: AtomOrbitals, lattice: np.ndarray, mesh: tuple[int, int, int], potential_density: np.ndarray
+    atom: AtomOrbitals,
+    lattice: np.ndarray,
+    mesh: tuple[int, int, int],
+    potential_density: np.ndarray,
 ) -> np.ndarray:
     """What a potential does to the orbitals of one atom when it moves, shape (3,).
 
@@ -117,10 +134,12 @@ def pulay_term(
 
     Parameters
     ----------
-    potential_density : (orbitals of this atom in PySCF's order, grid points), w v(r) Σ_ν D_µν φ_ν(r)
-    """
+    potential_density : (orbitals of this atom in PySCF's order, grid points), w v(r) Σ_ν D_µν
+        φ_ν(r)"""
     relative = replace(atom, first=atom.first - atom.first.min())
-    return _contract_gradient(potential_density, lattice, np.array(mesh), *_arguments(relative, lattice, mesh))
+    return _contract_gradient(
+        potential_density, lattice, np.array(mesh), *_arguments(relative, lattice, mesh)
+    )
 
 
 def _arguments(atom: AtomOrbitals, lattice: np.ndarray, mesh: tuple[int, int, int]):
@@ -130,12 +149,23 @@ def _arguments(atom: AtomOrbitals, lattice: np.ndarray, mesh: tuple[int, int, in
     reach = atom.radius * np.linalg.norm(inverse, axis=0)
     low = np.ceil((fraction - reach) * np.array(mesh)).astype(np.int64)
     high = np.floor((fraction + reach) * np.array(mesh)).astype(np.int64)
-    return atom.centre, atom.exponents, atom.angular, atom.contraction, atom.first, atom.radius, low, high
+    return (
+        atom.centre,
+        atom.exponents,
+        atom.angular,
+        atom.contraction,
+        atom.first,
+        atom.radius,
+        low,
+        high,
+    )
 
 
 @numba.njit(cache=True, error_model="numpy")
 def _closest(centre, lattice, mesh, i, j, radius):
-    """First point of grid line (i, j) relative to the atom, its step, and the index range inside the sphere."""
+    """First point of grid line (i, j) relative to the atom, its step, and the index range inside
+    the sphere.
+    """
     step = lattice[2] / mesh[2]
     origin = lattice[0] * (i / mesh[0]) + lattice[1] * (j / mesh[1]) - centre
     s2 = step[0] ** 2 + step[1] ** 2 + step[2] ** 2
@@ -145,7 +175,13 @@ def _closest(centre, lattice, mesh, i, j, radius):
     if room <= 0.0:
         return origin, step, 0, 0, -1
     half = np.sqrt(room / s2)
-    return origin, step, int(np.rint(closest)), int(np.ceil(closest - half)), int(np.floor(closest + half))
+    return (
+        origin,
+        step,
+        int(np.rint(closest)),
+        int(np.ceil(closest - half)),
+        int(np.floor(closest + half)),
+    )
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -204,7 +240,9 @@ def _take_line(line, row, begin, count):
 
 
 @numba.njit(cache=True, fastmath=FAST, error_model="numpy")
-def _collocate_atom(values, lattice, mesh, centre, exponents, angular, contraction, first, radius, low, high):
+def _collocate_atom(
+    values, lattice, mesh, centre, exponents, angular, contraction, first, radius, low, high
+):
     n_radial, n_primitives = contraction.shape
     longest = high[2] - low[2] + 2
     gaussians = np.empty((n_primitives, longest))
@@ -235,7 +273,9 @@ def _collocate_atom(values, lattice, mesh, centre, exponents, angular, contracti
 
 @numba.njit(cache=True, fastmath=FAST, error_model="numpy", forceinline=True)
 def _harmonic_times(out, degree, m, x, y, z, f, n):
-    """out = S_lm(x, y, z) f, the real solid harmonic in PySCF's order (x, y, z; xy, yz, z², xz, x²-y²)."""
+    """out = S_lm(x, y, z) f, the real solid harmonic in PySCF's order (x, y, z; xy, yz, z², xz,
+    x²-y²).
+    """
     if degree == 0:
         for k in range(n):
             out[k] = S0 * f[k]
@@ -261,7 +301,9 @@ def _harmonic_times(out, degree, m, x, y, z, f, n):
 
 
 @numba.njit(cache=True, fastmath=FAST, error_model="numpy")
-def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contraction, first, radius, low, high):
+def _contract_gradient(
+    field, lattice, mesh, centre, exponents, angular, contraction, first, radius, low, high
+):
     n_radial, n_primitives = contraction.shape
     longest = high[2] - low[2] + 2
     gaussians = np.empty((n_primitives, longest))
@@ -320,9 +362,17 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
                             + D1 * (2.0 * z[k] * z[k] - x[k] * x[k] - y[k] * y[k]) * a2[k]
                             + D2 * (x[k] * x[k] - y[k] * y[k]) * a4[k]
                         )
-                        gx[k] += f[k] * (D0 * (y[k] * a0[k] + z[k] * a3[k]) + 2.0 * x[k] * (D2 * a4[k] - D1 * a2[k]))
-                        gy[k] += f[k] * (D0 * (x[k] * a0[k] + z[k] * a1[k]) - 2.0 * y[k] * (D2 * a4[k] + D1 * a2[k]))
-                        gz[k] += f[k] * (D0 * (y[k] * a1[k] + x[k] * a3[k]) + 4.0 * D1 * z[k] * a2[k])
+                        gx[k] += f[k] * (
+                            D0 * (y[k] * a0[k] + z[k] * a3[k])
+                            + 2.0 * x[k] * (D2 * a4[k] - D1 * a2[k])
+                        )
+                        gy[k] += f[k] * (
+                            D0 * (x[k] * a0[k] + z[k] * a1[k])
+                            - 2.0 * y[k] * (D2 * a4[k] + D1 * a2[k])
+                        )
+                        gz[k] += f[k] * (
+                            D0 * (y[k] * a1[k] + x[k] * a3[k]) + 4.0 * D1 * z[k] * a2[k]
+                        )
             for k in range(n):
                 gx[k] += radial[k] * x[k]
                 gy[k] += radial[k] * y[k]

@@ -33,13 +33,17 @@ SPRINGS = Springs()
 
 def strained(atoms: Atoms, strain: float) -> Atoms:
     """The structure under isotropic linear strain, ions keeping their fractional coordinates."""
-    result = Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
+    result = Atoms(
+        atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True
+    )
     result.set_cell(atoms.cell.array * (1 + strain), scale_atoms=True)
     return result
 
 
 def spring_hessian(atoms: Atoms, springs: Springs = SPRINGS) -> np.ndarray:
-    """Hessian by springs along and across bonds between unlike atoms and along edges between N, (3n, 3n), eV/Å²."""
+    """Hessian by springs along and across bonds between unlike atoms and along edges between N,
+    (3n, 3n), eV/Å².
+    """
     from ase.neighborlist import neighbor_list
 
     symbols = np.array(atoms.get_chemical_symbols())
@@ -74,7 +78,8 @@ class Relaxation:
     steps : ionic steps
     force_left_eV_A, converged : largest force left, and whether that met the goal
     energy_gained_eV : below the quenched cell
-    gap_eV : between the highest occupied and the lowest empty level at the end; NaN if the engine does not tell
+    gap_eV : between the highest occupied and the lowest empty level at the end; NaN if the engine
+        does not tell
     failure : why a calculation failed; the ions are then those of the quenched glass
     """
 
@@ -89,8 +94,8 @@ class Relaxation:
 def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Relaxation:
     """Quasi-Newton relaxation of the ions (BFGS), cell fixed.
 
-    It starts from the Hessian of the springs: from ASE's own start, a multiple of the unit matrix, a cell takes about
-    three times as many steps.
+    It starts from the Hessian of the springs: from ASE's own start, a multiple of the unit matrix,
+    a cell takes about three times as many steps.
 
     Raises
     ------
@@ -99,7 +104,9 @@ def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Relaxation:
     from ase.optimize import BFGS
 
     class Cautious(BFGS):
-        """BFGS whose soft directions are never taken for flat ones: no step overshoots along them."""
+        """BFGS whose soft directions are never taken for flat ones: no step overshoots along
+        them.
+        """
 
         def update(self, pos, forces, pos0, forces0):
             super().update(pos, forces, pos0, forces0)
@@ -118,5 +125,7 @@ def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Relaxation:
 
 
 def last_gap_eV(calculator: Calculator | None) -> float:
-    """Gap between occupied and empty levels that a calculator found last; NaN if its engine does not tell."""
+    """Gap between occupied and empty levels that a calculator found last; NaN if its engine does
+    not tell.
+    """
     return float(getattr(calculator, "gap_eV", np.nan))

@@ -1,8 +1,8 @@
 """Stiff and extreme cases of the elastic stage, each judged by what must hold (target `stability`).
 
-What the engine cannot compute must be refused or flagged; a plausible number would be wrong. The cells are small ones
-of the material's first crystal, in the smallest basis: a hard case costs a second at most.
-"""
+What the engine cannot compute must be refused or flagged; a plausible number would be wrong. The
+cells are small ones of the material's first crystal, in the smallest basis: a hard case costs a
+second at most."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -35,7 +35,12 @@ def hard_cases(material: Material) -> list[HardCase]:
     """The cases of a material with a `network_glass` and a crystal."""
     glass: NetworkGlass = material.part("network_glass")
     cell = crystal(material, next(iter(material.crystals)), (1, 1, 1))
-    return [*_engine_cases(cell, glass), *_structure_cases(cell, glass), *_scan_cases(cell), *curve_cases()]
+    return [
+        *_engine_cases(cell, glass),
+        *_structure_cases(cell, glass),
+        *_scan_cases(cell),
+        *curve_cases(),
+    ]
 
 
 def _engine_cases(cell: Atoms, glass: NetworkGlass) -> list[HardCase]:
@@ -49,14 +54,30 @@ def _engine_cases(cell: Atoms, glass: NetworkGlass) -> list[HardCase]:
     aluminium = bulk("Al", "fcc", 4.05, cubic=True)
     conducting = [
         ("metal", "aluminium: no gap", aluminium),
-        ("missing atom", "one Si taken out: its neighbours' levels close the gap", _without(cell, cation)),
+        (
+            "missing atom",
+            "one Si taken out: its neighbours' levels close the gap",
+            _without(cell, cation),
+        ),
         ("one kind of atoms", "N in the places of a metal", bulk("N", "fcc", 4.0, cubic=True)),
-        ("overstrained cell", "silicon with edges 25 % longer: all bonds broken", strained(silicon, 0.25)),
+        (
+            "overstrained cell",
+            "silicon with edges 25 % longer: all bonds broken",
+            strained(silicon, 0.25),
+        ),
         ("overlapping atoms", "both Si of silicon at one place", overlapping),
         ("tiny cell", "one Si in a cube of 2.7 Å", Atoms("Si", cell=[2.7] * 3, pbc=True)),
     ]
-    cases = [HardCase(name, words, REFUSED, partial(no_energy, atoms, glass)) for name, words, atoms in conducting]
-    odd = partial(refused, partial(_energy_eV, _without(cell, anion)), "odd number of electrons", CalculationFailed)
+    cases = [
+        HardCase(name, words, REFUSED, partial(no_energy, atoms, glass))
+        for name, words, atoms in conducting
+    ]
+    odd = partial(
+        refused,
+        partial(_energy_eV, _without(cell, anion)),
+        "odd number of electrons",
+        CalculationFailed,
+    )
     one_cycle = partial(_energy_eV, _shaken(silicon), max_cycles=1, tolerance_Ha=1e-11)
     return [
         *cases,
@@ -83,7 +104,9 @@ def _structure_cases(cell: Atoms, glass: NetworkGlass) -> list[HardCase]:
     moved = cell.copy()
     moved.positions[anions[0], 2] += 0.9
     sheared = cell.copy()
-    sheared.set_cell(cell.cell.array @ np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1.0]]), scale_atoms=True)
+    sheared.set_cell(
+        cell.cell.array @ np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1.0]]), scale_atoms=True
+    )
     close = cell.copy()
     close.positions[1] = close.positions[0]
     molecule = Atoms("N2", positions=[[0, 0, 0], [1.1, 0, 0]], cell=[40.0] * 3, pbc=True)
@@ -97,7 +120,10 @@ def _structure_cases(cell: Atoms, glass: NetworkGlass) -> list[HardCase]:
         ("sheared network", "a shear that breaks bonds", sheared, "valence"),
         ("crystal", "a perfect network with symmetry", cell, "crystal"),
     ]
-    return [HardCase(name, words, GATED, partial(_gated, atoms, glass, why)) for name, words, atoms, why in judged]
+    return [
+        HardCase(name, words, GATED, partial(_gated, atoms, glass, why))
+        for name, words, atoms, why in judged
+    ]
 
 
 def _scan_cases(cell: Atoms) -> list[HardCase]:
@@ -120,7 +146,12 @@ def curve_cases() -> list[HardCase]:
     with_nan = np.where(volumes == volumes[2], np.nan, sound)
     jump = np.where(volumes > 300.0, sound + 0.5, sound)
     flagged = [
-        ("minimum outside the scan", "equilibrium at 350 of 270 to 330 Å3", made_up_eV(volumes, 350.0), "outside"),
+        (
+            "minimum outside the scan",
+            "equilibrium at 350 of 270 to 330 Å3",
+            made_up_eV(volumes, 350.0),
+            "outside",
+        ),
         ("no minimum", "energy falls with volume throughout", -0.001 * volumes, "no minimum"),
         ("energies that do not tell B", "noise of 0.3 eV", sound + 0.2 * NOISE, "scatter about"),
         ("energies that jump", "0.5 eV more beyond equilibrium", jump, ""),
@@ -128,7 +159,13 @@ def curve_cases() -> list[HardCase]:
     ]
     refusals = [
         ("few points", "four volumes", volumes[:4], sound[:4], "at least 5 are needed"),
-        ("duplicates", "seven points at four volumes", volumes[[0, 0, 1, 1, 2, 2, 3]], sound, "at least 5 are needed"),
+        (
+            "duplicates",
+            "seven points at four volumes",
+            volumes[[0, 0, 1, 1, 2, 2, 3]],
+            sound,
+            "at least 5 are needed",
+        ),
         ("energy without a number", "one of seven is NaN", volumes, with_nan, "energies finite"),
         ("volume of zero", "one of seven", volumes - volumes[0], sound, "volumes must be positive"),
     ]
@@ -137,12 +174,20 @@ def curve_cases() -> list[HardCase]:
         ("softest", "B = 0.1 GPa", 0.1),
     ]
     return [
-        *(HardCase(name, words, FLAGGED, partial(_flagged, energies, why)) for name, words, energies, why in flagged),
         *(
-            HardCase(name, words, ONE_LINE, partial(refused, partial(fit_equation_of_state, x, y), why))
+            HardCase(name, words, FLAGGED, partial(_flagged, energies, why))
+            for name, words, energies, why in flagged
+        ),
+        *(
+            HardCase(
+                name, words, ONE_LINE, partial(refused, partial(fit_equation_of_state, x, y), why)
+            )
             for name, words, x, y, why in refusals
         ),
-        *(HardCase(name, words, "B comes back within 1 %", partial(_comes_back, B)) for name, words, B in solids),
+        *(
+            HardCase(name, words, "B comes back within 1 %", partial(_comes_back, B))
+            for name, words, B in solids
+        ),
         HardCase(
             "noise that is known",
             "0.015 eV on a curve of 5 eV",
@@ -215,7 +260,9 @@ def _known_noise(energies_eV: np.ndarray) -> Verdict:
 
 
 def _words(fit: EquationOfState) -> str:
-    return f"B {fit.B_GPa:.4g} +- {fit.B_error_GPa:.2g} GPa; flags: {'; '.join(fit.flags) or 'none'}"
+    return (
+        f"B {fit.B_GPa:.4g} +- {fit.B_error_GPa:.2g} GPa; flags: {'; '.join(fit.flags) or 'none'}"
+    )
 
 
 def _without(cell: Atoms, index: int) -> Atoms:

@@ -50,9 +50,11 @@ def relaxed_structure(
     refused: str = "",
     progress: Progress | None = None,
 ) -> Structure:
-    """Relax the ions of a quenched cell and judge the result; a cell that no quench made right is not relaxed at all.
+    """Relax the ions of a quenched cell and judge the result; a cell that no quench made right is
+    not relaxed at all.
 
-    The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left in it.
+    The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left
+    in it.
 
     Parameters
     ----------
@@ -68,17 +70,26 @@ def relaxed_structure(
         progress(0.0, f"relaxing ions, at most {max_steps} steps")
     if max_steps:
         try:
-            done = relax_ions(atoms, 0.3, max_steps)  # eV/Å, largest force left before the E(V) scan
+            done = relax_ions(
+                atoms, 0.3, max_steps
+            )  # eV/Å, largest force left before the E(V) scan
         except CalculationFailed as error:
             done = Relaxation(failure=f"relaxation: {error}")
     atoms = strained(quenched if done.failure else atoms, 0.0)
     verdict = examine(atoms, criteria)
-    reasons = [*verdict.reasons, *filter(None, [done.failure]), *no_insulator(done.gap_eV, criteria)]
+    reasons = [
+        *verdict.reasons,
+        *filter(None, [done.failure]),
+        *no_insulator(done.gap_eV, criteria),
+    ]
     return Structure(atoms, calculator, verdict, done, tuple(reasons))
 
 
-def trusted_moduli(fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[str, Any]]) -> list[Modulus]:
-    """The bulk moduli of the ensemble, each trusted if its fit has no flag and its structure passed its gate.
+def trusted_moduli(
+    fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[str, Any]]
+) -> list[Modulus]:
+    """The bulk moduli of the ensemble, each trusted if its fit has no flag and its structure passed
+    its gate.
 
     Parameters
     ----------
@@ -92,18 +103,30 @@ def trusted_moduli(fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[
             reasons = [*filter(None, [row["flags"]]), *gates[row["structure"]]["reasons"]]
             B = float(row["B_GPa"] or "nan")
             error = float(row["B_error_GPa"] or "nan")
-            moduli.append(Modulus(row["structure"], row["xc"], B, not reasons, "; ".join(reasons), error))
+            moduli.append(
+                Modulus(row["structure"], row["xc"], B, not reasons, "; ".join(reasons), error)
+            )
     return moduli
 
 
-def structure_rows(reports: Sequence[Mapping[str, Any]], quenches: Sequence[int]) -> list[dict[str, Any]]:
-    """Rows of elastic/structures.csv from the structures' reports and the number of quenches each one took."""
+def structure_rows(
+    reports: Sequence[Mapping[str, Any]], quenches: Sequence[int]
+) -> list[dict[str, Any]]:
+    """Rows of elastic/structures.csv from the structures' reports and the number of quenches each
+    one took.
+    """
     return [
         {
-            **{key: value for key, value in report.items() if key not in ("relaxation", "gate", "provenance")},
+            **{
+                key: value
+                for key, value in report.items()
+                if key not in ("relaxation", "gate", "provenance")
+            },
             **report["relaxation"],
             "quenches": count,
-            "status": "accepted" if report["gate"]["passed"] else "rejected: " + "; ".join(report["gate"]["reasons"]),
+            "status": "accepted"
+            if report["gate"]["passed"]
+            else "rejected: " + "; ".join(report["gate"]["reasons"]),
         }
         for report, count in zip(reports, quenches, strict=True)
     ]

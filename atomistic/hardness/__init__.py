@@ -1,1 +1,3 @@
-"""Hardness against contact size: oxide asperities pressed by molecular dynamics (docs/hardness.md)."""
+"""Hardness against contact size: oxide asperities pressed by molecular dynamics
+(docs/hardness.md).
+"""

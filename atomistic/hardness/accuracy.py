@@ -1,11 +1,11 @@
 """Error of a closing against run time, one numerical choice at a time, in small form.
 
-The smallest asperity of a scene is pressed until its contact is some 2 nm wide, without the snapshots on the way. Two
-cuts of one glass are the samples. Each is annealed once, on the thickest base, for half of the scene's time, and every
-choice then starts from these atoms. All choices but the speed are varied at four times the scene's speed, where they
-take a quarter of its time. A repeat from reversed velocities tells what the motion of the atoms alone changes: an error
-below it cannot be seen.
-"""
+The smallest asperity of a scene is pressed until its contact is some 2 nm wide, without the
+snapshots on the way. Two cuts of one glass are the samples. Each is annealed once, on the thickest
+base, for half of the scene's time, and every choice then starts from these atoms. All choices but
+the speed are varied at four times the scene's speed, where they take a quarter of its time. A
+repeat from reversed velocities tells what the motion of the atoms alone changes: an error below it
+cannot be seen."""
 
 import resource
 import time
@@ -36,7 +36,9 @@ from atomistic.settings import AsperitySettings, ClosingSettings
 CUTS = (1, 2)
 """Seeds of the cuts from one glass."""
 DEPTH = 0.9
-"""Travel of the flat below the highest atom, in amplitudes: the contact is then 2 nm wide, a quarter of the cell."""
+"""Travel of the flat below the highest atom, in amplitudes: the contact is then 2 nm wide, a
+quarter of the cell.
+"""
 WINDOW = 0.25
 """Share of this travel, at its end, over which pressure and force are averaged."""
 CLEARANCE_NM = 0.02
@@ -76,7 +78,9 @@ class Choice:
 
 @dataclass(frozen=True)
 class Pressed:
-    """A pressed cut: pressure (GPa) and force (nN) at the end of its travel, and processor seconds."""
+    """A pressed cut: pressure (GPa) and force (nN) at the end of its travel, and processor
+    seconds.
+    """
 
     pressure_GPa: float
     force_nN: float
@@ -98,7 +102,12 @@ class SmallClosings:
     """
 
     def __init__(
-        self, asperity: AsperitySettings, glass: Atoms, potential: Potential, closing: ClosingSettings, work: Path
+        self,
+        asperity: AsperitySettings,
+        glass: Atoms,
+        potential: Potential,
+        closing: ClosingSettings,
+        work: Path,
     ) -> None:
         self.glass = glass
         self.potential = potential
@@ -130,13 +139,17 @@ class SmallClosings:
         return float(np.mean([self.pressed(cut, choice).cpu_s for cut in CUTS]))
 
     def noise_percent(self) -> np.ndarray:
-        """Standard deviation of a run's pressure and force by the motion of its atoms, from one repeat of each cut."""
+        """Standard deviation of a run's pressure and force by the motion of its atoms, from one
+        repeat of each cut.
+        """
         first = self.outputs(Choice())
         again = self.outputs(Choice(reversed_velocities=True))
         return 100 * np.sqrt(np.mean((again / first - 1) ** 2, axis=0) / 2)
 
     def cutoff_nm(self, cut: int, iterations: int) -> tuple[float, float]:
-        """D0 of the top below a contact after so many steps of the minimiser, and its processor seconds."""
+        """D0 of the top below a contact after so many steps of the minimiser, and its processor
+        seconds.
+        """
         run = self.pressed(cut, Choice())
         variables = {"pairs": "pairs", "segment": 1, "iterations": iterations}
         _, cpu_s = _timed(lambda: run_lammps("relax.in", run.folder, variables))
@@ -155,7 +168,9 @@ class SmallClosings:
         """A cut on the thickest base, annealed."""
         if cut not in self._bodies:
             place = self._place(cut)
-            made = cut_body(self._run(cut), self.glass, self.potential, THICKER_BASE * self.base_nm, place)
+            made = cut_body(
+                self._run(cut), self.glass, self.potential, THICKER_BASE * self.base_nm, place
+            )
             folder = LammpsFolder(self.work / f"anneal_{cut}", self._identity, "anneal.in")
             settings = (made.force, self.closing, PROTOCOL, folder, place)
             self._bodies[cut] = prepare_body(self._run(cut), made.atoms, made.formula, *settings)
@@ -163,11 +178,20 @@ class SmallClosings:
 
     def _press(self, cut: int, choice: Choice) -> Pressed:
         run = self._run(cut)
-        body = lowered(self._body(cut), 10 * (THICKER_BASE - choice.base) * self.base_nm, formula_of(self.glass))
+        body = lowered(
+            self._body(cut),
+            10 * (THICKER_BASE - choice.base) * self.base_nm,
+            formula_of(self.glass),
+        )
         if choice.reversed_velocities and body.velocities_A_ps is not None:
             body = replace(body, velocities_A_ps=-body.velocities_A_ps)
-        closing = self.closing.model_copy(update={"speed_m_s": choice.speed * self.closing.speed_m_s})
-        changed = {"timestep_fs": choice.timestep * PROTOCOL.timestep_fs, "approach_nm": CLEARANCE_NM}
+        closing = self.closing.model_copy(
+            update={"speed_m_s": choice.speed * self.closing.speed_m_s}
+        )
+        changed = {
+            "timestep_fs": choice.timestep * PROTOCOL.timestep_fs,
+            "approach_nm": CLEARANCE_NM,
+        }
         protocol = PROTOCOL.model_copy(update=changed)
         depth_A = 10 * DEPTH * self._asperity.amplitude_nm
         plan = plan_closing(closing, run, protocol)
@@ -180,7 +204,9 @@ class SmallClosings:
 
         def press() -> PressedCell:
             force = self.potential
-            cell, _ = press_body(run, body, force, closing, protocol, plan, self._place(cut), folder, lambda *_: True)
+            cell, _ = press_body(
+                run, body, force, closing, protocol, plan, self._place(cut), folder, lambda *_: True
+            )
             return cell
 
         cell, cpu_s = _timed(press)
@@ -210,7 +236,9 @@ def _speeds(closings: SmallClosings) -> Variation:
     def deviations(speed: int) -> Deviations:
         rest = 2 * closings.outputs(Choice(speed=1)) - closings.outputs(Choice(speed=2))
         off = 100 * (closings.outputs(Choice(speed=speed)) / rest - 1)
-        noise = closings.noise_percent() * float(np.linalg.norm(weights[speed])) / np.sqrt(len(CUTS))
+        noise = (
+            closings.noise_percent() * float(np.linalg.norm(weights[speed])) / np.sqrt(len(CUTS))
+        )
         return Deviations(off, noise, closings.cpu_s(Choice(speed=speed)))
 
     values = [(speed * used, partial(deviations, speed)) for speed in SPEEDS]
@@ -222,7 +250,10 @@ def _timesteps(closings: SmallClosings) -> Variation:
     """The time step of the closing."""
     used = PROTOCOL.timestep_fs
     best = Choice(timestep=FINER_TIMESTEP)
-    values = [(factor * used, partial(_against, closings, Choice(timestep=factor), best)) for factor in TIMESTEPS]
+    values = [
+        (factor * used, partial(_against, closings, Choice(timestep=factor), best))
+        for factor in TIMESTEPS
+    ]
     reference = f"{FINER_TIMESTEP * used:g} fs, {_fast(closings)}"
     return Variation("time step, fs", PRESSED, values, used, reference, _samples())
 
@@ -231,7 +262,10 @@ def _bases(closings: SmallClosings) -> Variation:
     """The thickness of the base."""
     best = Choice(base=THICKER_BASE)
     values = [
-        (round(factor * closings.base_nm, 2), partial(_against, closings, Choice(base=factor), best))
+        (
+            round(factor * closings.base_nm, 2),
+            partial(_against, closings, Choice(base=factor), best),
+        )
         for factor in BASES
     ]
     reference = f"{THICKER_BASE * closings.base_nm:.2f} nm, {_fast(closings)}"
@@ -245,7 +279,9 @@ def _against(closings: SmallClosings, choice: Choice, best: Choice) -> Deviation
 
 
 def _minimisers(closings: SmallClosings) -> Variation:
-    """The steps of the minimiser, by what they leave of D0: the same contact is relaxed each time."""
+    """The steps of the minimiser, by what they leave of D0: the same contact is relaxed each
+    time.
+    """
     best: list[float] = []
 
     def deviations(iterations: int) -> Deviations:
@@ -258,22 +294,36 @@ def _minimisers(closings: SmallClosings) -> Variation:
     values = [(iterations, partial(deviations, iterations)) for iterations in ITERATIONS]
     quantities = [("D0", "%")]
     return Variation(
-        "steps of the minimiser", quantities, values, max(ITERATIONS), f"{MORE_ITERATIONS} steps", _samples()
+        "steps of the minimiser",
+        quantities,
+        values,
+        max(ITERATIONS),
+        f"{MORE_ITERATIONS} steps",
+        _samples(),
     )
 
 
-def _drifts(closings: SmallClosings, name: str, used_fs: float, temperatures_K: dict[str, float]) -> Variation:
+def _drifts(
+    closings: SmallClosings, name: str, used_fs: float, temperatures_K: dict[str, float]
+) -> Variation:
     """A time step at constant energy: the drift of the glass's energy, which has to be none."""
 
     def drift(timestep_fs: float, kelvin: float, seed: int) -> float:
         atoms = heated(closings.glass, closings.potential, kelvin, seed)
         steps = round(1000 * FREE_PS / timestep_fs)
-        record, _ = free_motion(atoms, closings.potential, closings.work / "nve", timestep_fs, steps)
+        record, _ = free_motion(
+            atoms, closings.potential, closings.work / "nve", timestep_fs, steps
+        )
         return drift_meV_atom_ps(record, len(atoms), timestep_fs)
 
     def deviations(timestep_fs: float) -> Deviations:
         drifts, cpu_s = _timed(
-            lambda: np.array([[drift(timestep_fs, kelvin, cut) for kelvin in temperatures_K.values()] for cut in CUTS])
+            lambda: np.array(
+                [
+                    [drift(timestep_fs, kelvin, cut) for kelvin in temperatures_K.values()]
+                    for cut in CUTS
+                ]
+            )
         )
         return Deviations(drifts, np.zeros(len(temperatures_K)), cpu_s / drifts.size)
 

@@ -8,7 +8,9 @@ TOP_ATOMS = 8  # the highest atoms, whose height is that of the top
 
 
 def profile(x: np.ndarray, y: np.ndarray, wavelength: float, amplitude: float) -> np.ndarray:
-    """Height Z = min[A sin(2πx/λ), A sin(2πy/λ)] (eq. 6), in the unit of `amplitude`; its peak is at (λ/4, λ/4)."""
+    """Height Z = min[A sin(2πx/λ), A sin(2πy/λ)] (eq. 6), in the unit of `amplitude`; its peak is
+    at (λ/4, λ/4).
+    """
     k = 2 * np.pi / wavelength
     return amplitude * np.minimum(np.sin(k * x), np.sin(k * y))
 
@@ -16,9 +18,9 @@ def profile(x: np.ndarray, y: np.ndarray, wavelength: float, amplitude: float) -
 def cut_asperity(glass: Atoms, tiles: int, amplitude_A: float, base_A: float, seed: int) -> Atoms:
     """Cut an asperity out of `tiles` x `tiles` glass cells.
 
-    The cut is placed at random (by `seed`) in the tiling, so that runs from one glass differ; a thicker base adds
-    atoms below and leaves those of the asperity.  Surplus atoms of the cut are removed at the rigid bottom, where it
-    does not matter: the sample stays neutral.
+    The cut is placed at random (by `seed`) in the tiling, so that runs from one glass differ; a
+    thicker base adds atoms below and leaves those of the asperity.  Surplus atoms of the cut are
+    removed at the rigid bottom, where it does not matter: the sample stays neutral.
 
     Returns
     -------
@@ -65,6 +67,10 @@ def neutralise(atoms: Atoms, formula: np.ndarray) -> Atoms:
 
 
 def remove_strays(atoms: Atoms, formula: np.ndarray) -> Atoms:
-    """Remove atoms more than 2.5 Å above the eighth-highest one, keeping the sample neutral: they are no surface."""
+    """Remove atoms more than 2.5 Å above the eighth-highest one, keeping the sample neutral: they
+    are no surface.
+    """
     height = atoms.positions_A[:, 2]
-    return neutralise(atoms.take(height <= float(np.partition(height, -TOP_ATOMS)[-TOP_ATOMS]) + 2.5), formula)
+    return neutralise(
+        atoms.take(height <= float(np.partition(height, -TOP_ATOMS)[-TOP_ATOMS]) + 2.5), formula
+    )

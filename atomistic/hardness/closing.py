@@ -13,8 +13,23 @@ from atomistic.hardness.contact_area import Area, calibrated, contact_map, share
 from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import cations
 from atomistic.hardness.plateau import RULES, may_stop
-from atomistic.hardness.pressing import Plan, base_thickness_nm, lammps_seed, plan_closing, prepare_body, press_body
-from atomistic.hardness.readout import Frame, OxideBond, PressedCell, Readout, Rows, Sample, witness_rows
+from atomistic.hardness.pressing import (
+    Plan,
+    base_thickness_nm,
+    lammps_seed,
+    plan_closing,
+    prepare_body,
+    press_body,
+)
+from atomistic.hardness.readout import (
+    Frame,
+    OxideBond,
+    PressedCell,
+    Readout,
+    Rows,
+    Sample,
+    witness_rows,
+)
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
 from atomistic.hardness.stack import Stack, check_film, cut_base, film_properties, lay
 from atomistic.hardness.top_attraction import TopAttraction, attract_top, bulk_density_per_A3
@@ -23,7 +38,9 @@ from atomistic.materials import Material
 from atomistic.potentials import ForceField, Potential
 from atomistic.settings import ClosingSettings
 
-NO_TOP: dict[str, float] = dict.fromkeys(("top_area_nm2", "top_force_over_hamaker", "top_work_over_hamaker"), np.nan)
+NO_TOP: dict[str, float] = dict.fromkeys(
+    ("top_area_nm2", "top_force_over_hamaker", "top_work_over_hamaker"), np.nan
+)
 
 
 @dataclass(frozen=True)
@@ -33,7 +50,8 @@ class ClosedAsperity:
     Attributes
     ----------
     curve : one row per average (columns as in docs/results.md).
-    witness : one row per relaxed snapshot: bond exchanges and lasting lowering against the first, and the attraction of
+    witness : one row per relaxed snapshot: bond exchanges and lasting lowering against the first,
+        and the attraction of
         its top.
     summary : atoms, steps and the side of the cell.
     """
@@ -54,7 +72,8 @@ def run_closing(
     progress: Progress | None = None,
     base: tuple[Base, Atoms] | None = None,
 ) -> ClosedAsperity:
-    """Carry out a run, or go on with it if `work` holds its restart files; `work` is deleted at the end.
+    """Carry out a run, or go on with it if `work` holds its restart files; `work` is deleted at the
+    end.
 
     Parameters
     ----------
@@ -63,8 +82,8 @@ def run_closing(
 
     Raises
     ------
-    InputError : a film that its asperity does not allow, a base that is not given, or no calibration of the area.
-    """
+    InputError : a film that its asperity does not allow, a base that is not given, or no
+        calibration of the area."""
     wavelength_nm = run.asperity.tiles * float(glass.cell_A[0]) / 10
     calibrated(potential)  # raises where it is not
     area = Area()
@@ -74,21 +93,33 @@ def run_closing(
     plan = plan_closing(closing, run, protocol)
     identity = {
         "potential": potential.model_dump(),
-        "run": [run.model_dump(), material.formula_text, closing.model_dump(), protocol.model_dump(), asdict(area)],
+        "run": [
+            run.model_dump(),
+            material.formula_text,
+            closing.model_dump(),
+            protocol.model_dump(),
+            asdict(area),
+        ],
         "glass": [glass.cell_A.tolist(), glass.positions_A.sum(axis=0).tolist()],
     }
     if base is not None:
         identity["base"] = [base[0].material.model_dump(), base[1].positions_A.sum(axis=0).tolist()]
     place = (run.seed, run.asperity.tiles, round(1000 * run.asperity.amplitude_nm))
     aside = LammpsFolder(work / "anneal", identity, "anneal.in")
-    cut = cut_body(run, glass, potential, base_thickness_nm(closing, wavelength_nm, protocol), place, base)
-    body = prepare_body(run, cut.atoms, cut.formula, cut.force, closing, protocol, aside, place, progress)
+    cut = cut_body(
+        run, glass, potential, base_thickness_nm(closing, wavelength_nm, protocol), place, base
+    )
+    body = prepare_body(
+        run, cut.atoms, cut.formula, cut.force, closing, protocol, aside, place, progress
+    )
     workspace = LammpsFolder(work / "closing", identity, "closing.in")
     bond = oxide_bond(body.elements, material, potential)
 
     @cache
     def readout(cell: PressedCell) -> Readout:
-        return Readout(workspace, plan.segment_steps, plan.timestep, protocol.samples, area, cell, bond)
+        return Readout(
+            workspace, plan.segment_steps, plan.timestep, protocol.samples, area, cell, bond
+        )
 
     def read(cell: PressedCell, reached: Plan) -> ClosedAsperity:
         snapshots = protocol.snapshots(reached.segments)
@@ -103,9 +134,13 @@ def run_closing(
             return False
         measured = read(cell, replace(plan, segments=segments))
         curve, witness = measured.curve, measured.witness
-        return may_stop(curve, witness, cell_nm2, closing.stop, protocol.approach_nm, on_base=on_base)
+        return may_stop(
+            curve, witness, cell_nm2, closing.stop, protocol.approach_nm, on_base=on_base
+        )
 
-    cell, reached = press_body(run, body, cut.force, closing, protocol, plan, place, workspace, complete, progress)
+    cell, reached = press_body(
+        run, body, cut.force, closing, protocol, plan, place, workspace, complete, progress
+    )
     result = read(cell, reached)
     snapshots = protocol.snapshots(reached.segments)
     # atoms of a base pull otherwise: their tops say nothing of the oxide's
@@ -114,12 +149,16 @@ def run_closing(
         start, end = (readout(cell).relaxed(n).frame for n in (0, snapshots[-1]))
         result.summary.update(film_properties(start, end, cell.wavelength_A, len(base[0].elements)))
     shutil.rmtree(work)
-    return replace(result, witness=[{**row, **top} for row, top in zip(result.witness, tops, strict=True)])
+    return replace(
+        result, witness=[{**row, **top} for row, top in zip(result.witness, tops, strict=True)]
+    )
 
 
 @dataclass(frozen=True)
 class CutBody:
-    """What is annealed and pressed: atoms, those of each type in a unit of its formula, and their forces."""
+    """What is annealed and pressed: atoms, those of each type in a unit of its formula, and their
+    forces.
+    """
 
     atoms: Atoms
     formula: np.ndarray
@@ -152,39 +191,56 @@ def cut_body(
         cut = cut_asperity(glass, of.tiles, amplitude_A, base_A, seed)
         return CutBody(cut, formula_of(glass), potential)
     if base is None:
-        raise InputError(f"asperity {of.name}: film_nm = {film_nm:g} needs a body below; set hardness.base")
+        raise InputError(
+            f"asperity {of.name}: film_nm = {film_nm:g} needs a body below; set hardness.base"
+        )
     below, cell = base
     if film_nm == 0:
-        return CutBody(cut_base(cell, glass, of.tiles, amplitude_A, base_A, seed), formula_of(cell), below)
+        return CutBody(
+            cut_base(cell, glass, of.tiles, amplitude_A, base_A, seed), formula_of(cell), below
+        )
     check_film(film_nm, RULES.max_area_fraction**0.5 * of.tiles * float(glass.cell_A[0]) / 10)
     cut = lay(cell, glass, of.tiles, amplitude_A, 10 * film_nm, base_A, seed)
     formula = np.array([*(0 for _ in below.elements), *formula_of(glass)])
     return CutBody(cut, formula, Stack(potential, below))
 
 
-def oxide_bond(elements: tuple[str, ...], material: Material, potential: Potential) -> OxideBond | None:
+def oxide_bond(
+    elements: tuple[str, ...], material: Material, potential: Potential
+) -> OxideBond | None:
     """What counts as a bond in a body with these elements of its types; None: it has no oxide."""
     ions = tuple(potential.materials[material.formula_text])
     if not set(ions) <= set(elements):
         return None
     cation, anion = sorted(ions, key=cations(material, potential).__contains__, reverse=True)
-    types = {element: kind for kind, element in enumerate(elements, 1)}  # the last of an element is the film's
+    types = {
+        element: kind for kind, element in enumerate(elements, 1)
+    }  # the last of an element is the film's
     return OxideBond(types[cation], types[anion], material.part("oxide_glass").cutoff_A)
 
 
-def _read(readout: Readout, plan: Plan, snapshots: list[int], held_A: float, cell: PressedCell) -> ClosedAsperity:
+def _read(
+    readout: Readout, plan: Plan, snapshots: list[int], held_A: float, cell: PressedCell
+) -> ClosedAsperity:
     summary: dict[str, float] = {
         "atoms": cell.atoms,
         "steps": plan.total_steps,
         "wavelength_nm": cell.wavelength_A / 10,
     }
-    witness = witness_rows([readout.relaxed(n) for n in snapshots], plan.timestep, plan.speed, held_A)
+    witness = witness_rows(
+        [readout.relaxed(n) for n in snapshots], plan.timestep, plan.speed, held_A
+    )
     return ClosedAsperity(readout.curve(range(1, plan.segments + 1)), witness, summary)
 
 
 def attraction_row(readout: Readout, segment: int, cell: PressedCell) -> dict[str, float]:
-    """What `attract_top` says of the top after a segment, as columns of the witness; NaN while the contact is small."""
-    if segment and (sample := readout.last_sample(segment)).area_A2 >= (10 * RULES.min_length_nm) ** 2:
+    """What `attract_top` says of the top after a segment, as columns of the witness; NaN while the
+    contact is small.
+    """
+    if (
+        segment
+        and (sample := readout.last_sample(segment)).area_A2 >= (10 * RULES.min_length_nm) ** 2
+    ):
         unpressed = readout.relaxed(0).frame
         top = top_below(sample, readout.relaxed(segment).frame, unpressed, readout.area, cell)
         values = (top.area_A2 / 100, 10 * top.force_per_A, top.work)
@@ -192,7 +248,9 @@ def attraction_row(readout: Readout, segment: int, cell: PressedCell) -> dict[st
     return NO_TOP
 
 
-def top_below(sample: Sample, relaxed: Frame, unpressed: Frame, area: Area, cell: PressedCell) -> TopAttraction:
+def top_below(
+    sample: Sample, relaxed: Frame, unpressed: Frame, area: Area, cell: PressedCell
+) -> TopAttraction:
     """Attraction of what lies below a contact once the flat is away.
 
     Parameters

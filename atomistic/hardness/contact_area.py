@@ -1,9 +1,9 @@
-"""Contact area: one definition, used for every run, calibrated on bodies of known section (study `hardness.area`).
+"""Contact area: one definition, used for every run, calibrated on bodies of known section (study
+`hardness.area`).
 
-Atoms nearer to the counterface than a depth (or beyond it) touch.  The space between touching atoms counts as contact
-where a disc of the closing radius does not fit; enclosed holes do too.  The rim lies one rim radius outside the
-outermost touching atoms.
-"""
+Atoms nearer to the counterface than a depth (or beyond it) touch.  The space between touching atoms
+counts as contact where a disc of the closing radius does not fit; enclosed holes do too.  The rim
+lies one rim radius outside the outermost touching atoms."""
 
 from dataclasses import dataclass
 
@@ -17,12 +17,14 @@ from atomistic.potentials import Potential
 
 @dataclass(frozen=True)
 class Area:
-    """Definition of the contact area, fixed by bodies of known section before any hardness was looked at; in Å.
+    """Definition of the contact area, fixed by bodies of known section before any hardness was
+    looked at; in Å.
 
     Attributes
     ----------
     depth_A : atoms nearer than this to the counterface, or beyond it, touch.
-    closing_A : the space between touching atoms is contact where a disc of this radius does not fit.
+    closing_A : the space between touching atoms is contact where a disc of this radius does not
+        fit.
     rim_A : the rim of the contact lies this far outside the outermost touching atoms.
     """
 
@@ -41,10 +43,13 @@ def contact_area(
     ----------
     touching_A : positions in the plane, shape (atoms, 2).
     cell_A : periodic lengths in x and y.
-    centre_A : middle of the contact; the grid is rolled so that the contact does not wrap around, where holes
+    centre_A : middle of the contact; the grid is rolled so that the contact does not wrap around,
+        where holes
         would stay open.
     """
-    return float(np.sum(contact_map(touching_A, cell_A, area, centre_A)) * _spacing(cell_A, area).prod())
+    return float(
+        np.sum(contact_map(touching_A, cell_A, area, centre_A)) * _spacing(cell_A, area).prod()
+    )
 
 
 def contact_map(
@@ -52,9 +57,8 @@ def contact_map(
 ) -> np.ndarray:
     """Share of each cell in contact; the middle of the array is `centre_A`.
 
-    Discs of `closing_A` about the touching atoms, holes filled, cut back to `rim_A`; cells that the rim crosses count
-    in part, so that the area does not jump with the grid.
-    """
+    Discs of `closing_A` about the touching atoms, holes filled, cut back to `rim_A`; cells that the
+    rim crosses count in part, so that the area does not jump with the grid."""
     spacing, cell = _spacing(cell_A, area), np.asarray(cell_A, dtype=float)
     shape = np.round(cell / spacing).astype(int)
     if len(touching_A) == 0:
@@ -63,20 +67,28 @@ def contact_map(
     # a place that rounding puts on the far edge of the cell lies outside it for the tree
     tree = KDTree(np.where(shifted < cell, shifted, 0.0), boxsize=cell)
     part = tuple(_reach(shifted[:, k], area.closing_A, spacing[k], shape[k]) for k in range(2))
-    middles = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in shape), indexing="ij"), axis=-1)[part] * spacing
+    middles = (
+        np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in shape), indexing="ij"), axis=-1)[part]
+        * spacing
+    )
     distance, _ = tree.query(middles, distance_upper_bound=2 * area.closing_A)
     marked = np.asarray(binary_fill_holes(distance <= area.closing_A), dtype=bool)
     if marked.all():
         return np.ones(shape)
     wide = np.pad(marked, margin := int(np.ceil(area.closing_A / spacing.min())) + 1, mode="wrap")
-    outside = np.asarray(distance_transform_edt(wide, sampling=spacing))[margin:-margin, margin:-margin]
+    outside = np.asarray(distance_transform_edt(wide, sampling=spacing))[
+        margin:-margin, margin:-margin
+    ]
     shares = np.zeros(shape)
     shares[part] = np.clip((outside - (area.closing_A - area.rim_A)) / spacing.mean(), 0, 1)
     return shares
 
 
 def shares_in_contact(
-    places_A: np.ndarray, shares: np.ndarray, cell_A: tuple[float, float], centre_A: tuple[float, float]
+    places_A: np.ndarray,
+    shares: np.ndarray,
+    cell_A: tuple[float, float],
+    centre_A: tuple[float, float],
 ) -> np.ndarray:
     """Share of the contact map's cell at each place, shape (places,).
 
@@ -92,7 +104,8 @@ def shares_in_contact(
 
 
 def _reach(places_A: np.ndarray, reach_A: float, spacing_A: float, cells: int) -> slice:
-    """Cells within reach of the places and one more on either side, since a small contact need not cost a whole map.
+    """Cells within reach of the places and one more on either side, since a small contact need not
+    cost a whole map.
 
     All cells where the reach crosses the edge.
     """
@@ -115,8 +128,8 @@ def calibrated(potential: Potential) -> float:
     """
     if potential.contact_area is None:
         raise InputError(
-            f"potential {potential.name}: no calibration of the contact area; measure it (python -m evidence "
-            "hardness.area) and write its largest error as `contact_area` into the potential's file (see "
-            "config/potentials/pmmcs.yaml)"
+            f"potential {potential.name}: no calibration of the contact area; measure it (python -m"
+            " evidence hardness.area) and write its largest error as `contact_area` into the"
+            " potential's file (see config/potentials/pmmcs.yaml)"
         )
     return potential.contact_area.error

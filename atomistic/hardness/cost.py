@@ -10,10 +10,14 @@ from atomistic.hardness.stack import check_film
 from atomistic.materials import Material
 from atomistic.settings import HardnessSettings
 
-ATOM_STEPS_PER_CORE_SECOND = 1.3e6  # tabulated pair potential: 12 runs of scene reduced took 31 core-minutes
+ATOM_STEPS_PER_CORE_SECOND = (
+    1.3e6  # tabulated pair potential: 12 runs of scene reduced took 31 core-minutes
+)
 
 
-def closing_seconds(settings: HardnessSettings, material: Material, base: Base | None = None) -> dict[str, float]:
+def closing_seconds(
+    settings: HardnessSettings, material: Material, base: Base | None = None
+) -> dict[str, float]:
     """Of one core, by closing run.
 
     Parameters
@@ -38,11 +42,17 @@ def closing_seconds(settings: HardnessSettings, material: Material, base: Base |
             speed, of_base = 0.6e6, base.atoms_per_nm3
             if film:
                 check_film(film, RULES.max_area_fraction**0.5 * wavelength)
-        atoms = wavelength**2 * (density * below if film is None else density * film + of_base * below)
-        seconds[run.name] = atoms * plan_closing(settings.closing, run, protocol).total_steps / speed
+        atoms = wavelength**2 * (
+            density * below if film is None else density * film + of_base * below
+        )
+        seconds[run.name] = (
+            atoms * plan_closing(settings.closing, run, protocol).total_steps / speed
+        )
     return seconds
 
 
 def glass_edge_A(settings: HardnessSettings, material: Material) -> float:
     """Edge of a quenched cell."""
-    return 10 * (settings.glass.atoms / material.part("oxide_glass").quenched.atoms_per_nm3) ** (1 / 3)
+    return 10 * (settings.glass.atoms / material.part("oxide_glass").quenched.atoms_per_nm3) ** (
+        1 / 3
+    )

@@ -58,12 +58,16 @@ class Base(ABC):
         """The files that `commands` name."""
 
     @abstractmethod
-    def make(self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
-        """A periodic cell of it that tiles the width of an asperity; resumes in `work` after a kill.
+    def make(
+        self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None
+    ) -> Atoms:
+        """A periodic cell of it that tiles the width of an asperity; resumes in `work` after a
+        kill.
 
         Parameters
         ----------
-        edge_A, tiles : edge of a cell of the oxide's glass, and how many are as wide as the asperity.
+        edge_A, tiles : edge of a cell of the oxide's glass, and how many are as wide as the
+            asperity.
 
         Raises
         ------
@@ -71,6 +75,12 @@ class Base(ABC):
         """
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
-        """What LAMMPS needs for a body without a film, as `Potential.files`; it keeps its energies at every scale."""
-        lines = [f"pair_style hybrid/overlay {' '.join(self.styles)}", *self.commands(0), *NEIGHBOURS]
+        """What LAMMPS needs for a body without a film, as `Potential.files`; it keeps its energies
+        at every scale.
+        """
+        lines = [
+            f"pair_style hybrid/overlay {' '.join(self.styles)}",
+            *self.commands(0),
+            *NEIGHBOURS,
+        ]
         return {**self.tables(), "pairs": "\n".join(lines) + "\n"}

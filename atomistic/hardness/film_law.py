@@ -1,8 +1,9 @@
-"""How the body below changes the hardness of a film, H = H_base + (H_film - H_base) / (1 + k (L/t)^m), fitted to runs.
+"""How the body below changes the hardness of a film, H = H_base + (H_film - H_base) / (1 + k
+(L/t)^m), fitted to runs.
 
-L is the contact length and t the thickness of the film. Runs of oxide throughout are films of infinite thickness, runs
-of the base by itself films of none. Beside it stand the two laws that know no film, a constant and eq. 4 of Kim et al.
-(2013), each judged by the runs that its fit had not.
+L is the contact length and t the thickness of the film. Runs of oxide throughout are films of
+infinite thickness, runs of the base by itself films of none. Beside it stand the two laws that know
+no film, a constant and eq. 4 of Kim et al. (2013), each judged by the runs that its fit had not.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -36,9 +37,10 @@ class FilmFit:
 
     Attributes
     ----------
-    bond : standard deviation of ln k by the assumed bonds of film and metal: films with bonds half and 1.5 times as
-        deep have stresses that differ by 4 % with a scatter of 10 % (runs of scene films, commit 9151035b), seven
-        times as much in k.
+    bond : standard deviation of ln k by the assumed bonds of film and metal: films with bonds half
+        and 1.5 times as
+        deep have stresses that differ by 4 % with a scatter of 10 % (runs of scene films, commit
+        9151035b), seven times as much in k.
     bin_nm : of contact length: a run has one mean stress in each.
     least_points, least_thicknesses : mean stresses of films, and their thicknesses.
     trials, draws : values drawn from the prior, and how many of them are kept by their likelihood.
@@ -61,7 +63,8 @@ LawOfHardness = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 class FilmPoints(NamedTuple):
-    """Mean stress of the contact at its length, by seed and thickness (0: base by itself, inf: oxide throughout).
+    """Mean stress of the contact at its length, by seed and thickness (0: base by itself, inf:
+    oxide throughout).
 
     Attributes
     ----------
@@ -93,7 +96,9 @@ class FilmPoints(NamedTuple):
         return (self.length_nm / np.where(self.film, self.thickness_nm, np.inf))[self.film]
 
 
-def points_of(points: Sequence[PointRow], curves: Mapping[str, Sequence[Mapping[str, float]]]) -> FilmPoints:
+def points_of(
+    points: Sequence[PointRow], curves: Mapping[str, Sequence[Mapping[str, float]]]
+) -> FilmPoints:
     """The mean stresses of sound runs with full energies.
 
     Parameters
@@ -109,9 +114,15 @@ def points_of(points: Sequence[PointRow], curves: Mapping[str, Sequence[Mapping[
     return FilmPoints(*np.array(rows).reshape(-1, 4).T)
 
 
-def mean_stresses(curve: Sequence[Mapping[str, float]], wavelength_nm: float) -> list[tuple[float, float]]:
-    """Mean contact length (nm) and stress (GPa) in every bin of length, while the contact is judged."""
-    length, stress = (np.array([row[f"contact_{key}"] for row in curve]) for key in ("length_nm", "stress_GPa"))
+def mean_stresses(
+    curve: Sequence[Mapping[str, float]], wavelength_nm: float
+) -> list[tuple[float, float]]:
+    """Mean contact length (nm) and stress (GPa) in every bin of length, while the contact is
+    judged.
+    """
+    length, stress = (
+        np.array([row[f"contact_{key}"] for row in curve]) for key in ("length_nm", "stress_GPa")
+    )
     widest, means = RULES.max_area_fraction**0.5 * wavelength_nm, []
     for low in np.arange(RULES.min_length_nm, widest, FILM_FIT.bin_nm):
         here = (length >= low) & (length < min(low + FILM_FIT.bin_nm, widest)) & (stress > 0)
@@ -125,12 +136,19 @@ def too_few(points: FilmPoints) -> str | None:
     films, thicknesses = int(points.film.sum()), len(np.unique(points.thickness_nm[points.film]))
     if films < FILM_FIT.least_points or thicknesses < FILM_FIT.least_thicknesses:
         return (
-            f"{films} mean stresses of films of {thicknesses} thicknesses: a law of films needs "
-            f"{FILM_FIT.least_points} of {FILM_FIT.least_thicknesses}; add thicknesses (film_nm) or seeds"
+            f"{films} mean stresses of films of {thicknesses} thicknesses: a law of films needs"
+            f" {FILM_FIT.least_points} of {FILM_FIT.least_thicknesses}; add thicknesses (film_nm)"
+            " or seeds"
         )
-    for thickness, name, how in ((np.inf, "oxide throughout", "without film_nm"), (0.0, "base", "with film_nm: 0")):
+    for thickness, name, how in (
+        (np.inf, "oxide throughout", "without film_nm"),
+        (0.0, "base", "with film_nm: 0"),
+    ):
         if not np.any(points.thickness_nm == thickness):
-            return f"no defended run of the {name}: a law of films lies between both; add an asperity {how}"
+            return (
+                f"no defended run of the {name}: a law of films lies between both; add an asperity"
+                f" {how}"
+            )
     return None
 
 
@@ -172,15 +190,19 @@ def fit(name: str, points: FilmPoints) -> np.ndarray:
 
     solution = least_squares(misfit, np.log(start), bounds=(np.log(1e-3), np.log(50.0)))
     if not solution.success:
-        raise InputError(f"hardness: the law {name} of films does not settle in {solution.nfev} steps; give more runs")
+        raise InputError(
+            f"hardness: the law {name} of films does not settle in {solution.nfev} steps; give more"
+            " runs"
+        )
     return np.exp(solution.x)
 
 
 def left_out(name: str, points: FilmPoints) -> float:
-    """Root mean square error of a law, of ln H, at the films of a thickness that its fit had not, one at a time.
+    """Root mean square error of a law, of ln H, at the films of a thickness that its fit had not,
+    one at a time.
 
-    The laws without film are fitted to the other films, `film` to oxide and base besides. Seeds are averaged.
-    """
+    The laws without film are fitted to the other films, `film` to oxide and base besides. Seeds are
+    averaged."""
 
     def foretell(others: FilmPoints, at: FilmPoints) -> np.ndarray:
         return LAWS[name][0](fit(name, others), at.length_nm, at.thickness_nm)
@@ -202,31 +224,40 @@ def error_left_out(
     for thickness in np.unique(points.thickness_nm[points.film]):
         same = points.thickness_nm == thickness
         at = points.take(same)
-        wrong = np.log(foretell(points.take(~same & (points.film | knows_bodies)), at) / at.stress_GPa)
+        wrong = np.log(
+            foretell(points.take(~same & (points.film | knows_bodies)), at) / at.stress_GPa
+        )
         errors += [float(np.mean(wrong[at.bin == one])) for one in np.unique(at.bin)]
     return float(np.sqrt(np.mean(np.square(errors))))
 
 
 def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
-    """H_film, H_base, k and m by their likelihood, shape (draws, 4); the prior is flat in the logarithms and in m.
+    """H_film, H_base, k and m by their likelihood, shape (draws, 4); the prior is flat in the
+    logarithms and in m.
 
-    The mean misfit of a run is one error, so that N runs of unknown scatter have the likelihood S^(-N/2), S the sum of
-    squares (the scatter's own prior is Jeffreys's): seeds are too few for a bootstrap. Every bin counted
-    would make intervals too wide: study `hardness.film_coverage`, where those of this likelihood hold 88 to 91 %.
-    A second round draws where the first found a likelihood that counts.
-    """
+    The mean misfit of a run is one error, so that N runs of unknown scatter have the likelihood
+    S^(-N/2), S the sum of squares (the scatter's own prior is Jeffreys's): seeds are too few for a
+    bootstrap. Every bin counted would make intervals too wide: study `hardness.film_coverage`,
+    where those of this likelihood hold 88 to 91 %. A second round draws where the first found a
+    likelihood that counts."""
     low, high = np.array(FILM_FIT.prior).T
     low, high = np.array([*np.log(low[:3]), low[3]]), np.array([*np.log(high[:3]), high[3]])
     drawn, weights = _weighed(points, rng.uniform(low, high, (FILM_FIT.trials, 4)))
     counts = drawn[weights > FILM_FIT.negligible]
-    drawn, weights = _weighed(points, rng.uniform(counts.min(axis=0), counts.max(axis=0), drawn.shape))
+    drawn, weights = _weighed(
+        points, rng.uniform(counts.min(axis=0), counts.max(axis=0), drawn.shape)
+    )
     kept = drawn[rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())]
     return np.column_stack([np.exp(kept[:, :3]), kept[:, 3]])
 
 
 def _weighed(points: FilmPoints, drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Draws of ln H_film, ln H_base, ln k and m, shape (n, 4), with their likelihoods over the largest."""
-    _, run = np.unique(np.column_stack([points.seed, points.thickness_nm]), axis=0, return_inverse=True)
+    """Draws of ln H_film, ln H_base, ln k and m, shape (n, 4), with their likelihoods over the
+    largest.
+    """
+    _, run = np.unique(
+        np.column_stack([points.seed, points.thickness_nm]), axis=0, return_inverse=True
+    )
     per_run = np.bincount(run.ravel())
     values = np.vstack([np.exp(drawn[:, :3].T), drawn[:, 3]])
     misfits = np.zeros((per_run.size, len(drawn)))
@@ -256,21 +287,30 @@ def fit_films(
 
     Returns
     -------
-    Content of fit.json (docs/hardness.md): the inputs H_film, k and m with their rank correlations, and in `film` what
-    the runs say of the base, how well each law foretells a thickness that its fit had not, and the range of L/t.
-    """
+    Content of fit.json (docs/hardness.md): the inputs H_film, k and m with their rank correlations,
+    and in `film` what the runs say of the base, how well each law foretells a thickness that its
+    fit had not, and the range of L/t."""
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
-    unsound = [{"run": point["run"], "status": point["status"]} for point in points if point["sound"] != "True"]
+    unsound = [
+        {"run": point["run"], "status": point["status"]}
+        for point in points
+        if point["sound"] != "True"
+    ]
     sound = len(points) - len(unsound)
     if sound < FIT_RULES.least_share * len(points):
-        reasons.append(f"only {sound} of {len(points)} runs are sound (gate {FIT_RULES.least_share:.0%})")
+        reasons.append(
+            f"only {sound} of {len(points)} runs are sound (gate {FIT_RULES.least_share:.0%})"
+        )
     of = points_of(points, curves)
     if few := too_few(of):
         reasons.append(few)
     throughout = [point for point in points if point["sound"] == "True" and not point["film_nm"]]
     slopes = steepness(throughout) if throughout else {}
     if throughout and not slopes:
-        reasons.append(f"asperities flatter or steeper than RMS slopes of {min(SLOPES):.2g} to {max(SLOPES):.2g}")
+        reasons.append(
+            f"asperities flatter or steeper than RMS slopes of {min(SLOPES):.2g} to"
+            f" {max(SLOPES):.2g}"
+        )
     counts = {"points_used": sound, "points_total": len(points), "points_rejected": unsound}
     result = {
         "method": "film",
@@ -301,11 +341,17 @@ def fit_films(
     result["inputs"] = {
         "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
         "k_film": samples_of(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},
-        "m_film": samples_of(m, "1") | {"correlation": {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}},
+        "m_film": (
+            samples_of(m, "1")
+            | {"correlation": {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}}
+        ),
     }
     result["film"] = {
         "base_GPa": summary(base),
         "left_out": {name: left_out(name, of) for name in LAWS},
-        "length_over_thickness": [float(of.length_over_thickness.min()), float(of.length_over_thickness.max())],
+        "length_over_thickness": [
+            float(of.length_over_thickness.min()),
+            float(of.length_over_thickness.max()),
+        ],
     }
     return result

@@ -1,8 +1,7 @@
 """Oxide glass by melt and quench, and the gates it must pass.
 
-A glass cell is periodic and cubic; bodies are cut from a tiling of it, so that a wavelength is a whole number of cells
-and nothing is strained.
-"""
+A glass cell is periodic and cubic; bodies are cut from a tiling of it, so that a wavelength is a
+whole number of cells and nothing is strained."""
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
@@ -21,22 +20,34 @@ from atomistic.potentials import ForceField, Potential
 from atomistic.settings import GlassSettings
 
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
-MELT_K, FINAL_K = 4000.0, 300.0  # every shipped potential melts in some ps; the temperature of the closings
+MELT_K, FINAL_K = (
+    4000.0,
+    300.0,
+)  # every shipped potential melts in some ps; the temperature of the closings
 TIMESTEP_FS = 2.0  # energy is kept to 0.2 meV per atom and ps, also in the melt
 
 
 def cations(material: Material, potential: Potential) -> tuple[str, ...]:
     """The cation species of a material."""
-    return tuple(ion for ion in potential.materials[material.formula_text] if potential.species[ion].charge_e > 0)
+    return tuple(
+        ion
+        for ion in potential.materials[material.formula_text]
+        if potential.species[ion].charge_e > 0
+    )
 
 
-def random_start(material: Material, potential: Potential, settings: GlassSettings, seed: int) -> Atoms:
+def random_start(
+    material: Material, potential: Potential, settings: GlassSettings, seed: int
+) -> Atoms:
     """Ions at random places of a cube of the experimental density, no two nearer than 1.5 Å."""
     formula = _formula(material, potential)
     elements = tuple(formula)
     units = max(1, round(settings.atoms / sum(formula.values())))
     counts = [units * count for count in formula.values()]
-    mass_g = sum(n * potential.species[ion].mass_u for n, ion in zip(counts, elements, strict=True)) / AVOGADRO
+    mass_g = (
+        sum(n * potential.species[ion].mass_u for n, ion in zip(counts, elements, strict=True))
+        / AVOGADRO
+    )
     edge_A = (mass_g / material.part("oxide_glass").density_g_cm3 * 1e24) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 1]))
     placed = random_places(sum(counts), np.full(3, edge_A), NEAREST_START_A, rng)
@@ -56,9 +67,11 @@ def _formula(material: Material, potential: Potential) -> Mapping[str, int]:
 def write_forcefield(
     workspace: LammpsFolder, potential: ForceField, elements: tuple[str, ...], energy_scale: float
 ) -> None:
-    """Write the tables of a potential and the commands that use them (file `pairs`) into a workspace.
+    """Write the tables of a potential and the commands that use them (file `pairs`) into a
+    workspace.
 
-    They are written at every start, since LAMMPS executes `pairs`: one that came with a received folder must not run.
+    They are written at every start, since LAMMPS executes `pairs`: one that came with a received
+    folder must not run.
 
     Parameters
     ----------
@@ -124,7 +137,8 @@ def run_segments(
     doing: str,
     progress: Progress | None,
 ) -> Atoms:
-    """Carry out the segments of a periodic cell (glass.in), or go on after a kill; deletes the workspace at the end.
+    """Carry out the segments of a periodic cell (glass.in), or go on after a kill; deletes the
+    workspace at the end.
 
     Parameters
     ----------
@@ -150,7 +164,10 @@ def run_segments(
             "timestep": timestep_fs / 1000,
             "segment": range(done + 1, len(segments) + 1),
             "previous": range(done, len(segments)),
-            **{key: [segment[key] for segment in left] for key in ("ensemble", "from", "to", "steps")},
+            **{
+                key: [segment[key] for segment in left]
+                for key in ("ensemble", "from", "to", "steps")
+            },
         }
         run_lammps("glass.in", workspace, variables, on_step)
     end = load_data(workspace / "glass.data", elements)
@@ -173,19 +190,28 @@ def schedule(settings: GlassSettings, segment_steps: int) -> list[dict]:
         {"ensemble": "nvt", "from": melt, "to": melt, "steps": steps(0.7 * settings.melt_ps)},
     ]
     segments += [
-        {"ensemble": "npt", "from": high, "to": low, "steps": steps(quench_ps / parts)} for high, low in pairwise(ramp)
+        {"ensemble": "npt", "from": high, "to": low, "steps": steps(quench_ps / parts)}
+        for high, low in pairwise(ramp)
     ]
-    return [*segments, {"ensemble": "npt", "from": end, "to": end, "steps": steps(settings.rest_ps)}]
+    return [
+        *segments,
+        {"ensemble": "npt", "from": end, "to": end, "steps": steps(settings.rest_ps)},
+    ]
 
 
 def density_g_cm3(atoms: Atoms, force: ForceField) -> float:
     """Density of a periodic cell."""
     masses_u = np.array([force.masses_u[element] for element in atoms.elements])
-    return float(masses_u[atoms.types - 1].sum()) / AVOGADRO / (float(np.prod(atoms.cell_A)) * 1e-24)
+    return (
+        float(masses_u[atoms.types - 1].sum()) / AVOGADRO / (float(np.prod(atoms.cell_A)) * 1e-24)
+    )
 
 
-def unlike_neighbours(atoms: Atoms, kind: np.ndarray, reach_A: float) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of atoms of different kinds within a distance, shape (pairs, 2), and their distances (Å).
+def unlike_neighbours(
+    atoms: Atoms, kind: np.ndarray, reach_A: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of atoms of different kinds within a distance, shape (pairs, 2), and their distances
+    (Å).
 
     Parameters
     ----------
@@ -200,11 +226,18 @@ def unlike_neighbours(atoms: Atoms, kind: np.ndarray, reach_A: float) -> tuple[n
 
 
 def glass_properties(material: Material, potential: Potential, atoms: Atoms) -> dict:
-    """Density, coordination and bond length of a glass, with the gate that compares them to its material file."""
+    """Density, coordination and bond length of a glass, with the gate that compares them to its
+    material file.
+    """
     reference: OxideGlass = material.part("oxide_glass")
-    formula, sources = material.formula_text, "; ".join(material.sources[name] for name in reference.sources)
+    formula, sources = (
+        material.formula_text,
+        "; ".join(material.sources[name] for name in reference.sources),
+    )
     density = density_g_cm3(atoms, potential)
-    is_cation = np.isin(atoms.types, [atoms.elements.index(ion) + 1 for ion in cations(material, potential)])
+    is_cation = np.isin(
+        atoms.types, [atoms.elements.index(ion) + 1 for ion in cations(material, potential)]
+    )
     _, r = unlike_neighbours(atoms, is_cation, SEARCHED_A)
     edges = np.arange(SHORTEST_BOND_A, SEARCHED_A, 0.02)
     middle = 0.5 * (edges[1:] + edges[:-1])

@@ -1,4 +1,6 @@
-"""Made-up curves and witnesses of closings, of which the hardness is known: for hard cases and tests."""
+"""Made-up curves and witnesses of closings, of which the hardness is known: for hard cases and
+tests.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -18,7 +20,10 @@ def contact_length_nm(travel_nm: np.ndarray = TRAVEL_NM) -> np.ndarray:
 
 
 def curve(
-    stress: Callable[[float], float], length: np.ndarray | None = None, temperature: float = 300.0, drift: float = 0.0
+    stress: Callable[[float], float],
+    length: np.ndarray | None = None,
+    temperature: float = 300.0,
+    drift: float = 0.0,
 ) -> Rows:
     """Rows of a curve.
 
@@ -44,13 +49,16 @@ def curve(
     ]
 
 
-def witness(onset: float = 0.8, background: int = 2, after: int = 40, lowering: float = 0.1) -> Rows:
+def witness(
+    onset: float = 0.8, background: int = 2, after: int = 40, lowering: float = 0.1
+) -> Rows:
     """Rows of a witness: a snapshot every 0.1 nm.
 
     Parameters
     ----------
     onset : travel from which bonds are exchanged and the top stays lower, nm.
-    background, after : bonds exchanged between snapshots before the onset, and how many more after it.
+    background, after : bonds exchanged between snapshots before the onset, and how many more after
+        it.
     lowering : of the top, nm.
     """
     rows = []

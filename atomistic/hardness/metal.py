@@ -1,7 +1,8 @@
-"""A metal below an oxide film: its embedded-atom potential for LAMMPS, and dense bodies of many grains.
+"""A metal below an oxide film: its embedded-atom potential for LAMMPS, and dense bodies of many
+grains.
 
-The functions are those of X. W. Zhou, R. A. Johnson and H. N. G. Wadley, Phys. Rev. B 69, 144113 (2004).
-"""
+The functions are those of X. W. Zhou, R. A. Johnson and H. N. G. Wadley, Phys. Rev. B 69, 144113
+(2004)."""
 
 import io
 from collections.abc import Mapping
@@ -26,10 +27,12 @@ class MetalNumerics:
 
     Attributes
     ----------
-    points, cutoff_A : of the tables; all functions of titanium are below 2e-6 eV at 7 Å; at the authors' 6.56 Å lies a
+    points, cutoff_A : of the tables; all functions of titanium are below 2e-6 eV at 7 Å; at the
+        authors' 6.56 Å lies a
         shell of neighbours.
     most_density : end of the table of embedding, over the density of the crystal.
-    too_near : of the nearest distance: of two atoms of different grains that are nearer one is left out.
+    too_near : of the nearest distance: of two atoms of different grains that are nearer one is left
+        out.
     anneal_K, anneal_ps, final_K, timestep_fs : of the anneal.
     max_strain : of the dense body, brought to the width of the asperity.
     annealed_density : of grains after the anneal, over the crystal at 0 K (study `hardness.metal`).
@@ -73,7 +76,9 @@ def embedding_energy(eam: Eam, density: np.ndarray) -> np.ndarray:
     middle = np.polyval(eam.F_middle_eV[::-1], density / eam.rho - 1)
     power = np.maximum(density / eam.rho, 1e-9) ** eam.eta
     outer = eam.F_outer_eV * (1 - np.log(power)) * power
-    return np.where(density < 0.85 * eam.rho, inner, np.where(density < 1.15 * eam.rho, middle, outer))
+    return np.where(
+        density < 0.85 * eam.rho, inner, np.where(density < 1.15 * eam.rho, middle, outer)
+    )
 
 
 @dataclass(frozen=True)
@@ -100,32 +105,48 @@ class Metal(Base):
 
     def commands(self, above: int) -> list[str]:
         """Commands of its own atoms, type 1."""
-        return [f"pair_coeff * * eam/alloy metal.eam {' '.join([*self.elements, *['NULL'] * above])}"]
+        return [
+            f"pair_coeff * * eam/alloy metal.eam {' '.join([*self.elements, *['NULL'] * above])}"
+        ]
 
     def tables(self) -> dict[str, str]:
         """The potential for LAMMPS's `pair_style eam/alloy`."""
         eam = self.eam
         count, end_A = METAL.points, METAL.cutoff_A
-        density, r = np.linspace(0, METAL.most_density * eam.rho, count), np.linspace(0, end_A, count)
+        density, r = (
+            np.linspace(0, METAL.most_density * eam.rho, count),
+            np.linspace(0, end_A, count),
+        )
         text = io.StringIO()
         text.write(f"{self.material.name}\n{eam.source}\n\n1 {self.elements[0]}\n")
-        text.write(f"{count} {density[1]:.16g} {count} {r[1]:.16g} {end_A}\n0 {eam.mass_u} {eam.r_A} any\n")
+        text.write(
+            f"{count} {density[1]:.16g} {count} {r[1]:.16g} {end_A}\n0 {eam.mass_u} {eam.r_A} any\n"
+        )
         np.savetxt(text, embedding_energy(eam, density), fmt="%.16g")
         np.savetxt(text, electron_density(eam, r), fmt="%.16g")
         np.savetxt(text, r * pair_energy(eam, r), fmt="%.16g")
         return {"metal.eam": text.getvalue()}
 
-    def make(self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
-        """A cube of grains as wide as the asperity, annealed at zero pressure and cooled to 300 K in the same time.
+    def make(
+        self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None
+    ) -> Atoms:
+        """A cube of grains as wide as the asperity, annealed at zero pressure and cooled to 300 K
+        in the same time.
 
-        Grain boundaries are cut too wide and close in the anneal, so that the cube starts wider than it comes out.
+        Grain boundaries are cut too wide and close in the anneal, so that the cube starts wider
+        than it comes out.
 
         Raises
         ------
-        InputError : the material has no potential or no grains, or its cube came out of another width than foreseen.
-        """
+        InputError : the material has no potential or no grains, or its cube came out of another
+            width than foreseen."""
         wide_A, segments = tiles * edge_A, _segments()
-        identity = {"metal": self.material.model_dump(), "edge": wide_A, "seed": seed, "segments": segments}
+        identity = {
+            "metal": self.material.model_dump(),
+            "edge": wide_A,
+            "seed": seed,
+            "segments": segments,
+        }
         body = run_segments(
             LammpsFolder(work, identity, "glass.in"),
             self,
@@ -140,8 +161,9 @@ class Metal(Base):
         factor = wide_A / body.cell_A[0]
         if abs(factor - 1) > METAL.max_strain:
             raise InputError(
-                f"{self.material.name}: its cube would be strained by {factor - 1:+.1%} to the {wide_A:.1f} A of the "
-                f"asperity (gate {METAL.max_strain:.0%}); take a wider asperity (tiles)"
+                f"{self.material.name}: its cube would be strained by {factor - 1:+.1%} to the"
+                f" {wide_A:.1f} A of the asperity (gate {METAL.max_strain:.0%}); take a wider"
+                " asperity (tiles)"
             )
         return replace(body, positions_A=factor * body.positions_A, cell_A=factor * body.cell_A)
 
@@ -156,7 +178,8 @@ def crystal(metal: Metal, repeats: tuple[int, int, int]) -> Atoms:
 
 
 def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms:
-    """A cube of grains of random places and orientations (Voronoi cells); dense only after `annealed`.
+    """A cube of grains of random places and orientations (Voronoi cells); dense only after
+    `annealed`.
 
     Parameters
     ----------
@@ -165,7 +188,9 @@ def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms
     rng = np.random.default_rng(np.random.SeedSequence([seed, 41]))
     grains = max(1, round(edge_A**3 / (np.pi / 6 * grain_A**3)))
     centres = rng.uniform(0, edge_A, (grains, 3))
-    images = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3) * edge_A
+    images = (
+        np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3) * edge_A
+    )
     nearest = KDTree((centres[:, None] + images).reshape(-1, 3))
     reach = min(3 * grain_A, 0.9 * edge_A)  # of a grain from its centre
     cells = np.ceil(2 * reach / crystal(metal, (1, 1, 1)).cell_A).astype(int)
@@ -189,13 +214,18 @@ def _segments() -> list[dict[str, Any]]:
         (METAL.anneal_K, METAL.final_K, steps),
         (METAL.final_K, METAL.final_K, steps // 3),
     ]
-    return [{"ensemble": "npt", "from": start, "to": end, "steps": count} for start, end, count in parts]
+    return [
+        {"ensemble": "npt", "from": start, "to": end, "steps": count} for start, end, count in parts
+    ]
 
 
 def _wide_enough(metal: Metal, edge_A: float, seed: int) -> Atoms:
     """Grains in a cube whose atoms fill one of `edge_A` once they are dense."""
     assert metal.below_films.grain_nm is not None  # of a Material
-    grain_A, volume_A3 = 10 * metal.below_films.grain_nm, 1e3 / (metal.atoms_per_nm3 * METAL.annealed_density)
+    grain_A, volume_A3 = (
+        10 * metal.below_films.grain_nm,
+        1e3 / (metal.atoms_per_nm3 * METAL.annealed_density),
+    )
     start_A, atoms = edge_A, polycrystal(metal, edge_A, grain_A, seed)
     for _ in range(METAL.widenings):
         start_A *= edge_A / (len(atoms) * volume_A3) ** (1 / 3)

@@ -13,9 +13,16 @@ from atomistic.potentials import ForceField
 
 
 def free_motion(
-    atoms: Atoms, potential: ForceField, work: Path, timestep_fs: float, steps: int, energy_scale: float = 1.0
+    atoms: Atoms,
+    potential: ForceField,
+    work: Path,
+    timestep_fs: float,
+    steps: int,
+    energy_scale: float = 1.0,
 ) -> tuple[np.ndarray, Atoms]:
-    """Run at constant energy; rows (step, potential, total energy in eV), and the atoms at the end."""
+    """Run at constant energy; rows (step, potential, total energy in eV), and the atoms at the
+    end.
+    """
     shutil.rmtree(work, ignore_errors=True)
     workspace = LammpsFolder(work, {}, "nve.in")
     write_forcefield(workspace, potential, atoms.elements, energy_scale)
@@ -28,7 +35,10 @@ def free_motion(
         "every": max(1, steps // 50),
     }
     run_lammps("nve.in", workspace, variables)
-    record, end = load_averages(workspace / "energy.dat"), load_data(workspace / "end.data", atoms.elements)
+    record, end = (
+        load_averages(workspace / "energy.dat"),
+        load_data(workspace / "end.data", atoms.elements),
+    )
     workspace.remove()
     return record, end
 

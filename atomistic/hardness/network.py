@@ -1,7 +1,8 @@
-"""A covalent glass below an oxide film: silicon nitride by its Tersoff potential, melted and quenched.
+"""A covalent glass below an oxide film: silicon nitride by its Tersoff potential, melted and
+quenched.
 
-The schedule is that of the elastic stage (`atomistic/elastic/networks.py`), in cells as wide as those of the oxide.
-"""
+The schedule is that of the elastic stage (`atomistic/elastic/networks.py`), in cells as wide as
+those of the oxide."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -49,28 +50,42 @@ class Network(Base):
     @property
     def atoms_per_nm3(self) -> float:
         """At the density of its start."""
-        unit_u = sum(count * self.network.masses_u[element] for element, count in self.material.formula.items())
+        unit_u = sum(
+            count * self.network.masses_u[element]
+            for element, count in self.material.formula.items()
+        )
         atoms = sum(self.material.formula.values())
         return atoms * self.network.start_density_g_cm3 * AVOGADRO / unit_u * 1e-21
 
     def commands(self, above: int) -> list[str]:
         """Commands of its own atoms, the first types."""
         types = " ".join([*self.elements, *["NULL"] * above])
-        return [f"pair_coeff * * tersoff base.tersoff {types}", *core_commands(self.network.cores, self.elements)]
+        return [
+            f"pair_coeff * * tersoff base.tersoff {types}",
+            *core_commands(self.network.cores, self.elements),
+        ]
 
     def tables(self) -> dict[str, str]:
         """The Tersoff potential."""
         return {"base.tersoff": tersoff_table(self.network.tersoff)}
 
-    def make(self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
-        """A cell as wide as one of the oxide's glass, its height at zero pressure and 300 K; resumes in `work`.
+    def make(
+        self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None
+    ) -> Atoms:
+        """A cell as wide as one of the oxide's glass, its height at zero pressure and 300 K;
+        resumes in `work`.
 
         Raises
         ------
         InputError : its density or coordination is not that of the material's file.
         """
         segments = _segments()
-        identity = {"network": self.material.model_dump(), "edge": edge_A, "seed": seed, "segments": segments}
+        identity = {
+            "network": self.material.model_dump(),
+            "edge": edge_A,
+            "seed": seed,
+            "segments": segments,
+        }
         glass = run_segments(
             LammpsFolder(work, identity, "glass.in"),
             self,
@@ -83,7 +98,10 @@ class Network(Base):
             progress,
         )
         if reasons := self.faults(glass):
-            raise InputError(f"{self.material.name}: {'; '.join(reasons)}; take another seed or a wider glass cell")
+            raise InputError(
+                f"{self.material.name}: {'; '.join(reasons)}; take another seed or a wider glass"
+                " cell"
+            )
         return glass
 
     def _random_start(self, edge_A: float, seed: int) -> Atoms:
@@ -93,10 +111,17 @@ class Network(Base):
         rng = np.random.default_rng(np.random.SeedSequence([seed, 47]))
         cell = np.full(3, edge_A)
         places = random_places(sum(counts), cell, NEAREST_START_A, rng)
-        return Atoms(self.elements, rng.permutation(np.repeat(np.arange(1, len(counts) + 1), counts)), places, cell)
+        return Atoms(
+            self.elements,
+            rng.permutation(np.repeat(np.arange(1, len(counts) + 1), counts)),
+            places,
+            cell,
+        )
 
     def properties(self, glass: Atoms) -> dict[str, float]:
-        """Density (g/cm3), median bond of unlike atoms (Å), and the mean coordination of each element by them."""
+        """Density (g/cm3), median bond of unlike atoms (Å), and the mean coordination of each
+        element by them.
+        """
         bonds, lengths_A = unlike_neighbours(glass, glass.types, self.network.cutoff_A)
         neighbours = np.bincount(bonds.ravel(), minlength=len(glass))
         return {
@@ -111,7 +136,9 @@ class Network(Base):
     def faults(self, glass: Atoms) -> list[str]:
         """What of a glass is not as its material's file says."""
         measured, accepted = self.properties(glass), {"density_g_cm3": self.network.density_g_cm3}
-        accepted |= {f"coordination_{element}": of for element, of in self.network.coordination.items()}
+        accepted |= {
+            f"coordination_{element}": of for element, of in self.network.coordination.items()
+        }
         return [
             f"{name} {measured[name]:.3g} outside {low:g} to {high:g}"
             for name, (low, high) in accepted.items()
@@ -120,7 +147,9 @@ class Network(Base):
 
 
 def _segments() -> list[dict[str, Any]]:
-    """Melt and quench, as `run_segments` takes them: at constant volume, then the height is free."""
+    """Melt and quench, as `run_segments` takes them: at constant volume, then the height is
+    free.
+    """
     melt, free, end = QUENCH.melt_K, QUENCH.free_below_K, QUENCH.final_K
     parts = [
         ("nvt", 1.5 * melt, melt, 0.2 * QUENCH.melt_ps),
@@ -130,6 +159,11 @@ def _segments() -> list[dict[str, Any]]:
         ("npt_height", end, end, QUENCH.rest_ps),
     ]
     return [
-        {"ensemble": ensemble, "from": start, "to": end, "steps": round(1000 * duration_ps / QUENCH.timestep_fs)}
+        {
+            "ensemble": ensemble,
+            "from": start,
+            "to": end,
+            "steps": round(1000 * duration_ps / QUENCH.timestep_fs),
+        }
         for ensemble, start, end, duration_ps in parts
     ]

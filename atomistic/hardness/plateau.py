@@ -1,8 +1,7 @@
 """Hardness of one closing run: plastic onset, plateau stress, and the reasons to refuse.
 
-Hardness is the mean contact stress of the plateau beyond a *witnessed* onset of plasticity (bonds exchanged
-and a top that stays lower after unloading).
-"""
+Hardness is the mean contact stress of the plateau beyond a *witnessed* onset of plasticity (bonds
+exchanged and a top that stays lower after unloading)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -17,24 +16,33 @@ Rows = Sequence[Mapping[str, float]]
 
 @dataclass(frozen=True)
 class Rules:
-    """What counts as yield, when a run may end, and which film does not count: its gates are lengths of bonds.
+    """What counts as yield, when a run may end, and which film does not count: its gates are
+    lengths of bonds.
 
     The error rates of study `hardness.detection` fix all that is no gate of a film.
 
     Attributes
     ----------
-    min_length_nm, max_area_fraction : contact length, and area over cell area, between which stress is judged.
-    min_exchanges, min_lowering_A : changed bonds above the background, and lasting lowering, that witness plasticity.
+    min_length_nm, max_area_fraction : contact length, and area over cell area, between which stress
+        is judged.
+    min_exchanges, min_lowering_A : changed bonds above the background, and lasting lowering, that
+        witness plasticity.
     min_points : averages beyond the onset.
     max_exponent : largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic.
-    stop_interval, stop_points, stop_area_fraction : a run has settled once half the 68 % interval of its plateau is
-        this share of it, with as many averages, on this share of the cell (a larger asperity is to give a larger one).
-    max_drift_meV_atom_ps, max_warming_K : largest drift of the conserved energy, largest rise of temperature.
-    latest_start : of as many parts of the averages beyond the onset, the first is the last to hold the plateau's start.
+    stop_interval, stop_points, stop_area_fraction : a run has settled once half the 68 % interval
+        of its plateau is
+        this share of it, with as many averages, on this share of the cell (a larger asperity is to
+        give a larger one).
+    max_drift_meV_atom_ps, max_warming_K : largest drift of the conserved energy, largest rise of
+        temperature.
+    latest_start : of as many parts of the averages beyond the onset, the first is the last to hold
+        the plateau's start.
     clearly_more : times the independent averages.
-    same_shape : contact length over wavelength: runs of one shape are alike there, whatever their size.
+    same_shape : contact length over wavelength: runs of one shape are alike there, whatever their
+        size.
     least_covered : share of the base below a film.
-    largest_gap_A : between film and base, less in 95 % of the columns of atoms: twice a bond of metal and oxygen.
+    largest_gap_A : between film and base, less in 95 % of the columns of atoms: twice a bond of
+        metal and oxygen.
     largest_slip_A : of a film over its base below the contact, at the end: one bond.
     """
 
@@ -62,14 +70,17 @@ RULES = Rules()
 
 @dataclass(frozen=True)
 class Hardness:
-    """What a run says about hardness; stresses in GPa, lengths in nm, NaN where there is nothing to say.
+    """What a run says about hardness; stresses in GPa, lengths in nm, NaN where there is nothing to
+    say.
 
     Attributes
     ----------
     status : yield, no_yield, or "rejected: why".
-    sound : whether energy, temperature, film and range of contact are as they must be, whatever became of the plateau.
+    sound : whether energy, temperature, film and range of contact are as they must be, whatever
+        became of the plateau.
     plateau_exponent : n of stress ~ length^n on the plateau.
-    same_shape_GPa, same_shape_length_nm : mean stress and contact length where the contact is `Rules.same_shape`
+    same_shape_GPa, same_shape_length_nm : mean stress and contact length where the contact is
+        `Rules.same_shape`
         of the wavelength wide.
     """
 
@@ -102,8 +113,8 @@ class Onset:
     """Where plasticity is first witnessed.
 
     background : bond exchanges per snapshot before contact; NaN without such a snapshot.
-    exchanges, p_value : those of the onset's snapshot, and the chance of as many without plasticity.
-    """
+    exchanges, p_value : those of the onset's snapshot, and the chance of as many without
+        plasticity."""
 
     displacement_nm: float | None
     background: float
@@ -111,16 +122,21 @@ class Onset:
     p_value: float = float("nan")
 
 
-def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES, by_bonds: bool = True) -> Onset:
-    """First witness of plasticity among the relaxed snapshots; the bodies are apart for the first `apart_nm` of travel.
+def plastic_onset(
+    witness: Rows, apart_nm: float, rules: Rules = RULES, by_bonds: bool = True
+) -> Onset:
+    """First witness of plasticity among the relaxed snapshots; the bodies are apart for the first
+    `apart_nm` of travel.
 
-    The top must stay `min_lowering_A` lower than in the last snapshot before contact, from then on. Where a metal lies
-    below this is all (`by_bonds` False): its grain boundaries change neighbours at rest too.
+    The top must stay `min_lowering_A` lower than in the last snapshot before contact, from then on.
+    Where a metal lies below this is all (`by_bonds` False): its grain boundaries change neighbours
+    at rest too.
 
-    The background is the number of new exchanges on the travel before contact; after a longer travel a snapshot has
-    proportionally more.  The onset is the first snapshot with `min_exchanges` more new exchanges than the background
-    and its two-sigma Poisson noise allow.  Its p value is that of the exact test for two Poisson rates (Przyborowski
-    and Wilenski 1940), which knows that the background is an estimate.
+    The background is the number of new exchanges on the travel before contact; after a longer
+    travel a snapshot has proportionally more.  The onset is the first snapshot with `min_exchanges`
+    more new exchanges than the background and its two-sigma Poisson noise allow.  Its p value is
+    that of the exact test for two Poisson rates (Przyborowski and Wilenski 1940), which knows that
+    the background is an estimate.
 
     Returns
     -------
@@ -138,7 +154,11 @@ def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES, by_bonds
     exposure = float(np.sum(travel[before]))
     background = float(np.sum(new[before])) / exposure
     expected = background * travel
-    limit = expected + np.maximum(rules.min_exchanges, 2 * np.sqrt(expected)) if by_bonds else np.zeros(len(new))
+    limit = (
+        expected + np.maximum(rules.min_exchanges, 2 * np.sqrt(expected))
+        if by_bonds
+        else np.zeros(len(new))
+    )
     lowering -= lowering[apart][-1]
     lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= rules.min_lowering_A
     onsets = np.flatnonzero((new >= limit) & lasting & ~apart)
@@ -170,23 +190,37 @@ def find_hardness(
     curve, witness : rows of `Closing.curve` and `Closing.witness`.
     cell_area_nm2 : cross-section of the simulation cell.
     approach_nm : travel before a flat can touch.
-    on_base : a base, or a film on one: stress that changes with the contact is what its law describes, so that no
+    on_base : a base, or a film on one: stress that changes with the contact is what its law
+        describes, so that no
         plateau is asked for.
     """
     if len(curve) < rules.min_points:
-        return Hardness(f"rejected: a curve of {len(curve)} averages; {rules.min_points} are needed")
+        return Hardness(
+            f"rejected: a curve of {len(curve)} averages; {rules.min_points} are needed"
+        )
     column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
-    length, stress, travel = (column["contact_length_nm"], column["contact_stress_GPa"], column["displacement_nm"])
+    length, stress, travel = (
+        column["contact_length_nm"],
+        column["contact_stress_GPa"],
+        column["displacement_nm"],
+    )
     elapsed_ps = column["time_ps"][-1] - column["time_ps"][0]
     drift = float(np.max(np.abs(column["energy_drift_meV_per_atom"])) / elapsed_ps)
     temperature = column["temperature_K"]
     warming = float(np.max(temperature) - np.mean(temperature[:4]))
     fraction = column["contact_area_nm2"] / cell_area_nm2
-    # what comes back after the contact was too wide is not used; one that shrinks for a moment goes on
-    window = (length >= rules.min_length_nm) & (np.maximum.accumulate(fraction) <= rules.max_area_fraction)
+    # what comes back after the contact was too wide is not used; one that shrinks for a moment goes
+    # on
+    window = (length >= rules.min_length_nm) & (
+        np.maximum.accumulate(fraction) <= rules.max_area_fraction
+    )
     apart = np.max(travel[np.cumsum(fraction) == 0], initial=approach_nm)
     onset = plastic_onset(witness, float(apart), rules, by_bonds=not on_base)
-    measured: dict[str, Any] = {"drift_meV_atom_ps": drift, "warming_K": warming, "exchanges_before": onset.background}
+    measured: dict[str, Any] = {
+        "drift_meV_atom_ps": drift,
+        "warming_K": warming,
+        "exchanges_before": onset.background,
+    }
     # also where it is no number
     if not drift <= rules.max_drift_meV_atom_ps:
         return Hardness(f"rejected: energy drifts by {drift:.2g} meV per atom and ps", **measured)
@@ -200,7 +234,10 @@ def find_hardness(
         measured["same_shape_GPa"] = float(np.mean(stress[alike]))
         measured["same_shape_length_nm"] = float(np.mean(length[alike]))
     if np.isnan(onset.background):
-        return Hardness("rejected: no snapshot before contact, so that exchanged bonds have no background", **measured)
+        return Hardness(
+            "rejected: no snapshot before contact, so that exchanged bonds have no background",
+            **measured,
+        )
     start = onset.displacement_nm
     if start is None:
         return Hardness("no_yield", **measured)
@@ -211,11 +248,15 @@ def find_hardness(
         "onset_length_nm": float(np.interp(start, travel, length)),
         "exchanges_at_onset": onset.exchanges,
         "onset_p_value": onset.p_value,
-        "exchanges_after": float(np.mean([row["new_exchanges"] for row in witness if row["displacement_nm"] >= start])),
+        "exchanges_after": float(
+            np.mean([row["new_exchanges"] for row in witness if row["displacement_nm"] >= start])
+        ),
         "lowering_nm": float(last["lowering_nm"]),
     }
     if np.sum(beyond) < rules.min_points:
-        return Hardness("rejected: too few averages between onset and the end of the window", **measured)
+        return Hardness(
+            "rejected: too few averages between onset and the end of the window", **measured
+        )
     first = 0 if on_base else settled(stress[beyond])
     plateau, lengths = stress[beyond][first:], length[beyond][first:]
     exponent = _exponent(lengths, plateau)
@@ -254,14 +295,18 @@ def may_stop(
     rules: Rules = RULES,
     on_base: bool = False,
 ) -> bool:
-    """Is a run complete: has the contact left its window, or is the interval of its plateau narrow enough?
+    """Is a run complete: has the contact left its window, or is the interval of its plateau narrow
+    enough?
 
     Parameters
     ----------
     stop : settled, or window: only at the end of the window.
     on_base : of `find_hardness`.
     """
-    fraction = np.array([float(row["contact_area_nm2"]) for row in curve[-rules.min_points :]]) / cell_area_nm2
+    fraction = (
+        np.array([float(row["contact_area_nm2"]) for row in curve[-rules.min_points :]])
+        / cell_area_nm2
+    )
     if np.all(fraction > rules.max_area_fraction):
         return True
     if stop == "window" or fraction[-1] < rules.stop_area_fraction:
@@ -274,8 +319,18 @@ def may_stop(
 
 def point(curve: Rows, witness: Rows, run: Mapping[str, Any], potential: str) -> dict[str, Any]:
     """Row of points.csv of a run, given its summary `run` and the name of its potential."""
-    copied = ("energy_scale", "asperity", "wavelength_nm", "amplitude_nm", "film_nm", "seed", "atoms")
-    hardness = find_hardness(curve, witness, run["wavelength_nm"] ** 2, on_base=run["film_nm"] is not None)
+    copied = (
+        "energy_scale",
+        "asperity",
+        "wavelength_nm",
+        "amplitude_nm",
+        "film_nm",
+        "seed",
+        "atoms",
+    )
+    hardness = find_hardness(
+        curve, witness, run["wavelength_nm"] ** 2, on_base=run["film_nm"] is not None
+    )
     if run["film_nm"] and (fault := film_fault(run)):
         hardness = replace(hardness, status=f"rejected: {fault}", sound=False)
     return {
@@ -296,11 +351,20 @@ def film_fault(summary: Mapping[str, Any], rules: Rules = RULES) -> str | None:
     summary : of a run, with what `film_properties` found.
     """
     if summary["covered_share"] < rules.least_covered:
-        return f"the film covers {summary['covered_share']:.0%} of its base (gate {rules.least_covered:.0%})"
+        return (
+            f"the film covers {summary['covered_share']:.0%} of its base (gate"
+            f" {rules.least_covered:.0%})"
+        )
     if summary["gap_95_A"] > rules.largest_gap_A:
-        return f"a gap of {summary['gap_95_A']:.1f} A between film and base (gate {rules.largest_gap_A:g} A)"
+        return (
+            f"a gap of {summary['gap_95_A']:.1f} A between film and base (gate"
+            f" {rules.largest_gap_A:g} A)"
+        )
     if summary["slid_A"] > rules.largest_slip_A:
-        return f"the film slid by {summary['slid_A']:.1f} A over its base (gate {rules.largest_slip_A:g} A)"
+        return (
+            f"the film slid by {summary['slid_A']:.1f} A over its base (gate"
+            f" {rules.largest_slip_A:g} A)"
+        )
     return None
 
 
@@ -312,11 +376,12 @@ def _exponent(length: np.ndarray, stress: np.ndarray) -> float:
 
 
 def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
-    """68 % interval of the mean of correlated values: Student's t with the effective number of a first-order process.
+    """68 % interval of the mean of correlated values: Student's t with the effective number of a
+    first-order process.
 
-    The correlation of neighbours is corrected for its bias in short series (Kendall 1954).  How often the interval
-    holds the truth, also after stopping on its width, is tested (study `hardness.detection`).
-    """
+    The correlation of neighbours is corrected for its bias in short series (Kendall 1954).  How
+    often the interval holds the truth, also after stopping on its width, is tested (study
+    `hardness.detection`)."""
     if len(values) < 2 or np.ptp(values) == 0:
         return float(np.mean(values)), float(np.mean(values))
     from scipy.special import stdtrit
@@ -329,12 +394,13 @@ def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
 def settled(stress: np.ndarray) -> int:
     """Where the plateau begins: bonds break before the stress has stopped rising.
 
-    The start that leaves the most independent averages (Chodera, J. Chem. Theory Comput. 12, 1799, 2016,
-    doi:10.1021/acs.jctc.5b00784), if it leaves clearly more: else noise would choose, and the interval would be too
-    narrow.  A start beyond the first third would make plateaus of the ends of elastic curves.  Both by the rates of
-    study `hardness.detection`.
-    """
-    independent = [_effective_number(stress[start:]) for start in range(len(stress) // RULES.latest_start + 1)]
+    The start that leaves the most independent averages (Chodera, J. Chem. Theory Comput. 12, 1799,
+    2016, doi:10.1021/acs.jctc.5b00784), if it leaves clearly more: else noise would choose, and the
+    interval would be too narrow.  A start beyond the first third would make plateaus of the ends of
+    elastic curves.  Both by the rates of study `hardness.detection`."""
+    independent = [
+        _effective_number(stress[start:]) for start in range(len(stress) // RULES.latest_start + 1)
+    ]
     best = int(np.argmax(independent))
     return best if independent[best] > RULES.clearly_more * independent[0] else 0
 

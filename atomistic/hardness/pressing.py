@@ -40,20 +40,29 @@ class Plan:
 
 def plan_closing(closing: ClosingSettings, run: ClosingRun, protocol: Protocol = PROTOCOL) -> Plan:
     """Divide the run into samples (for averages) and segments (for restart files)."""
-    timestep = protocol.timestep_fs / 1000 / np.sqrt(run.energy_scale)  # the same share of a vibration's period
+    timestep = (
+        protocol.timestep_fs / 1000 / np.sqrt(run.energy_scale)
+    )  # the same share of a vibration's period
     anneal = round(closing.anneal_ps / timestep)
-    travel = 10 * protocol.approach_nm + 10 * protocol.depth_over_amplitude * run.asperity.amplitude_nm
+    travel = (
+        10 * protocol.approach_nm + 10 * protocol.depth_over_amplitude * run.asperity.amplitude_nm
+    )
     speed = closing.speed_m_s / 100
     per_sample = protocol.averaged_travel_A / protocol.samples / (speed * timestep)
     sample = max(5, 5 * round(per_sample / 5))
-    # rounded down: a segment as long as the approach ends before contact, where its bonds are the background
+    # rounded down: a segment as long as the approach ends before contact, where its bonds are the
+    # background
     segment = sample * max(1, int(10 * protocol.segment_nm / (sample * speed * timestep) + 1e-9))
     segments = int(np.ceil(travel / (segment * speed * timestep) - 1e-9))
     return Plan(timestep, speed, sample, segment, segments, anneal)
 
 
-def base_thickness_nm(closing: ClosingSettings, wavelength_nm: float, protocol: Protocol = PROTOCOL) -> float:
-    """Thickness of the base under an asperity, so that the rigid bottom is not felt by the largest contact."""
+def base_thickness_nm(
+    closing: ClosingSettings, wavelength_nm: float, protocol: Protocol = PROTOCOL
+) -> float:
+    """Thickness of the base under an asperity, so that the rigid bottom is not felt by the largest
+    contact.
+    """
     largest_nm = np.sqrt(RULES.max_area_fraction) * wavelength_nm
     return max(closing.base_nm, protocol.base_over_contact * float(largest_nm))
 
@@ -104,7 +113,9 @@ def prepare_body(
 
 
 def lammps_seed(*entropy: int) -> int:
-    """A seed that LAMMPS accepts; neighbouring ones (it adds the segment's number) stay distinct."""
+    """A seed that LAMMPS accepts; neighbouring ones (it adds the segment's number) stay
+    distinct.
+    """
     return 1000 * (1 + int(np.random.SeedSequence(entropy).generate_state(1)[0] % 800_000))
 
 
@@ -137,7 +148,10 @@ def press_body(
 
     def on_step(step: int) -> None:
         if progress is not None:
-            progress((2 * plan.anneal_steps + step) / plan.total_steps, f"closing, {step * plan.timestep:.0f} ps")
+            progress(
+                (2 * plan.anneal_steps + step) / plan.total_steps,
+                f"closing, {step * plan.timestep:.0f} ps",
+            )
 
     variables = {
         "data": "annealed.data",
@@ -158,5 +172,7 @@ def press_body(
         reached += 1
         if workspace.segments_done(reached) < reached:
             of_segment = {"segment": reached, "previous": reached - 1}
-            run_lammps("closing.in", workspace, {**variables, **of_segment}, on_step, closing.processes)
+            run_lammps(
+                "closing.in", workspace, {**variables, **of_segment}, on_step, closing.processes
+            )
     return cell, replace(plan, segments=reached)

@@ -31,7 +31,9 @@ class PressedCell:
 
 @dataclass(frozen=True)
 class OxideBond:
-    """What joins cation and anion, by their types in a body; `length_A` is the first minimum of their g(r)."""
+    """What joins cation and anion, by their types in a body; `length_A` is the first minimum of
+    their g(r).
+    """
 
     cation: int
     anion: int
@@ -56,7 +58,9 @@ class Sample:
 
 @dataclass(frozen=True)
 class Relaxed:
-    """A snapshot relaxed without its counterface, with its bonds shorter than 0.9 and 1.2 of `OxideBond.length_A`."""
+    """A snapshot relaxed without its counterface, with its bonds shorter than 0.9 and 1.2 of
+    `OxideBond.length_A`.
+    """
 
     step: int
     frame: Frame
@@ -82,7 +86,11 @@ class Readout:
         cell: PressedCell,
         bond: OxideBond | None,
     ) -> None:
-        self._workspace, self._segment_steps, self._timestep_ps = workspace, segment_steps, timestep_ps
+        self._workspace, self._segment_steps, self._timestep_ps = (
+            workspace,
+            segment_steps,
+            timestep_ps,
+        )
         self._per_average, self.area, self._cell = per_average, area, cell
         self._bond = bond
         self._samples: dict[int, dict[int, Sample]] = {}
@@ -90,9 +98,13 @@ class Readout:
         self._relaxed: dict[int, Relaxed] = {}
 
     def curve(self, segments: range) -> Rows:
-        """Averages over some samples of force, contact area and temperature, with the energy balance."""
+        """Averages over some samples of force, contact area and temperature, with the energy
+        balance.
+        """
         samples: dict[int, Sample] = {}
-        for n in segments:  # the last step of a segment may stand in the next one again: the first one counts
+        for n in (
+            segments
+        ):  # the last step of a segment may stand in the next one again: the first one counts
             if n not in self._samples:
                 self._samples[n] = load_samples(self._workspace, n, self.area, self._cell)
             samples = self._samples[n] | samples
@@ -121,7 +133,9 @@ class Readout:
         return self._relaxed[segment]
 
 
-def load_samples(workspace: LammpsFolder, segment: int, area: Area, cell: PressedCell) -> dict[int, Sample]:
+def load_samples(
+    workspace: LammpsFolder, segment: int, area: Area, cell: PressedCell
+) -> dict[int, Sample]:
     """What a segment measured, by step."""
     near = dict(load_dump(workspace / f"near.{segment}"))
     side, axis = (cell.wavelength_A, cell.wavelength_A), (cell.axis_A, cell.axis_A)
@@ -129,48 +143,71 @@ def load_samples(workspace: LammpsFolder, segment: int, area: Area, cell: Presse
     for step, *averages in load_averages(workspace / f"averages.{segment}"):
         atoms = near[int(step)]  # id, type, x, y, z, and how far beyond the flat
         touching = atoms[atoms[:, 5] > -area.depth_A, 2:4]
-        samples[int(step)] = Sample(np.array(averages), contact_area(touching, side, area, axis), touching)
+        samples[int(step)] = Sample(
+            np.array(averages), contact_area(touching, side, area, axis), touching
+        )
     return samples
 
 
-def energy_drift(ends: Mapping[int, np.ndarray], segment_steps: int, samples: Mapping[int, Sample]) -> dict[int, float]:
+def energy_drift(
+    ends: Mapping[int, np.ndarray], segment_steps: int, samples: Mapping[int, Sample]
+) -> dict[int, float]:
     """What the energy balance gained until the end of each segment, eV by step.
 
-    The work of what moves is the only energy that may come in, the heat of the thermostats the only one that may leave.
+    The work of what moves is the only energy that may come in, the heat of the thermostats the only
+    one that may leave.
 
     Parameters
     ----------
-    ends : position, energy and heat at the ends of consecutive segments, by segment; the first is where the balance
+    ends : position, energy and heat at the ends of consecutive segments, by segment; the first is
+        where the balance
         begins.
     """
     numbers = sorted(ends)
     place, energy, heat = np.array([ends[n] for n in numbers]).T
     steps = sorted(samples)
     position, drive, _ = np.array([samples[step].averages for step in steps]).T
-    # between the samples by trapezoids, since the force rises; beyond the last before an end it is held
-    between = np.concatenate([[0.0], np.cumsum(0.5 * (drive[1:] + drive[:-1]) * (position[:-1] - position[1:]))])
+    # between the samples by trapezoids, since the force rises; beyond the last before an end it is
+    # held
+    between = np.concatenate(
+        [[0.0], np.cumsum(0.5 * (drive[1:] + drive[:-1]) * (position[:-1] - position[1:]))]
+    )
     last = np.searchsorted(steps, segment_steps * np.array(numbers[1:]), side="right") - 1
-    work = drive[0] * (place[0] - position[0]) + between[last] + drive[last] * (position[last] - place[1:])
+    work = (
+        drive[0] * (place[0] - position[0])
+        + between[last]
+        + drive[last] * (position[last] - place[1:])
+    )
     gained = energy[1:] - energy[0] + np.cumsum(heat[1:]) - work
     return dict(zip([segment_steps * n for n in numbers], [0.0, *gained.tolist()], strict=True))
 
 
 def curve_rows(
-    samples: Mapping[int, Sample], drift: Mapping[int, float], timestep_ps: float, per_average: int, cell: PressedCell
+    samples: Mapping[int, Sample],
+    drift: Mapping[int, float],
+    timestep_ps: float,
+    per_average: int,
+    cell: PressedCell,
 ) -> Rows:
     """Rows of the curve of the samples of consecutive segments.
 
     Parameters
     ----------
-    drift : of `energy_drift`; a row has the value between two ends of segments on the line through them.
-    """
+    drift : of `energy_drift`; a row has the value between two ends of segments on the line through
+        them."""
     steps = sorted(samples)
     position, force, temperature = np.array([samples[step].averages for step in steps]).T
     gained = np.interp(steps, list(drift), list(drift.values()))
     curve = []
     for k in range(0, len(steps) - per_average + 1, per_average):
-        part, averaged = slice(k, k + per_average), [samples[step] for step in steps[k : k + per_average]]
-        contact, push = float(np.mean([sample.area_A2 for sample in averaged])), float(np.mean(force[part]))
+        part, averaged = (
+            slice(k, k + per_average),
+            [samples[step] for step in steps[k : k + per_average]],
+        )
+        contact, push = (
+            float(np.mean([sample.area_A2 for sample in averaged])),
+            float(np.mean(force[part])),
+        )
         curve.append(
             {
                 "step": steps[k + per_average - 1],
@@ -180,7 +217,9 @@ def curve_rows(
                 "nominal_stress_GPa": push / cell.wavelength_A**2 * EV_PER_A3_IN_GPA,
                 "contact_area_nm2": contact / 100,
                 "contact_length_nm": float(np.sqrt(contact)) / 10,
-                "contact_stress_GPa": push / contact * EV_PER_A3_IN_GPA if contact > 0 else float("nan"),
+                "contact_stress_GPa": push / contact * EV_PER_A3_IN_GPA
+                if contact > 0
+                else float("nan"),
                 "temperature_K": float(np.mean(temperature[part])),
                 "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[part])) / cell.atoms,
                 "contact_atoms": float(np.mean([len(sample.touching_A) for sample in averaged])),
@@ -190,11 +229,13 @@ def curve_rows(
     return curve
 
 
-def witness_rows(snapshots: Sequence[Relaxed], timestep_ps: float, speed_A_ps: float, held_A: float) -> Rows:
+def witness_rows(
+    snapshots: Sequence[Relaxed], timestep_ps: float, speed_A_ps: float, held_A: float
+) -> Rows:
     """Bonds exchanged and lowering of the top since the first snapshot (no contact yet).
 
-    A bond counts as broken (formed) when its length passes from below 0.9 to above 1.2 times the first minimum
-    of g(r) (or back): bonds that flicker about one cutoff do not count.
+    A bond counts as broken (formed) when its length passes from below 0.9 to above 1.2 times the
+    first minimum of g(r) (or back): bonds that flicker about one cutoff do not count.
 
     Parameters
     ----------
@@ -222,13 +263,17 @@ def _exchanges(before: tuple[Bonds, Bonds], after: tuple[Bonds, Bonds]) -> int:
 
 
 def bonds_of(frame: Frame, bond: OxideBond | None, factor: float, wavelength_A: float) -> Bonds:
-    """Pairs of cation and anion nearer to each other than `factor` times the length of a bond, as rows of the frame."""
+    """Pairs of cation and anion nearer to each other than `factor` times the length of a bond, as
+    rows of the frame.
+    """
     if bond is None:
         return set()
     box = np.array([wavelength_A, wavelength_A, 0.0])  # 0: not periodic
     positions = frame[:, 1:4].copy()
     positions[:, :2] = np.mod(positions[:, :2], wavelength_A)
-    pairs = KDTree(positions, boxsize=box).query_pairs(factor * bond.length_A, output_type="ndarray")
+    pairs = KDTree(positions, boxsize=box).query_pairs(
+        factor * bond.length_A, output_type="ndarray"
+    )
     kinds = np.sort(frame[pairs, 0], axis=1)
     bonded = np.all(kinds == sorted((bond.cation, bond.anion)), axis=1)
     return set(map(tuple, pairs[bonded].tolist()))

@@ -1,4 +1,6 @@
-"""Which closing runs a scene asks for, and what all of them have in common (imports nothing heavy)."""
+"""Which closing runs a scene asks for, and what all of them have in common (imports nothing
+heavy).
+"""
 
 from asperity.guards.settings import Settings
 from atomistic.settings import AsperitySettings, HardnessSettings
@@ -14,21 +16,25 @@ class ClosingRun(Settings):
 
 
 class Protocol(Settings):
-    """What all closings have in common, fixed before any hardness was looked at; evidence and tests vary it.
+    """What all closings have in common, fixed before any hardness was looked at; evidence and tests
+    vary it.
 
     Attributes
     ----------
     timestep_fs : over the square root of the energy scale: softer bonds vibrate more slowly.
-    temperature_K : of the closing; the anneal of the cut surface is hotter (times the energy scale).
-    base_over_contact : thickness of the base over the largest contact; thinner is felt (study `hardness.choices`).
+    temperature_K : of the closing; the anneal of the cut surface is hotter (times the energy
+        scale).
+    base_over_contact : thickness of the base over the largest contact; thinner is felt (study
+        `hardness.choices`).
     frozen_nm, thermostat_nm : thickness of the rigid bottom, and of the Langevin layer above it.
     wall_stiffness_eV_A3 : K of a flat, F = K depth^2, times the energy scale.
     depth_over_amplitude : largest travel below the highest atom, in amplitudes.
     approach_nm : clearance at the start; bonds exchanged on this way are the background.
-    averaged_travel_A, samples : travel over which area and force are averaged, snapshots of an average.
+    averaged_travel_A, samples : travel over which area and force are averaged, snapshots of an
+        average.
     segment_nm : travel between restart files.
-    segments_per_snapshot : segments between relaxed snapshots; the first two frame one segment before contact.
-    """
+    segments_per_snapshot : segments between relaxed snapshots; the first two frame one segment
+        before contact."""
 
     timestep_fs: float = 3.0
     temperature_K: float = 300.0
@@ -45,7 +51,9 @@ class Protocol(Settings):
     segments_per_snapshot: int = 1
 
     def snapshots(self, segments: int) -> list[int]:
-        """After which of so many segments the body is relaxed: before and after the first, then regularly."""
+        """After which of so many segments the body is relaxed: before and after the first, then
+        regularly.
+        """
         return [0, *range(1, segments + 1, self.segments_per_snapshot)]
 
 
@@ -53,15 +61,18 @@ PROTOCOL = Protocol()
 
 
 def slowed(protocol: Protocol, factor: float) -> Protocol:
-    """The protocol with a shorter time step, for bodies whose bonds vibrate faster than those of the oxide."""
+    """The protocol with a shorter time step, for bodies whose bonds vibrate faster than those of
+    the oxide.
+    """
     return protocol.model_copy(update={"timestep_fs": factor * protocol.timestep_fs})
 
 
 def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
-    """Every asperity x seed x energy scale of the settings; films and their base at full energies alone.
+    """Every asperity x seed x energy scale of the settings; films and their base at full energies
+    alone.
 
-    A base keeps its energies, and oxide with halved ones is no harder than titanium: no effect of a film would be left.
-    """
+    A base keeps its energies, and oxide with halved ones is no harder than titanium: no effect of a
+    film would be left."""
     names = {1.0: "full", 0.5: "halved"}
     return [
         ClosingRun(

@@ -1,11 +1,11 @@
 """Size dependence of hardness, H(A) = H_macro + H' A^-0.25 (Kim et al. 2013, eq. 4).
 
-A series of sizes seldom identifies both parameters (`free_fit`). H_macro is therefore taken from a stated distribution,
-and H' = (H - H_macro) A^0.25 from every run.
+A series of sizes seldom identifies both parameters (`free_fit`). H_macro is therefore taken from a
+stated distribution, and H' = (H - H_macro) A^0.25 from every run.
 
-The form of the potential is not known. Its error stands for all energies times one factor, as in the paper. Two ways
-bound the factor: the measured hardness of the glass, or twins of the runs with other energies, each as likely.
-"""
+The form of the potential is not known. Its error stands for all energies times one factor, as in
+the paper. Two ways bound the factor: the measured hardness of the glass, or twins of the runs with
+other energies, each as likely."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,15 +17,23 @@ SYSTEMATIC = {
     "rate": 0.05,  # closing speed in use against rest
     "base": 0.04,  # base in use against a thicker one
     "potential": 0.1,  # one potential of silica against another
-    "steepness": 0.06,  # 4 % by another curve between the slopes that were pressed, 4 % by the glasses
+    # 4 % by another curve between the slopes that were pressed, 4 % by the glasses
+    "steepness": 0.06,
 }
-"""What moves every run of a scene alike, as standard deviations relative to the hardness (study `hardness.choices`)."""
+"""What moves every run of a scene alike, as standard deviations relative to the hardness (study
+`hardness.choices`).
+"""
 RUN_SCATTER = 0.11
-"""Standard deviation between runs of one kind, relative to the hardness (study `hardness.choices`)."""
+"""Standard deviation between runs of one kind, relative to the hardness (study `hardness.choices`).
+"""
 SLOPES = {0.222: 0.55, 0.444: 1.0, 0.889: 1.31}
-"""Hardness of asperities by their RMS slope, over that of the second (study `hardness.choices`, two glasses)."""
+"""Hardness of asperities by their RMS slope, over that of the second (study `hardness.choices`, two
+glasses).
+"""
 BERKOVICH = 0.358
-"""Slope of a Berkovich tip: of the cone with the same area at each depth, whose half angle is 70.3 degrees."""
+"""Slope of a Berkovich tip: of the cone with the same area at each depth, whose half angle is 70.3
+degrees.
+"""
 PointRow = Mapping[str, str]
 """A row of points.csv."""
 Energies = Literal["measured", "scales"]
@@ -38,7 +46,8 @@ class FitRules:
     Attributes
     ----------
     interval : quantiles of the 68 % interval, as in the paper.
-    least_runs, least_share : defended runs needed, and their share of all runs. Runs scatter by 11 %, so that four
+    least_runs, least_share : defended runs needed, and their share of all runs. Runs scatter by 11
+        %, so that four
         leave their mean open by 6 %; errors that all runs share are 13 %.
     samples : of the joint distribution of H_macro and H'.
     identified : Student's t of H_macro and of H' from which on a free fit tells both.
@@ -79,7 +88,9 @@ def fit_size_effect(
     -------
     Content of fit.json (docs/hardness.md).
     """
-    asked = [point for point in points if energies == "scales" or float(point["energy_scale"]) == 1.0]
+    asked = [
+        point for point in points if energies == "scales" or float(point["energy_scale"]) == 1.0
+    ]
     used = [point for point in asked if point["status"] == "yield"]
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
     reasons += _too_few(used, asked)
@@ -100,7 +111,10 @@ def fit_size_effect(
     systematic = {"area": area_error / np.sqrt(3), **others}
     slopes = steepness(used)
     if not slopes:
-        reasons.append(f"asperities flatter or steeper than RMS slopes of {min(SLOPES):.2g} to {max(SLOPES):.2g}")
+        reasons.append(
+            f"asperities flatter or steeper than RMS slopes of {min(SLOPES):.2g} to"
+            f" {max(SLOPES):.2g}"
+        )
         return result
     ways = {}
     for way, (runs, bounds) in energy_ways(points, slopes, indentation_GPa).items():
@@ -115,7 +129,9 @@ def fit_size_effect(
     result["inputs"] = {
         "h_prime": {
             **_uniform(h_prime, "GPa nm^0.5"),
-            "correlation": {"h_macro": spearman(h_macro_GPa, h_prime)} if np.ptp(h_macro_GPa) else {},
+            "correlation": (
+                {"h_macro": spearman(h_macro_GPa, h_prime)} if np.ptp(h_macro_GPa) else {}
+            ),
             "steepness": {**slopes, "factor": of_h_prime},
         },
         "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
@@ -125,7 +141,10 @@ def fit_size_effect(
     result["H_prime_GPa_nm0.5"] = summary(h_prime)
     result["curve"] = band(h_macro_GPa, h_prime)
     if result["inputs"]["h_prime"]["a"] <= 0 or np.min(h_macro_GPa) <= 0:
-        reasons.append("the fit allows a hardness that falls with decreasing size or is negative: not identifiable")
+        reasons.append(
+            "the fit allows a hardness that falls with decreasing size or is negative: not"
+            " identifiable"
+        )
     result["gate"]["passed"] = not reasons
     return result
 
@@ -134,31 +153,44 @@ def _too_few(used: Sequence[PointRow], asked: Sequence[PointRow]) -> list[str]:
     """Why the defended runs among those asked for are too few; empty where they are enough."""
     reasons = []
     if len(used) < FIT_RULES.least_runs:
-        reasons.append(f"{len(used)} of {len(asked)} runs gave a defended hardness, {FIT_RULES.least_runs} are needed")
+        reasons.append(
+            f"{len(used)} of {len(asked)} runs gave a defended hardness, {FIT_RULES.least_runs} are"
+            " needed"
+        )
     elif len(used) < FIT_RULES.least_share * len(asked):
         share = f"gate {FIT_RULES.least_share:.0%}"
         reasons.append(f"only {len(used)} of {len(asked)} runs gave a defended hardness ({share})")
     if missing := sorted(set(scales_of(asked)) - set(scales_of(used))):
-        reasons.append(f"no defended hardness at energy scale {', '.join(f'{scale:g}' for scale in missing)}")
+        reasons.append(
+            f"no defended hardness at energy scale {', '.join(f'{scale:g}' for scale in missing)}"
+        )
     return reasons
 
 
 def refused_runs(points: Sequence[PointRow]) -> list[dict[str, str]]:
     """Runs without a defended hardness, each with the reason."""
-    return [{"run": point["run"], "status": point["status"]} for point in points if point["status"] != "yield"]
+    return [
+        {"run": point["run"], "status": point["status"]}
+        for point in points
+        if point["status"] != "yield"
+    ]
 
 
 def twins(points: Sequence[PointRow]) -> list[dict[str, Any]]:
-    """Hardness of runs with scaled energies over that of their twins with full ones, by energy scale.
+    """Hardness of runs with scaled energies over that of their twins with full ones, by energy
+    scale.
 
-    A pair has the same asperity and glass. Both of its runs scatter by `RUN_SCATTER`, which makes the 68 % interval.
+    A pair has the same asperity and glass. Both of its runs scatter by `RUN_SCATTER`, which makes
+    the 68 % interval.
 
     Returns
     -------
-    `energy_scale`, `pairs`, `full_GPa`, `scaled_GPa` and `ratio` (median, low, high) of each scale with a pair.
-    """
+    `energy_scale`, `pairs`, `full_GPa`, `scaled_GPa` and `ratio` (median, low, high) of each scale
+    with a pair."""
     hardness = {
-        (point["asperity"], point["seed"], float(point["energy_scale"])): float(point["hardness_GPa"])
+        (point["asperity"], point["seed"], float(point["energy_scale"])): float(
+            point["hardness_GPa"]
+        )
         for point in points
         if point["status"] == "yield" and not point["film_nm"]
     }
@@ -182,21 +214,26 @@ def twins(points: Sequence[PointRow]) -> list[dict[str, Any]]:
                 "pairs": len(pairs),
                 "full_GPa": float(full.mean()),
                 "scaled_GPa": float(scaled.mean()),
-                "ratio": {"median": ratio, "low": ratio * np.exp(-error), "high": ratio * np.exp(error)},
+                "ratio": {
+                    "median": ratio,
+                    "low": ratio * np.exp(-error),
+                    "high": ratio * np.exp(error),
+                },
             }
         )
     return rows
 
 
 def free_fit(used: Sequence[PointRow]) -> dict[str, Any] | None:
-    """Least squares of both parameters of eq. 4, as the paper fits them, and whether the runs tell both.
+    """Least squares of both parameters of eq. 4, as the paper fits them, and whether the runs tell
+    both.
 
     The runs at full energies count alike: they scatter by more than each one's own interval.
 
     Returns
     -------
-    `H_macro_GPa` and `H_prime_GPa_nm0.5` (mean, low, high: 68 %), `identified` and `verdict`; None below three runs.
-    """
+    `H_macro_GPa` and `H_prime_GPa_nm0.5` (mean, low, high: 68 %), `identified` and `verdict`; None
+    below three runs."""
     from scipy.stats import t as student  # slow to import
 
     full = [point for point in used if float(point["energy_scale"]) == 1.0]
@@ -215,7 +252,11 @@ def free_fit(used: Sequence[PointRow]) -> dict[str, Any] | None:
         name: {"mean": value, "low": value - width, "high": value + width}
         for name, value, width in zip(names, values.tolist(), half.tolist(), strict=True)
     }
-    unknown = [name.partition("_GPa")[0] for name, sure in zip(names, surely_positive, strict=True) if not sure]
+    unknown = [
+        name.partition("_GPa")[0]
+        for name, sure in zip(names, surely_positive, strict=True)
+        if not sure
+    ]
     verdict = f"{len(full)} runs tell both"
     if unknown:
         verdict = f"{len(full)} runs do not tell {' and '.join(unknown)} from zero"
@@ -227,10 +268,11 @@ def energy_ways(
     slopes: Mapping[str, Sequence[float]],
     indentation_GPa: tuple[float, float] | None,
 ) -> dict[Energies, tuple[list[PointRow], tuple[float, float]]]:
-    """Both ways to bound the energies: the defended runs that count, and the range of the factor on their hardness.
+    """Both ways to bound the energies: the defended runs that count, and the range of the factor on
+    their hardness.
 
-    The second is left out where no run has scaled energies, the first where none with full ones is defended.
-    """
+    The second is left out where no run has scaled energies, the first where none with full ones is
+    defended."""
     defended = [point for point in points if point["status"] == "yield"]
     full = [point for point in defended if float(point["energy_scale"]) == 1.0]
     ways: dict[Energies, tuple[list[PointRow], tuple[float, float]]] = {}
@@ -253,7 +295,8 @@ def energy_bounds(
     scales: Sequence[float],
     indentation_GPa: tuple[float, float] | None,
 ) -> tuple[float, float]:
-    """Factors on the energies of a potential that bound the measured hardness of its glass, and 1 between them.
+    """Factors on the energies of a potential that bound the measured hardness of its glass, and 1
+    between them.
 
     Hardness is proportional to the energies (`twins`).
 
@@ -289,7 +332,9 @@ def hardness_samples(
     _, of_scale, runs = np.unique(scale, return_inverse=True, return_counts=True)
     chosen = rng.choice(len(points), size=count, p=1 / (len(runs) * runs[of_scale]))
     # factors on the hardness of all runs alike
-    shared = 1 + np.array(list(systematic.values())) @ _rng(15).normal(size=(len(systematic), count))
+    shared = 1 + np.array(list(systematic.values())) @ _rng(15).normal(
+        size=(len(systematic), count)
+    )
     shared *= rng.uniform(*energies, count)
     return length[chosen], (hardness[chosen] + spread[chosen] * rng.normal(size=count)) * shared
 
@@ -297,9 +342,11 @@ def hardness_samples(
 def relative_hardness(slope: float) -> float:
     """Hardness at an RMS slope over that at 0.444; NaN beyond the slopes that were pressed.
 
-    Straight in the logarithm of the slope, as in an expanding cavity (Johnson, J. Mech. Phys. Solids 18, 115, 1970).
-    """
-    return float(np.interp(np.log(slope), np.log(list(SLOPES)), list(SLOPES.values()), np.nan, np.nan))
+    Straight in the logarithm of the slope, as in an expanding cavity (Johnson, J. Mech. Phys.
+    Solids 18, 115, 1970)."""
+    return float(
+        np.interp(np.log(slope), np.log(list(SLOPES)), list(SLOPES.values()), np.nan, np.nan)
+    )
 
 
 def rms_slope(point: PointRow) -> float:
@@ -312,9 +359,8 @@ def steepness(points: Sequence[PointRow]) -> dict[str, list[float]]:
 
     Returns
     -------
-    `rms_slope` and `factor`, straight between them in the logarithm of the slope; empty where the runs themselves are
-    flatter or steeper than the slopes that were pressed
-    """
+    `rms_slope` and `factor`, straight between them in the logarithm of the slope; empty where the
+    runs themselves are flatter or steeper than the slopes that were pressed"""
     of_runs = float(np.mean([relative_hardness(rms_slope(point)) for point in points]))
     if not np.isfinite(of_runs):
         return {}
@@ -328,7 +374,9 @@ def band(h_macro: np.ndarray, h_prime: np.ndarray) -> list[dict[str, float]]:
         low, middle, high = np.quantile(
             h_macro + h_prime / np.sqrt(length), [FIT_RULES.interval[0], 0.5, FIT_RULES.interval[1]]
         )
-        rows.append({"contact_length_nm": length, "low_GPa": low, "median_GPa": middle, "high_GPa": high})
+        rows.append(
+            {"contact_length_nm": length, "low_GPa": low, "median_GPa": middle, "high_GPa": high}
+        )
     return rows
 
 

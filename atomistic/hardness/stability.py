@@ -1,8 +1,8 @@
-"""Stiff and extreme cases of the hardness stage, each judged by what must hold (target `stability`).
+"""Stiff and extreme cases of the hardness stage, each judged by what must hold (target
+`stability`).
 
-Made-up closings without a hardness must be refused, with the reason. Atoms that are cold, hot, molten or pressed too
-fast must keep their energy. What cannot be computed must end in one line.
-"""
+Made-up closings without a hardness must be refused, with the reason. Atoms that are cold, hot,
+molten or pressed too fast must keep their energy. What cannot be computed must end in one line."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -36,23 +36,30 @@ from atomistic.potentials import Potential
 from atomistic.settings import AsperitySettings, ClosingSettings
 
 FREE_PS = 4.0
-"""Time at constant energy: over half of it a heated solid still drifts by 0.25 meV per atom and ps while it melts."""
+"""Time at constant energy: over half of it a heated solid still drifts by 0.25 meV per atom and ps
+while it melts.
+"""
 SIDE_A = 24.0
 """Least width of the asperities that are closed."""
 AMPLITUDE_NM = 0.2
 BASE_NM = 1.4
 SPEED_M_S = 200.0
 LARGEST_DRIFT_MEV_ATOM_PS = 1.0
-"""Of a closing of less than 1 ps: a cut surface has hardly come to rest, and its energy scatters by as much at the
-start. The gate of longer ones is `Rules.max_drift_meV_atom_ps`."""
+"""Of a closing of less than 1 ps: a cut surface has hardly come to rest, and its energy scatters by
+as much at the start. The gate of longer ones is `Rules.max_drift_meV_atom_ps`."""
 THIN = PROTOCOL.model_copy(update={"base_over_contact": 0.0})
 REFUSED = "no hardness; the status says why"
 ONE_LINE = "refused in one line"
-DUMP = "ITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n{count}\nITEM: BOX BOUNDS pp pp ff\n0 1\n0 1\n0 1\n{atoms}"
+DUMP = (
+    "ITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n{count}\nITEM: BOX BOUNDS pp pp ff\n0 1\n0 1\n0"
+    " 1\n{atoms}"
+)
 DUMPED = "ITEM: ATOMS id x\n1 0.5\n2 0.25\n"
 
 
-def hard_cases(material: Material, potential: Potential, glass: Atoms, work: Path) -> list[HardCase]:
+def hard_cases(
+    material: Material, potential: Potential, glass: Atoms, work: Path
+) -> list[HardCase]:
     """All cases.
 
     Parameters
@@ -84,8 +91,20 @@ def curve_cases() -> list[HardCase]:
     unknown_temperature[20]["temperature_K"] = np.nan
     sparse = [row for k, row in enumerate(witness()) if k % 4 == 0]
     refusals = [
-        ("no plateau", "stress rises with the contact to the end", curve(_rising), witness(), "still rises"),
-        ("energy drifts", "by 1 meV per atom and ps", curve(plateau, drift=0.5), witness(), "energy drifts"),
+        (
+            "no plateau",
+            "stress rises with the contact to the end",
+            curve(_rising),
+            witness(),
+            "still rises",
+        ),
+        (
+            "energy drifts",
+            "by 1 meV per atom and ps",
+            curve(plateau, drift=0.5),
+            witness(),
+            "energy drifts",
+        ),
         ("melts", "temperature rises to 800 K", molten, witness(), "warms"),
         ("energy without a number", "one of 48", unknown_energy, witness(), "energy"),
         ("temperature without a number", "one of 48", unknown_temperature, witness(), "warms"),
@@ -96,21 +115,80 @@ def curve_cases() -> list[HardCase]:
             witness(),
             "too small",
         ),
-        ("no contact", "the flat never touches", curve(lambda _: float("nan"), 0 * length), witness(), "too small"),
-        ("single average", "a curve of one row", curve(plateau)[-1:], witness(), "a curve of 1 averages"),
-        ("pulled", "adhesion throughout: stress is negative", curve(lambda _: -1.0), witness(), "adhesion"),
-        ("late yield", "three averages beyond the onset", curve(plateau)[:-2], witness(onset=1.1), "too few averages"),
-        ("no snapshot before contact", "one every 0.4 nm", curve(plateau), sparse, "no snapshot before contact"),
-        ("stopped early", "on 24 % of the cell", curve(plateau), witness(), "stopped before its rule"),
+        (
+            "no contact",
+            "the flat never touches",
+            curve(lambda _: float("nan"), 0 * length),
+            witness(),
+            "too small",
+        ),
+        (
+            "single average",
+            "a curve of one row",
+            curve(plateau)[-1:],
+            witness(),
+            "a curve of 1 averages",
+        ),
+        (
+            "pulled",
+            "adhesion throughout: stress is negative",
+            curve(lambda _: -1.0),
+            witness(),
+            "adhesion",
+        ),
+        (
+            "late yield",
+            "three averages beyond the onset",
+            curve(plateau)[:-2],
+            witness(onset=1.1),
+            "too few averages",
+        ),
+        (
+            "no snapshot before contact",
+            "one every 0.4 nm",
+            curve(plateau),
+            sparse,
+            "no snapshot before contact",
+        ),
+        (
+            "stopped early",
+            "on 24 % of the cell",
+            curve(plateau),
+            witness(),
+            "stopped before its rule",
+        ),
         ("never yields", "no bond exchanged", curve(plateau), witness(onset=9), "no_yield"),
         ("few bonds", "three exchanged", curve(plateau), witness(after=3), "no_yield"),
-        ("springs back", "the top stays 0.02 nm lower", curve(plateau), witness(lowering=0.02), "no_yield"),
-        ("recovers", "the last snapshot is as high as the first", curve(plateau), recovers, "no_yield"),
-        ("flickers", "20 bonds a snapshot without contact, 25 with", curve(plateau), witness(0.8, 20, 5), "no_yield"),
+        (
+            "springs back",
+            "the top stays 0.02 nm lower",
+            curve(plateau),
+            witness(lowering=0.02),
+            "no_yield",
+        ),
+        (
+            "recovers",
+            "the last snapshot is as high as the first",
+            curve(plateau),
+            recovers,
+            "no_yield",
+        ),
+        (
+            "flickers",
+            "20 bonds a snapshot without contact, 25 with",
+            curve(plateau),
+            witness(0.8, 20, 5),
+            "no_yield",
+        ),
     ]
     areas = {"stopped early": 9.5 / RULES.stop_area_fraction}
     cases = [
-        HardCase(name, words, REFUSED, partial(_no_hardness, rows, seen, why, areas.get(name, CELL_AREA_NM2)))
+        HardCase(
+            name,
+            words,
+            REFUSED,
+            partial(_no_hardness, rows, seen, why, areas.get(name, CELL_AREA_NM2)),
+        )
         for name, words, rows, seen, why in refusals
     ]
     rng = np.random.default_rng(5)
@@ -121,7 +199,8 @@ def curve_cases() -> list[HardCase]:
         HardCase(
             "noise",
             "30 % on every average of a plateau",
-            "hardness within three of its standard errors, and an interval wider than a run may stop on",
+            "hardness within three of its standard errors, and an interval wider than a run may"
+            " stop on",
             partial(_noisy_hardness, noisy),
         ),
         HardCase(
@@ -150,32 +229,63 @@ def file_cases(glass: Atoms, potential: Potential, work: Path) -> list[HardCase]
     cases = []
     for k, (name, words, count, atoms) in enumerate(dumps):
         text = DUMP.format(count=count, atoms=atoms)
-        judge = partial(refused, partial(_load_written, work / f"dump_{k}", text), "not a whole LAMMPS dump")
+        judge = partial(
+            refused, partial(_load_written, work / f"dump_{k}", text), "not a whole LAMMPS dump"
+        )
         cases.append(HardCase(name, words, ONE_LINE, judge))
-    cut = partial(refused, partial(_load_cut, glass, potential, work / "cut.data"), "not a whole LAMMPS data file")
-    return [*cases, HardCase("glass cut short", "a data file without its last hundred lines", ONE_LINE, cut)]
+    cut = partial(
+        refused,
+        partial(_load_cut, glass, potential, work / "cut.data"),
+        "not a whole LAMMPS data file",
+    )
+    return [
+        *cases,
+        HardCase("glass cut short", "a data file without its last hundred lines", ONE_LINE, cut),
+    ]
 
 
 def top_cases(potential: Potential) -> list[HardCase]:
     """Contacts and tops of few atoms or none."""
     cell = (60.0, 60.0)
     middle = (30.0, 30.0)
-    lattice = np.stack(np.meshgrid(np.arange(0, 60, 3.0), np.arange(0, 60, 3.0)), axis=-1).reshape(-1, 2)
+    lattice = np.stack(np.meshgrid(np.arange(0, 60, 3.0), np.arange(0, 60, 3.0)), axis=-1).reshape(
+        -1, 2
+    )
     no_atom = partial(attract_top, np.zeros(3), np.zeros(3), 100.0, 0.066)
     no_area = partial(attract_top, np.zeros(3), np.ones(3), 0.0, 0.066)
     bare = potential.model_copy(update={"contact_area": None})
     areas = [
         ("nothing touches", "no atom at the flat", np.empty((0, 2)), 0.0),
         ("all touches", "atoms on the whole cell", lattice, 3600.0),
-        ("one atom touches", "its contact is a disc of the rim", np.array([middle]), np.pi * Area().rim_A ** 2),
+        (
+            "one atom touches",
+            "its contact is a disc of the rim",
+            np.array([middle]),
+            np.pi * Area().rim_A ** 2,
+        ),
     ]
     return [
         *(
-            HardCase(name, words, "the known area, within 15 %", partial(_area, places, cell, middle, area_A2))
+            HardCase(
+                name,
+                words,
+                "the known area, within 15 %",
+                partial(_area, places, cell, middle, area_A2),
+            )
             for name, words, places, area_A2 in areas
         ),
-        HardCase("no atom pulls", "a top without atoms", ONE_LINE, partial(refused, no_atom, "no atoms below")),
-        HardCase("top without area", "a contact of 0 Å2", ONE_LINE, partial(refused, no_area, "no atoms below")),
+        HardCase(
+            "no atom pulls",
+            "a top without atoms",
+            ONE_LINE,
+            partial(refused, no_atom, "no atoms below"),
+        ),
+        HardCase(
+            "top without area",
+            "a contact of 0 Å2",
+            ONE_LINE,
+            partial(refused, no_area, "no atoms below"),
+        ),
         HardCase(
             "area not calibrated",
             "a potential whose contacts were never measured",
@@ -204,11 +314,18 @@ def motion_cases(potential: Potential, glass: Atoms, work: Path) -> list[HardCas
         )
         for name, kelvin, step_fs in moving
     ]
-    overlapping = replace(glass, positions_A=np.vstack([glass.positions_A[1], glass.positions_A[1:]]))
+    overlapping = replace(
+        glass, positions_A=np.vstack([glass.positions_A[1], glass.positions_A[1:]])
+    )
     overlap = partial(free_motion, overlapping, potential, work / "nve", closing_fs, 10)
     return [
         *cases,
-        HardCase("overlapping atoms", "two atoms at one place", ONE_LINE, partial(refused, overlap, "LAMMPS nve.in")),
+        HardCase(
+            "overlapping atoms",
+            "two atoms at one place",
+            ONE_LINE,
+            partial(refused, overlap, "LAMMPS nve.in"),
+        ),
         HardCase(
             "time step too long",
             "30 fs at room temperature",
@@ -224,14 +341,22 @@ def motion_cases(potential: Potential, glass: Atoms, work: Path) -> list[HardCas
     ]
 
 
-def closing_cases(material: Material, potential: Potential, glass: Atoms, work: Path) -> list[HardCase]:
+def closing_cases(
+    material: Material, potential: Potential, glass: Atoms, work: Path
+) -> list[HardCase]:
     """Small closings that are real."""
     keeps = f"no atom is lost, drift below {LARGEST_DRIFT_MEV_ATOM_PS:g} meV per atom and ps"
     close = partial(_close, material, potential, glass, work / "closing")
     return [
-        HardCase("hot closing", "1200 K", keeps, partial(_closes, partial(close, temperature_K=1200.0))),
-        HardCase("cold closing", "10 K", keeps, partial(_closes, partial(close, temperature_K=10.0))),
-        HardCase("fast closing", "1000 m/s", keeps, partial(_closes, partial(close, speed_m_s=1000.0))),
+        HardCase(
+            "hot closing", "1200 K", keeps, partial(_closes, partial(close, temperature_K=1200.0))
+        ),
+        HardCase(
+            "cold closing", "10 K", keeps, partial(_closes, partial(close, temperature_K=10.0))
+        ),
+        HardCase(
+            "fast closing", "1000 m/s", keeps, partial(_closes, partial(close, speed_m_s=1000.0))
+        ),
         HardCase(
             "no asperity",
             "a flat surface, pressed by 0.3 nm",
@@ -261,7 +386,12 @@ def _noisy_hardness(rows: Rows) -> Verdict:
     half = 0.5 * (hardness.hardness_hi - hardness.hardness_lo)
     wide = half > RULES.stop_interval * hardness.hardness_GPa
     detail = f"{hardness.status}, {hardness.hardness_GPa:.1f} +- {half:.1f} GPa"
-    return hardness.status == "yield" and wide and abs(hardness.hardness_GPa - HARDNESS_GPA) < 3 * half, detail
+    return (
+        hardness.status == "yield"
+        and wide
+        and abs(hardness.hardness_GPa - HARDNESS_GPA) < 3 * half,
+        detail,
+    )
 
 
 def _between(rows: Rows, low_GPa: float, high_GPa: float) -> Verdict:
@@ -273,7 +403,10 @@ def _between(rows: Rows, low_GPa: float, high_GPa: float) -> Verdict:
 
 def _background(rows: Rows, seen: Rows, exchanges: float) -> Verdict:
     hardness = find_hardness(rows, seen, CELL_AREA_NM2, APPROACH_NM)
-    return hardness.exchanges_before == exchanges, f"{hardness.exchanges_before:g} exchanges before contact"
+    return (
+        hardness.exchanges_before == exchanges,
+        f"{hardness.exchanges_before:g} exchanges before contact",
+    )
 
 
 def _load_written(path: Path, text: str) -> object:
@@ -288,17 +421,23 @@ def _load_cut(glass: Atoms, potential: Potential, path: Path) -> object:
     return load_data(path, glass.elements)
 
 
-def _area(places: np.ndarray, cell: tuple[float, float], middle: tuple[float, float], area_A2: float) -> Verdict:
+def _area(
+    places: np.ndarray, cell: tuple[float, float], middle: tuple[float, float], area_A2: float
+) -> Verdict:
     measured_A2 = contact_area(places, cell, Area(), middle)
     return abs(measured_A2 - area_A2) <= 0.15 * area_A2, f"{measured_A2:.1f} of {area_A2:.1f} Å2"
 
 
 def _drift(glass: Atoms, potential: Potential, kelvin: float, step_fs: float, work: Path) -> float:
-    record, _ = free_motion(heated(glass, potential, kelvin), potential, work, step_fs, round(1000 * FREE_PS / step_fs))
+    record, _ = free_motion(
+        heated(glass, potential, kelvin), potential, work, step_fs, round(1000 * FREE_PS / step_fs)
+    )
     return drift_meV_atom_ps(record, len(glass), step_fs)
 
 
-def _keeps_energy(glass: Atoms, potential: Potential, kelvin: float, step_fs: float, work: Path) -> Verdict:
+def _keeps_energy(
+    glass: Atoms, potential: Potential, kelvin: float, step_fs: float, work: Path
+) -> Verdict:
     drift = _drift(glass, potential, kelvin, step_fs, work)
     return abs(drift) < RULES.max_drift_meV_atom_ps, f"{drift:+.3f} meV per atom and ps"
 
@@ -306,7 +445,8 @@ def _keeps_energy(glass: Atoms, potential: Potential, kelvin: float, step_fs: fl
 def _explodes(glass: Atoms, potential: Potential, work: Path) -> Verdict:
     drifts: list[float] = []
     stopped, detail = refused(
-        lambda: drifts.append(_drift(glass, potential, PROTOCOL.temperature_K, 30.0, work)), "LAMMPS nve.in"
+        lambda: drifts.append(_drift(glass, potential, PROTOCOL.temperature_K, 30.0, work)),
+        "LAMMPS nve.in",
     )
     if not drifts:
         return stopped, detail
@@ -364,4 +504,7 @@ def _untouched(close: Callable[[], ClosedAsperity]) -> Verdict:
     hardness = find_hardness(closed.curve, closed.witness, closed.summary["wavelength_nm"] ** 2)
     force = max(abs(row["force_nN"]) for row in closed.curve)
     area = max(row["contact_area_nm2"] for row in closed.curve)
-    return force == 0 and hardness.status != "yield", f"{force:g} nN on {area:g} nm2: {hardness.status}"
+    return (
+        force == 0 and hardness.status != "yield",
+        f"{force:g} nN on {area:g} nm2: {hardness.status}",
+    )

@@ -1,8 +1,8 @@
-"""A film of oxide glass on another body: its force field, how it is laid and welded, and what it must look like.
+"""A film of oxide glass on another body: its force field, how it is laid and welded, and what it
+must look like.
 
-Nobody published how atoms of the two potentials act on each other. The file of the base states an assumption
-(`film_base`): Morse bonds of some pairs and a short-range repulsion of the others.
-"""
+Nobody published how atoms of the two potentials act on each other. The file of the base states an
+assumption (`film_base`): Morse bonds of some pairs and a short-range repulsion of the others."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -24,7 +24,9 @@ GAP_A = 1.6  # between the surfaces that are laid on each other
 
 @dataclass(frozen=True)
 class Stack:
-    """Oxide on a base, as a force field: the types of the base come first, those of the oxide follow."""
+    """Oxide on a base, as a force field: the types of the base come first, those of the oxide
+    follow.
+    """
 
     oxide: Potential
     base: Base
@@ -35,7 +37,8 @@ class Stack:
         return {**self.oxide.masses_u, **self.base.masses_u}
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
-        """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds, the base keeps its own.
+        """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds, the
+        base keeps its own.
 
         Raises
         ------
@@ -66,18 +69,28 @@ class Stack:
     def _cross(self, energy_scale: float) -> str:
         """Table of the base with each ion that it binds, and of the repulsion of the others."""
         sections = {pair: partial(self.bond, pair) for pair in self.base.below_films.bonds}
-        return pair_table("base with the ions of a film", sections, self.oxide.cutoff_A, energy_scale)
+        return pair_table(
+            "base with the ions of a film", sections, self.oxide.cutoff_A, energy_scale
+        )
 
     def bond(self, pair: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Energy (eV) and force (eV/Å) of an atom of the base and an ion, shifted to vanish at the cut-off."""
+        """Energy (eV) and force (eV/Å) of an atom of the base and an ion, shifted to vanish at the
+        cut-off.
+        """
         below, end = self.base.below_films, np.array([self.oxide.cutoff_A])
-        morse = Morse(term="morse", **below.bonds[pair].model_dump(), source=below.source, confidence="low")
-        (energy, slope), (energy_end, slope_end) = morse.energy_and_slope(r), morse.energy_and_slope(end)
+        morse = Morse(
+            term="morse", **below.bonds[pair].model_dump(), source=below.source, confidence="low"
+        )
+        (energy, slope), (energy_end, slope_end) = (
+            morse.energy_and_slope(r),
+            morse.energy_and_slope(end),
+        )
         return energy - energy_end - slope_end * (r - end), slope_end - slope
 
 
 def base_of(material: Material) -> Base:
-    """The body below a film, by what its material's file holds: a metal, or a glass of covalent bonds.
+    """The body below a film, by what its material's file holds: a metal, or a glass of covalent
+    bonds.
 
     Raises
     ------
@@ -88,7 +101,8 @@ def base_of(material: Material) -> Base:
 
 
 def check_ions(base: Material, ions: Iterable[str]) -> None:
-    """Refuse a film with an ion of which the base's file does not say how it acts on each of its atoms.
+    """Refuse a film with an ion of which the base's file does not say how it acts on each of its
+    atoms.
 
     Raises
     ------
@@ -96,11 +110,16 @@ def check_ions(base: Material, ions: Iterable[str]) -> None:
     """
     below = base.part("film_base")
     known = (*below.bonds, *below.repelled)
-    missing = [f"{element}-{ion}" for ion in ions for element in base.formula if f"{element}-{ion}" not in known]
+    missing = [
+        f"{element}-{ion}"
+        for ion in ions
+        for element in base.formula
+        if f"{element}-{ion}" not in known
+    ]
     if missing:
         raise InputError(
-            f"material {base.name}: film_base has no cross terms {missing[0]}, so that no film with that ion lies on "
-            f"it; known are {' and '.join(known)}"
+            f"material {base.name}: film_base has no cross terms {missing[0]}, so that no film with"
+            f" that ion lies on it; known are {' and '.join(known)}"
         )
 
 
@@ -118,18 +137,27 @@ def check_film(film_nm: float, widest_nm: float) -> None:
     least_nm = 0.3  # one layer of tetrahedra
     if not least_nm <= film_nm <= widest_nm:
         raise InputError(
-            f"film_nm = {film_nm:g}: on an asperity whose widest judged contact is {widest_nm:.1f} nm, accepted are "
-            f"{least_nm:g} (one layer) to {widest_nm:.1f} nm, beyond which no contact feels the base; or take "
-            "more tiles"
+            f"film_nm = {film_nm:g}: on an asperity whose widest judged contact is {widest_nm:.1f}"
+            f" nm, accepted are {least_nm:g} (one layer) to {widest_nm:.1f} nm, beyond which no"
+            " contact feels the base; or take more tiles"
         )
 
 
-def lay(base: Atoms, glass: Atoms, tiles: int, amplitude_A: float, film_A: float, base_A: float, seed: int) -> Atoms:
+def lay(
+    base: Atoms,
+    glass: Atoms,
+    tiles: int,
+    amplitude_A: float,
+    film_A: float,
+    base_A: float,
+    seed: int,
+) -> Atoms:
     """An asperity of a base under a film of glass of the same shape, not yet welded.
 
     Parameters
     ----------
-    base, glass : cells of the base (one wavelength wide, or as many to it as those of the glass) and of the glass
+    base, glass : cells of the base (one wavelength wide, or as many to it as those of the glass)
+        and of the glass
         (`tiles` to the wavelength).
     """
     below = cut_base(base, glass, tiles, amplitude_A, base_A, seed)
@@ -145,13 +173,17 @@ def lay(base: Atoms, glass: Atoms, tiles: int, amplitude_A: float, film_A: float
     )
 
 
-def cut_base(base: Atoms, glass: Atoms, tiles: int, amplitude_A: float, base_A: float, seed: int) -> Atoms:
+def cut_base(
+    base: Atoms, glass: Atoms, tiles: int, amplitude_A: float, base_A: float, seed: int
+) -> Atoms:
     """An asperity of the base by itself, as wide as so many cells of the glass."""
     of_base = round(tiles * float(glass.cell_A[0] / base.cell_A[0]))
     return cut_asperity(base, of_base, amplitude_A, base_A, seed)
 
 
-def film_properties(start: np.ndarray, end: np.ndarray, wavelength_A: float, below: int) -> dict[str, float]:
+def film_properties(
+    start: np.ndarray, end: np.ndarray, wavelength_A: float, below: int
+) -> dict[str, float]:
     """How the film lies on its base before the closing, and how far it has slid over it at the end.
 
     Parameters
@@ -174,7 +206,9 @@ def film_properties(start: np.ndarray, end: np.ndarray, wavelength_A: float, bel
     moved = end[:, 1:3] - start[:, 1:3]
     moved -= wavelength_A * np.round(moved / wavelength_A)
     near = np.hypot(*(start[:, 1:3] - wavelength_A / 4).T) < wavelength_A / 4
-    beneath = near & ~film & (z > z[near & ~film].max() - 6.0)  # its way is compared with that of the film
+    beneath = (
+        near & ~film & (z > z[near & ~film].max() - 6.0)
+    )  # its way is compared with that of the film
     slid = np.median(moved[near & film], axis=0) - np.median(moved[beneath], axis=0)
     return {
         "covered_share": float(np.mean(np.isfinite(low))),

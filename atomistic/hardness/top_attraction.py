@@ -1,24 +1,27 @@
-"""How strongly a top made of atoms attracts a smooth body, as the cut-off D0 of the law of attraction.
+"""How strongly a top made of atoms attracts a smooth body, as the cut-off D0 of the law of
+attraction.
 
 Every atom of the top attracts a smooth rigid half-space by a 9-3 potential
 (Steele 1973, doi:10.1016/0039-6028(73)90264-1)
 
     u(d) = -C [1 / d^3 - r^6 / (3 d^9)],   C = A_H / (6 pi n),
 
-whose tail is that of a continuum with the Hamaker constant A_H; n is the number of atoms a volume. The contact distance
-r is the one that gives a flat stack of layers of the glass's density the work A_H / (12 pi D^2) with D = 0.165 nm, the
-distance at which dense solids touch (Israelachvili, Intermolecular and Surface Forces, 3rd ed., section 13.13).
+whose tail is that of a continuum with the Hamaker constant A_H; n is the number of atoms a volume.
+The contact distance r is the one that gives a flat stack of layers of the glass's density the work
+A_H / (12 pi D^2) with D = 0.165 nm, the distance at which dense solids touch (Israelachvili,
+Intermolecular and Surface Forces, 3rd ed., section 13.13).
 
-A real top is no stack of layers: its highest atoms keep the others away. The cut-off D0 of a top is the one with which
-the law A_H / (6 pi (g + D0)^3) separates a flat of the same contact area with the same work. A_H cancels. Only atoms
-below the contact count: what lies beside it attracts in the contact model, too.
+A real top is no stack of layers: its highest atoms keep the others away. The cut-off D0 of a top is
+the one with which the law A_H / (6 pi (g + D0)^3) separates a flat of the same contact area with
+the same work. A_H cancels. Only atoms below the contact count: what lies beside it attracts in the
+contact model, too.
 
-By the largest force, D0 would be another one: 0.208 instead of 0.165 nm for the flat stack itself. The work counts,
-because a body whose gap differs from place to place is pulled off by it: a sphere of radius R by 2 pi R w (Derjaguin).
-Summed over the stack, spheres, waves and flattened tops that sprang back pull off within 7 % of the law with D0 by work
-where they are 5 nm wide or more. By force, the law misses 38 %. Only one rigid flat pulls off by its largest force
-(tests/atomistic/hardness/test_top_attraction.py).
-"""
+By the largest force, D0 would be another one: 0.208 instead of 0.165 nm for the flat stack itself.
+The work counts, because a body whose gap differs from place to place is pulled off by it: a sphere
+of radius R by 2 pi R w (Derjaguin). Summed over the stack, spheres, waves and flattened tops that
+sprang back pull off within 7 % of the law with D0 by work where they are 5 nm wide or more. By
+force, the law misses 38 %. Only one rigid flat pulls off by its largest force
+(tests/atomistic/hardness/test_top_attraction.py)."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -34,14 +37,18 @@ from atomistic.hardness.size_effect import FIT_RULES, samples_of
 DENSE_CUTOFF_A = 1.65
 """D of flat dense solids, Å (Israelachvili, section 13.13)."""
 FOLLOW = (0.905, 0.037)
-"""D0 of tops whose atoms follow the pull over that of rigid ones: mean of eight tops and its standard error (study
-`hardness.tops`, columns free_work and whole_work)."""
+"""D0 of tops whose atoms follow the pull over that of rigid ones: mean of eight tops and its
+standard error (study `hardness.tops`, columns free_work and whole_work)."""
 RIM_ERROR = 0.045
-"""Change of ln D0 where the rim of the contact area lies 0.7 Å farther out or in, as other definitions have it."""
+"""Change of ln D0 where the rim of the contact area lies 0.7 Å farther out or in, as other
+definitions have it.
+"""
 STEP_A = 0.02
 """Between the gaps at which force and energy are looked at; their extremes are then refined."""
 SCATTERS = np.geomspace(0.03, 10.0, 40)
-"""Standard deviations that are weighed: of runs, over what all runs have; of glasses, over that of runs."""
+"""Standard deviations that are weighed: of runs, over what all runs have; of glasses, over that of
+runs.
+"""
 
 
 @dataclass(frozen=True)
@@ -65,9 +72,9 @@ def gap_cutoff(
 ) -> dict[str, Any] | None:
     """The cut-off D0 of all tops of some runs: its distribution, and what each run says.
 
-    It is that of the work; the one of the largest force stands beside it. The mean over all glasses is known as far as
-    runs and glasses scatter. Two factors multiply it: `FOLLOW`, since atoms of a top follow the pull, and `RIM_ERROR`,
-    since the area decides how much work a flat of it has.
+    It is that of the work; the one of the largest force stands beside it. The mean over all glasses
+    is known as far as runs and glasses scatter. Two factors multiply it: `FOLLOW`, since atoms of a
+    top follow the pull, and `RIM_ERROR`, since the area decides how much work a flat of it has.
 
     Parameters
     ----------
@@ -76,15 +83,18 @@ def gap_cutoff(
 
     Returns
     -------
-    `distribution`, `values`, `unit` as an input has them, and `runs`; None where a fit needs more runs with a top.
-    """
+    `distribution`, `values`, `unit` as an input has them, and `runs`; None where a fit needs more
+    runs with a top."""
     runs = {run: tops for run, rows in witnesses.items() if (tops := tops_of(rows))}
     if len(runs) < FIT_RULES.least_runs:
         return None
     by_run = np.array([combined_cutoffs_nm(tops) for tops in runs.values()])
     by_work = combined_cutoffs_nm(top for tops in runs.values() for top in tops)[1]
     logs, rng = np.log(by_run[:, 1]), np.random.default_rng(0)
-    errors = mean_over_glasses(logs, [glasses[run] for run in runs], FIT_RULES.samples, rng) - logs.mean()
+    errors = (
+        mean_over_glasses(logs, [glasses[run] for run in runs], FIT_RULES.samples, rng)
+        - logs.mean()
+    )
     follow = rng.normal(*FOLLOW, FIT_RULES.samples)
     rim = np.exp(rng.uniform(-RIM_ERROR, RIM_ERROR, FIT_RULES.samples))
     cutoffs = by_work * np.exp(errors) * follow * rim
@@ -100,18 +110,25 @@ def gap_cutoff(
 def tops_of(witness: Sequence[Mapping[str, float]]) -> list[TopAttraction]:
     """Tops of the snapshots of a run with a contact; rows of `Closing.witness`."""
     return [
-        TopAttraction(100 * row["top_area_nm2"], row["top_force_over_hamaker"] / 10, row["top_work_over_hamaker"])
+        TopAttraction(
+            100 * row["top_area_nm2"],
+            row["top_force_over_hamaker"] / 10,
+            row["top_work_over_hamaker"],
+        )
         for row in witness
         if row["top_area_nm2"] > 0
     ]
 
 
-def mean_over_glasses(values: np.ndarray, glasses: Sequence[int], count: int, rng: np.random.Generator) -> np.ndarray:
-    """Samples of the mean over all glasses, of which a few were made and each was used for several runs.
+def mean_over_glasses(
+    values: np.ndarray, glasses: Sequence[int], count: int, rng: np.random.Generator
+) -> np.ndarray:
+    """Samples of the mean over all glasses, of which a few were made and each was used for several
+    runs.
 
-    Runs scatter within a glass, and glasses differ. Two glasses leave open by how much. So all standard deviations
-    count, each by its restricted likelihood; that of glasses over that of runs has a half-Cauchy prior of scale 1
-    (Gelman 2006, doi:10.1214/06-BA117A).
+    Runs scatter within a glass, and glasses differ. Two glasses leave open by how much. So all
+    standard deviations count, each by its restricted likelihood; that of glasses over that of runs
+    has a half-Cauchy prior of scale 1 (Gelman 2006, doi:10.1214/06-BA117A).
 
     Parameters
     ----------
@@ -127,7 +144,9 @@ def mean_over_glasses(values: np.ndarray, glasses: Sequence[int], count: int, rn
     weights = 1 / (of_runs**2 * (ratio**2 + 1 / runs))
     total = weights.sum(axis=-1)
     centre = weights @ means / total
-    logs = 0.5 * (np.log(weights) - weights * (means - centre[..., None]) ** 2).sum(axis=-1) - 0.5 * np.log(total)
+    logs = 0.5 * (np.log(weights) - weights * (means - centre[..., None]) ** 2).sum(
+        axis=-1
+    ) - 0.5 * np.log(total)
     logs += (-freedom * np.log(of_runs) - 0.5 * within / of_runs**2)[..., 0]
     logs += (np.log(ratio) - np.log1p(ratio**2))[..., 0]  # even steps of the logarithm
     shares = np.exp(logs - logs.max()).ravel()
@@ -136,7 +155,8 @@ def mean_over_glasses(values: np.ndarray, glasses: Sequence[int], count: int, rn
 
 
 def combined_cutoffs_nm(tops: Iterable[TopAttraction]) -> tuple[float, float]:
-    """Cut-offs D0 of several contacts that pull side by side, nm: by their forces, and by their works.
+    """Cut-offs D0 of several contacts that pull side by side, nm: by their forces, and by their
+    works.
 
     Forces, works and areas add up, so that each contact counts with its area.
     """
@@ -148,7 +168,9 @@ def combined_cutoffs_nm(tops: Iterable[TopAttraction]) -> tuple[float, float]:
     return by_force / 10, by_work / 10
 
 
-def attract_top(heights_A: np.ndarray, shares: np.ndarray, area_A2: float, density_per_A3: float) -> TopAttraction:
+def attract_top(
+    heights_A: np.ndarray, shares: np.ndarray, area_A2: float, density_per_A3: float
+) -> TopAttraction:
     """Largest force and work between the atoms of a rigid top and a smooth half-space above them.
 
     Parameters
@@ -203,7 +225,9 @@ def contact_distance_A(density_per_A3: float) -> float:
 
 
 def bulk_density_per_A3(positions_A: np.ndarray, area_A2: float) -> float:
-    """Atoms a volume of the base, from positions of shape (atoms, 3) over a cell of the area `area_A2`."""
+    """Atoms a volume of the base, from positions of shape (atoms, 3) over a cell of the area
+    `area_A2`.
+    """
     heights = positions_A[:, 2] - positions_A[:, 2].min()
     low, high = 6.0, 18.0  # above the frozen bottom's lowest atom: glass without a surface
     return float(np.sum((heights >= low) & (heights < high)) / (area_A2 * (high - low)))
@@ -223,5 +247,7 @@ def _lowest(function: Callable[[float], float], places: np.ndarray) -> float:
     """Place of the lowest value: that of the grid, refined between its neighbours."""
     k = int(np.argmin([function(place) for place in places]))
     between = places[max(k - 1, 0)], places[min(k + 1, len(places) - 1)]
-    minimum: Any = minimize_scalar(function, bounds=between, method="bounded", options={"xatol": 1e-8})
+    minimum: Any = minimize_scalar(
+        function, bounds=between, method="bounded", options={"xatol": 1e-8}
+    )
     return float(minimum.x)

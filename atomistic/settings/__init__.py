@@ -1,7 +1,14 @@
-"""Settings of the atomistic stages, a module each: every key with its default, unit and accepted range."""
+"""Settings of the atomistic stages, a module each: every key with its default, unit and accepted
+range.
+"""
 
 from atomistic.settings.elastic import DftSettings, ElasticSettings, NitrideGlassSettings
-from atomistic.settings.hardness import AsperitySettings, ClosingSettings, GlassSettings, HardnessSettings
+from atomistic.settings.hardness import (
+    AsperitySettings,
+    ClosingSettings,
+    GlassSettings,
+    HardnessSettings,
+)
 
 __all__ = [
     "AsperitySettings",

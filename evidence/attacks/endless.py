@@ -1,7 +1,7 @@
 """Does a file that never ends, or unfolds to gigabytes, cost more than a minute?
 
-Scans, containers, tables, scenes and potentials of some hundred bytes to kilobytes, each made to keep its reader busy.
-"""
+Scans, containers, tables, scenes and potentials of some hundred bytes to kilobytes, each made to
+keep its reader busy."""
 
 import io
 import json
@@ -49,7 +49,10 @@ def _aliases(rng: random.Random) -> str:
     """Lists of lists of one list: ten lines that are a billion values."""
     width = rng.randrange(5, 12)
     lines = ["a: &a [x, x]"]
-    lines += [f"{chr(97 + k)}: &{chr(97 + k)} [{', '.join([f'*{chr(96 + k)}'] * width)}]" for k in range(1, 12)]
+    lines += [
+        f"{chr(97 + k)}: &{chr(97 + k)} [{', '.join([f'*{chr(96 + k)}'] * width)}]"
+        for k in range(1, 12)
+    ]
     return "\n".join(lines)
 
 
@@ -74,36 +77,56 @@ def _xlsx(rng: random.Random) -> bytes:
     cells = "<c r='A1' t='inlineStr'><is><t>1</t></is></c>" * 50
     lines = "".join(f"<row r='{k}'>{cells}</row>" for k in range(1, rng.randrange(20_000, 60_000)))
     book = "<sheets><sheet name='Height' sheetId='1' r:id='rId1'/></sheets>"
-    link = "<Relationship Id='rId1' Type='http://{0}/officeDocument/2006/relationships/{1}' Target='{2}'/>"
-    part = "<Override PartName='/xl/{0}.xml' ContentType='application/vnd.{1}-officedocument.spreadsheetml.{2}+xml'/>"
+    link = (
+        "<Relationship Id='rId1' Type='http://{0}/officeDocument/2006/relationships/{1}'"
+        " Target='{2}'/>"
+    )
+    part = (
+        "<Override PartName='/xl/{0}.xml'"
+        " ContentType='application/vnd.{1}-officedocument.spreadsheetml.{2}+xml'/>"
+    )
     home, package = "schemas.openxmlformats.org", "http://schemas.openxmlformats.org/package/2006"
-    spaces = f"xmlns='http://{home}/spreadsheetml/2006/main' xmlns:r='http://{home}/officeDocument/2006/relationships'"
+    spaces = (
+        f"xmlns='http://{home}/spreadsheetml/2006/main'"
+        f" xmlns:r='http://{home}/officeDocument/2006/relationships'"
+    )
     parts = {
-        "[Content_Types].xml": f"<Types xmlns='{package}/content-types'><Default Extension='rels' "
-        "ContentType='application/vnd.openxmlformats-package.relationships+xml'/>"
-        + part.format("workbook", "openxmlformats", "sheet.main")
-        + part.format("worksheets/sheet1", "openxmlformats", "worksheet")
-        + "</Types>",
+        "[Content_Types].xml": (
+            f"<Types xmlns='{package}/content-types'><Default Extension='rels' "
+            "ContentType='application/vnd.openxmlformats-package.relationships+xml'/>"
+            + part.format("workbook", "openxmlformats", "sheet.main")
+            + part.format("worksheets/sheet1", "openxmlformats", "worksheet")
+            + "</Types>"
+        ),
         "xl/workbook.xml": f"<workbook {spaces}>{book}</workbook>",
-        "xl/worksheets/sheet1.xml": f"<worksheet {spaces}><sheetData>{lines}</sheetData></worksheet>",
+        "xl/worksheets/sheet1.xml": (
+            f"<worksheet {spaces}><sheetData>{lines}</sheetData></worksheet>"
+        ),
     }
     for name, kind, target in (
         ("_rels/.rels", "officeDocument", "xl/workbook.xml"),
         ("xl/_rels/workbook.xml.rels", "worksheet", "worksheets/sheet1.xml"),
     ):
         parts[name] = (
-            f"<Relationships xmlns='{package}/relationships'>{link.format(home, kind, target)}</Relationships>"
+            "<Relationships"
+            f" xmlns='{package}/relationships'>{link.format(home, kind, target)}</Relationships>"
         )
     return _zip(parts)
 
 
 def _container(rng: random.Random) -> bytes:
     text = rng.choice((_aliases, _deep, _many))(rng)
-    return _zip({"meta.yml": text} if rng.random() < 0.7 else {"index.json": "[" * rng.randrange(1000, 10**6)})
+    return _zip(
+        {"meta.yml": text}
+        if rng.random() < 0.7
+        else {"index.json": "[" * rng.randrange(1000, 10**6)}
+    )
 
 
 def _bomb(rng: random.Random) -> bytes:
-    measurements = [{"name": "a", "size": [1.0], "datafile": {"original": "a.txt"}}] * rng.randrange(1, 500)
+    measurements = [
+        {"name": "a", "size": [1.0], "datafile": {"original": "a.txt"}}
+    ] * rng.randrange(1, 500)
     index = json.dumps({"surfaces": [{"name": "film", "topographies": measurements}]})
     return _zip({"index.json": index, "a.txt": b"0 " * rng.randrange(10**6, 10**7)})
 
@@ -135,7 +158,9 @@ KINDS: dict[str, tuple[int, str, Callable[[random.Random], str | bytes | int]]] 
     "potential of tags": (10, ".potential", _tagged),
     "table of gigabytes": (4, ".csv", _sparse),
 }
-"""By kind: how many, suffix, and what makes the file: its content, or its size where it is all zeros."""
+"""By kind: how many, suffix, and what makes the file: its content, or its size where it is all
+zeros.
+"""
 
 
 def arguments(parser: Any) -> None:
@@ -165,7 +190,10 @@ def campaign(folder: Path, seed: int, share: float = 1.0) -> Iterator[Attack]:
             seconds, clock = _processor_s() - used, time.monotonic() - started
             here = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
             if seconds > HANG_S or clock > 3 * HANG_S:  # the machine may be busy
-                outcome, words = "fault", f"{seconds:.0f} s of the processor in {clock:.0f} s; {words}"
+                outcome, words = (
+                    "fault",
+                    f"{seconds:.0f} s of the processor in {clock:.0f} s; {words}",
+                )
             if here > MOST_MB:
                 outcome, words = "fault", f"{here:.0f} MB; {words}"
             yield Attack(kind, outcome, seconds, words)
@@ -190,7 +218,11 @@ def _judge(path: Path) -> tuple[str, str]:
             load_measurements(path)
     except (InputError, SceneError) as error:
         line = str(error).replace(f"{path.parent}/", "")
-        return ("refused", line) if "\n" not in line and len(line) < 1500 else ("fault", f"long refusal: {line}")
+        return (
+            ("refused", line)
+            if "\n" not in line and len(line) < 1500
+            else ("fault", f"long refusal: {line}")
+        )
     except Exception as error:
         return "fault", f"{type(error).__name__}: {error}"
     return "used", ""

@@ -1,9 +1,10 @@
-"""Are random maps, switches and contacts either solved soundly or refused in one line that names a reason?
+"""Are random maps, switches and contacts either solved soundly or refused in one line that names a
+reason?
 
-Seeds are stated before a run. A map pressed by `asp.press` carries the load that was asked for, or says that it did not
-converge. A copy of a switch whose moduli, stresses and pressures are 2^-14 of it, so that no number rounds otherwise,
-has all voltages 2^-7 of it, to six digits. Pull-in and release follow the residual stress without jumps. A cycle of any
-mechanics is finite, or refused.
+Seeds are stated before a run. A map pressed by `asp.press` carries the load that was asked for, or
+says that it did not converge. A copy of a switch whose moduli, stresses and pressures are 2^-14 of
+it, so that no number rounds otherwise, has all voltages 2^-7 of it, to six digits. Pull-in and
+release follow the residual stress without jumps. A cycle of any mechanics is finite, or refused.
 """
 
 import time
@@ -31,11 +32,12 @@ SOFTER = 2.0**-14
 DIGITS = 1e-6
 """Of voltages."""
 PLACE, BALANCE = 0.03, 0.01
-"""Of landed share and capacitance, which have not six digits: balances are sought to a thousandth of a nanometre
-of some ten. Of seed 741128 one of 150 beams lands in jerks, where rounding moves its capacitance by 0.15 %."""
+"""Of landed share and capacitance, which have not six digits: balances are sought to a thousandth
+of a nanometre of some ten. Of seed 741128 one of 150 beams lands in jerks, where rounding moves its
+capacitance by 0.15 %."""
 JUMP = 0.02
-"""Of a voltage from one stress to the next, over the largest: a mesh moves a release by some per cent where it tears
-off in jerks (`tests/mesoscale/device/test_hard_beams.py`)."""
+"""Of a voltage from one stress to the next, over the largest: a mesh moves a release by some per
+cent where it tears off in jerks (`tests/mesoscale/device/test_hard_beams.py`)."""
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -65,7 +67,9 @@ def _tried(kind: str, attempt: Callable[[], str]) -> Attack:
         outcome = "fault" if words else "used"
     except InputError as error:
         words = str(error)
-        told = words.isprintable() and "fault of the solver" not in words and "internal" not in words
+        told = (
+            words.isprintable() and "fault of the solver" not in words and "internal" not in words
+        )
         outcome = "refused" if told else "fault"
     except Exception as error:  # of any kind: that is what is looked for
         outcome, words = "fault", f"{type(error).__name__}: {error}"
@@ -108,13 +112,27 @@ def _pressed(rng: np.random.Generator) -> str:
         laws = [lambda gap: 0.01 / (gap + 0.3) ** 3, lambda gap: -gap, lambda gap: 1.0, 5.0]
         options["attraction"] = laws[rng.integers(4)]
     pressed = asp.press(heights, side, loads, modulus, **options)
-    numbers = (pressed.loads_nN, pressed.separation_nm, pressed.approach_nm, pressed.attraction_nN, pressed.gap_nm)
+    numbers = (
+        pressed.loads_nN,
+        pressed.separation_nm,
+        pressed.approach_nm,
+        pressed.attraction_nN,
+        pressed.gap_nm,
+    )
     if not all(np.isfinite(of).all() for of in (*numbers, pressed.pressure_GPa)):
         return "not a number"
     if (pressed.pressure_GPa < 0.0).any():
         return "negative pressure"
-    site = pressed.lengths_nm[0] / pressed.pressure_GPa.shape[1] * pressed.lengths_nm[1] / pressed.pressure_GPa.shape[2]
-    carried, asked = pressed.pressure_GPa.sum((1, 2)) * site, np.atleast_1d(np.asarray(loads, float))
+    site = (
+        pressed.lengths_nm[0]
+        / pressed.pressure_GPa.shape[1]
+        * pressed.lengths_nm[1]
+        / pressed.pressure_GPa.shape[2]
+    )
+    carried, asked = (
+        pressed.pressure_GPa.sum((1, 2)) * site,
+        np.atleast_1d(np.asarray(loads, float)),
+    )
     if pressed.converged and abs(carried / asked - 1.0).max() > 0.02:
         return f"carries {carried} for {asked}"
     return ""
@@ -147,10 +165,15 @@ def _copied(rng: np.random.Generator) -> str:
     law = made_up_law(rng.choice([0.0, 10.0 ** rng.uniform(-1, 2)]))
     solved, _ = with_pad(lambda pad: solve_beam(settings, pad, 64), law)
     softer = settings.model_copy(
-        update={name: SOFTER * getattr(settings, name) for name in ("youngs_modulus_GPa", "residual_stress_MPa")}
+        update={
+            name: SOFTER * getattr(settings, name)
+            for name in ("youngs_modulus_GPa", "residual_stress_MPa")
+        }
     )
     flats = replace(law.flats, hamaker=SOFTER * law.flats.hamaker)
-    soft_law = PadLaw(law.separation_nm, SOFTER * law.closing, law.depth_nm, SOFTER * law.opening, flats)
+    soft_law = PadLaw(
+        law.separation_nm, SOFTER * law.closing, law.depth_nm, SOFTER * law.opening, flats
+    )
     copy, _ = with_pad(lambda pad: solve_beam(softer, pad, 64), soft_law)
     return _differ(solved, copy)
 
@@ -221,7 +244,9 @@ def _cycled(rng: np.random.Generator, mechanics: str) -> str:
         max_force_nN=modulus * length**2 * 10.0 ** rng.uniform(-7, -2),
     )
     cycle = run_cycle(inputs, settings, seed=int(rng.integers(1000)))
-    numbers = [value for branch in (cycle.closing, cycle.opening) for value in vars(branch).values()]
+    numbers = [
+        value for branch in (cycle.closing, cycle.opening) for value in vars(branch).values()
+    ]
     if not all(np.isfinite(value).all() for value in numbers):
         return "not a number"
     if (cycle.closing.repulsive_nN < 0.0).any() or (cycle.closing.attractive_nN > 0.0).any():

@@ -1,8 +1,9 @@
-"""Does a run that is ended, in any way, leave nothing behind, and does the next one end as if it had not been?
+"""Does a run that is ended, in any way, leave nothing behind, and does the next one end as if it
+had not been?
 
-The command is ended at random moments in every way that a supervisor, a terminal or the system has. Nothing of it may
-live on, and a folder that was ended several times and is then finished must hold the results of a run left alone.
-"""
+The command is ended at random moments in every way that a supervisor, a terminal or the system has.
+Nothing of it may live on, and a folder that was ended several times and is then finished must hold
+the results of a run left alone."""
 
 import os
 import pty
@@ -66,12 +67,18 @@ def rows(given: Any) -> Iterator[dict[str, Any]]:
 
 
 def campaign(folder: Path, scene: str, ends: int, seed: int) -> Iterator[Attack]:
-    """The attacks of one scene; a folder that ends with other results makes a fault of the last of them."""
+    """The attacks of one scene; a folder that ends with other results makes a fault of the last of
+    them.
+    """
     text, target = SCENES[scene]
     path = folder / f"{scene}.yaml"
     path.write_text(text, encoding="utf-8")
     expected, longest = undisturbed(folder / f"{scene}_quiet", path, target)
-    ways = [way for way in WAYS if scene == "glass" or (LAMMPS.upper() not in way and "LAMMPS" not in way)]
+    ways = [
+        way
+        for way in WAYS
+        if scene == "glass" or (LAMMPS.upper() not in way and "LAMMPS" not in way)
+    ]
     rng = random.Random(seed)
     for start in range(0, ends, ENDS_PER_FOLDER):
         place = folder / f"{scene}_{seed}_{start}"
@@ -82,23 +89,44 @@ def campaign(folder: Path, scene: str, ends: int, seed: int) -> Iterator[Attack]
         last = run(place, path, target)
         if last.returncode or contents(place / "results" / scene) != expected:
             said = last_words(last.stdout + last.stderr)
-            yield Attack("the run after these", "fault", time.monotonic() - started, said or "other results")
+            yield Attack(
+                "the run after these", "fault", time.monotonic() - started, said or "other results"
+            )
         else:
-            yield Attack("the run after these", "used", time.monotonic() - started, "the results of a run left alone")
+            yield Attack(
+                "the run after these",
+                "used",
+                time.monotonic() - started,
+                "the results of a run left alone",
+            )
 
 
-def _ended(rng: random.Random, place: Path, path: Path, target: str, longest: float, way: str) -> Attack:
+def _ended(
+    rng: random.Random, place: Path, path: Path, target: str, longest: float, way: str
+) -> Attack:
     """Start the command, end it at a random moment, and look what is left."""
     moment = rng.uniform(0.02, 0.4) * longest
     if (place / target).exists():
         shutil.rmtree(place / "results")  # so that there is work to interrupt
-    asperity = [str(Path(sys.executable).with_name("asperity")), "run", "--cores", "2", str(path), target]
-    environment = {**os.environ, "XDG_CACHE_HOME": str(place.with_name("cache")), "ASPERITY_ATTACK": str(place)}
+    asperity = [
+        str(Path(sys.executable).with_name("asperity")),
+        "run",
+        "--cores",
+        "2",
+        str(path),
+        target,
+    ]
+    environment = {
+        **os.environ,
+        "XDG_CACHE_HOME": str(place.with_name("cache")),
+        "ASPERITY_ATTACK": str(place),
+    }
     controller, terminal = pty.openpty() if way == "terminal closed" else os.pipe()
     with (place / "said.txt").open("wb") as file:
         said = terminal if way in ("terminal closed", "reader gone") else file
         process = subprocess.Popen(
-            asperity, cwd=place, env=environment, stdin=terminal if way == "terminal closed" else subprocess.DEVNULL,
+            asperity, cwd=place, env=environment,
+            stdin=terminal if way == "terminal closed" else subprocess.DEVNULL,
             stdout=said, stderr=said, start_new_session=True,
             preexec_fn=_take_terminal if way == "terminal closed" else None,
         )  # fmt: skip
@@ -114,8 +142,15 @@ def _ended(rng: random.Random, place: Path, path: Path, target: str, longest: fl
         os.kill(pid, signal.SIGKILL)
     process.wait()
     words = (place / "said.txt").read_text(errors="replace")
-    fault = f"lives on: {len(left)} processes" if left else "Traceback" if TRACE.search(words) else ""
-    return Attack(way, "fault" if fault else "used", time.monotonic() - ended, fault or f"after {moment:.0f} s")
+    fault = (
+        f"lives on: {len(left)} processes" if left else "Traceback" if TRACE.search(words) else ""
+    )
+    return Attack(
+        way,
+        "fault" if fault else "used",
+        time.monotonic() - ended,
+        fault or f"after {moment:.0f} s",
+    )
 
 
 def _take_terminal() -> None:
@@ -154,7 +189,9 @@ def _end(process: "subprocess.Popen[bytes]", way: str, controller: int, rng: ran
 
 
 def _wait_for_end(process: "subprocess.Popen[bytes]", place: Path, way: str) -> list[int]:
-    """Processes of this attack that live on; the run itself may go on where only a job was killed or nobody reads."""
+    """Processes of this attack that live on; the run itself may go on where only a job was killed
+    or nobody reads.
+    """
     patience = 20 * GONE_S if way in ("a job killed", "LAMMPS killed", "reader gone") else GONE_S
     started = time.monotonic()
     while time.monotonic() - started < patience:

@@ -1,8 +1,8 @@
-"""Does the server answer every request in one line of JSON, and others while it works on a large one?
+"""Does the server answer every request in one line of JSON, and others while it works on a large
+one?
 
-Requests are made up, cut off, of foreign hosts, of forms, or as large as they may be; between them an ordinary one must
-be answered as always.
-"""
+Requests are made up, cut off, of foreign hosts, of forms, or as large as they may be; between them
+an ordinary one must be answered as always."""
 
 import json
 import random
@@ -25,11 +25,25 @@ QUICK = {"cells": 1, "separations_nm": [80.0, 60.0], "contact": {"pixels": 32}}
 ORDINARY = {"name": "pad", "input": [CENTRE], "config": QUICK}
 JSON = {"Content-Type": "application/json"}
 ODD: tuple[Any, ...] = (
-    None, True, -1, 0, 1e300, 10**400, "", "x", [], {}, [[]], [None], "\x1b[31m", "\u202e", "cls", "self", "__class__",
-    float("nan"), float("inf"), {"cls": 1}, {"self": 1}, {"pixels": 10**9}, {"pixels": "!!int"}, [1e5] * 5000,
+    None, True, -1, 0, 1e300, 10**400, "", "x", [], {}, [[]], [None], "\x1b[31m", "\u202e", "cls",
+    "self", "__class__",
+    float("nan"), float("inf"), {"cls": 1}, {"self": 1}, {"pixels": 10**9}, {"pixels": "!!int"},
+    [1e5] * 5000,
     "a" * 10**5,
 )  # fmt: skip
-KEYS = ("name", "input", "config", "seed", "cells", "contact", "law", "device", "separations_nm", "cls", "__init__")
+KEYS = (
+    "name",
+    "input",
+    "config",
+    "seed",
+    "cells",
+    "contact",
+    "law",
+    "device",
+    "separations_nm",
+    "cls",
+    "__init__",
+)
 KINDS = (
     "made up",
     "made up",
@@ -74,13 +88,18 @@ def campaign(seed: int, count: int) -> Iterator[Attack]:
                 if outcome != "fault" and number % 10 == 9:
                     status, answer = _post(port, "/Evaluate", json.dumps(ORDINARY).encode(), JSON)
                     if status != 200 or server.poll() is not None:
-                        outcome, words = "fault", f"an ordinary request gets {status} {answer[:100]}"
+                        outcome, words = (
+                            "fault",
+                            f"an ordinary request gets {status} {answer[:100]}",
+                        )
                 seconds = time.monotonic() - started
                 yield Attack(kind, "fault" if seconds > HANG_S else outcome, seconds, words)
             errors.seek(0)
             said = errors.read().decode(errors="replace")
             words = said[-300:] if TRACE.search(said) or server.poll() is not None else "quiet"
-            yield Attack("what the server says", "used" if words == "quiet" else "fault", 0.0, words)
+            yield Attack(
+                "what the server says", "used" if words == "quiet" else "fault", 0.0, words
+            )
         finally:
             server.terminate()
             server.wait()
@@ -97,16 +116,28 @@ def _send(rng: random.Random, port: int, kind: str) -> tuple[str, str]:
     if kind in ("cut off", "no HTTP", "left alone"):
         return _leave(rng, port, kind)
     if kind == "foreign host":
-        headers["Host"] = rng.choice(("evil.example", "evil.example:4242", "localhost.evil.example", "", "[::1"))
+        headers["Host"] = rng.choice(
+            ("evil.example", "evil.example:4242", "localhost.evil.example", "", "[::1")
+        )
     elif kind == "form":
-        headers["Content-Type"] = rng.choice(("text/plain", "application/x-www-form-urlencoded", "multipart/form-data"))
+        headers["Content-Type"] = rng.choice(
+            ("text/plain", "application/x-www-form-urlencoded", "multipart/form-data")
+        )
     elif kind == "too large":
-        big = {"name": "pad", "input": [CENTRE], "config": {"cells": 10**5, "contact": {"pixels": 16384}}}
+        big = {
+            "name": "pad",
+            "input": [CENTRE],
+            "config": {"cells": 10**5, "contact": {"pixels": 16384}},
+        }
         path, body = "/Evaluate", json.dumps(big).encode() + b" " * rng.choice((0, 2 << 20))
     else:
         content = {**ORDINARY, "name": rng.choice(list(MODELS)), "config": {}}
         for _ in range(rng.randrange(1, 4)):
-            owner = rng.choice((content, content["config"])) if isinstance(content.get("config"), dict) else content
+            owner = (
+                rng.choice((content, content["config"]))
+                if isinstance(content.get("config"), dict)
+                else content
+            )
             owner[rng.choice(KEYS)] = rng.choice(ODD)
         body = json.dumps(rng.choice((content, content, content, rng.choice(ODD)))).encode()
         body = body[: rng.randrange(len(body))] if rng.random() < 0.2 and body else body
@@ -140,7 +171,10 @@ def _leave(rng: random.Random, port: int, kind: str) -> tuple[str, str]:
     """A client that sends a part, or all, of a long request and goes away."""
     body = {"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"pixels": 4096}}}
     text = json.dumps(body).encode()
-    head = b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: %d\r\n\r\n"
+    head = (
+        b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Type:"
+        b" application/json\r\nContent-Length: %d\r\n\r\n"
+    )
     whole = rng.randbytes(500) if kind == "no HTTP" else head % len(text) + text
     with socket.create_connection(("127.0.0.1", port)) as client:
         client.sendall(whole if kind == "left alone" else whole[: rng.randrange(1, len(whole))])

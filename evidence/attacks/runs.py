@@ -1,4 +1,6 @@
-"""What attacks share: small scenes, the command that runs them, what results say, and a table of outcomes."""
+"""What attacks share: small scenes, the command that runs them, what results say, and a table of
+outcomes.
+"""
 
 import os
 import re
@@ -17,9 +19,13 @@ from workflow.run.job import result_checksum
 
 HANG_S = 60.0
 TRACE = re.compile(
-    r'^\s*(Traceback|File "|\w*(Error|Exception)\b)|^Fatal Python|Segmentation fault|internal error', re.MULTILINE
+    r'^\s*(Traceback|File "|\w*(Error|Exception)\b)|^Fatal Python|Segmentation fault|internal'
+    r" error",
+    re.MULTILINE,
 )
-"""What no user should read: Python's traces, those that Snakemake prints without the word, and faults of our own."""
+"""What no user should read: Python's traces, those that Snakemake prints without the word, and
+faults of our own.
+"""
 LITERATURE = {
     "e_star": "{distribution: normal, values: [91, 3.8]}",
     "h_prime": "{values: [1.95, 14.8]}",
@@ -37,7 +43,9 @@ def scene(*lines: str, **rows: str) -> str:
 
 @dataclass(frozen=True)
 class Attack:
-    """One attack: its kind, what came of it (refused, used or fault), how long that took, and in what words."""
+    """One attack: its kind, what came of it (refused, used or fault), how long that took, and in
+    what words.
+    """
 
     kind: str
     outcome: str
@@ -65,7 +73,9 @@ def table(attacks: Iterable[Attack]) -> Iterator[dict[str, Any]]:
         }
 
 
-def campaign_table(campaign: Callable[..., Iterator[Attack]], *given: Any) -> Iterator[dict[str, Any]]:
+def campaign_table(
+    campaign: Callable[..., Iterator[Attack]], *given: Any
+) -> Iterator[dict[str, Any]]:
     """The table of a campaign in a temporary folder, which is its first argument."""
     with tempfile.TemporaryDirectory() as folder:
         yield from table(campaign(Path(folder), *given))
@@ -73,7 +83,11 @@ def campaign_table(campaign: Callable[..., Iterator[Attack]], *given: Any) -> It
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Numbers of the last campaign: attacks, faults, and the slowest."""
-    last = [row for row in rows if (row["command"], row["commit"]) == (rows[-1]["command"], rows[-1]["commit"])]
+    last = [
+        row
+        for row in rows
+        if (row["command"], row["commit"]) == (rows[-1]["command"], rows[-1]["commit"])
+    ]
     return {
         "attacks": str(sum(int(row["attacks"]) for row in last)),
         "faults": str(sum(int(row["faults"]) for row in last)),
@@ -82,7 +96,9 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
 
 
 def commanded(folder: Path, *arguments: str) -> tuple[int, str, float]:
-    """Exit status, words and seconds of the command `asperity` in a folder; ended where it hangs."""
+    """Exit status, words and seconds of the command `asperity` in a folder; ended where it
+    hangs.
+    """
     started = time.monotonic()
     process = subprocess.Popen(
         [str(Path(sys.executable).with_name("asperity")), *arguments],
@@ -114,28 +130,47 @@ GLASS = scene(
 
 
 def command(scene_file: Path, *targets: str) -> list[str]:
-    """Run targets of a scene on two cores, as `asperity run` does, without the time that its packages take to load."""
-    places = ["--snakefile", str(ROOT / "Snakefile"), "--workflow-profile", str(ROOT / "workflow/profiles/local")]
+    """Run targets of a scene on two cores, as `asperity run` does, without the time that its
+    packages take to load.
+    """
+    places = [
+        "--snakefile",
+        str(ROOT / "Snakefile"),
+        "--workflow-profile",
+        str(ROOT / "workflow/profiles/local"),
+    ]
     return [
-        sys.executable, "-m", "snakemake", *places, *targets, "--cores", "2", "--config", f"scene={scene_file}"
+        sys.executable, "-m", "snakemake", *places, *targets, "--cores", "2", "--config",
+        f"scene={scene_file}"
     ]  # fmt: skip
 
 
 def environment(folder: Path) -> dict[str, str]:
     """Packages of this checkout; Snakemake's cache beside the results' folder."""
-    return {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder.with_name(f"{folder.name}_cache"))}
+    return {
+        **os.environ,
+        "PYTHONPATH": str(ROOT),
+        "XDG_CACHE_HOME": str(folder.with_name(f"{folder.name}_cache")),
+    }
 
 
 def run(folder: Path, scene_file: Path, *targets: str) -> subprocess.CompletedProcess[str]:
     """Run to the end, with results below `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
     return subprocess.run(
-        command(scene_file, *targets), cwd=folder, env=environment(folder), capture_output=True, text=True, check=False
+        command(scene_file, *targets),
+        cwd=folder,
+        env=environment(folder),
+        capture_output=True,
+        text=True,
+        check=False,
     )
 
 
 def undisturbed(folder: Path, scene_file: Path, target: str) -> tuple[dict[str, str], float]:
-    """What the results of a run say that is left alone, and its seconds; kept in `folder` for the next campaign."""
+    """What the results of a run say that is left alone, and its seconds; kept in `folder` for the
+    next campaign.
+    """
     results, clock = folder / "results" / scene_file.stem, folder / "seconds"
     if not clock.exists():
         started = time.monotonic()
@@ -147,16 +182,22 @@ def undisturbed(folder: Path, scene_file: Path, target: str) -> tuple[dict[str, 
 
 
 def contents(results: Path) -> dict[str, str]:
-    """Checksum of what each result says, machine times apart, by its path; logs and working files left out."""
+    """Checksum of what each result says, machine times apart, by its path; logs and working files
+    left out.
+    """
     return {
         str(path.relative_to(results)): result_checksum(path)
         for path in sorted(results.rglob("*"))
-        if path.is_file() and path.name[0] != "." and path.relative_to(results).parts[0] not in ("logs", "work")
+        if path.is_file()
+        and path.name[0] != "."
+        and path.relative_to(results).parts[0] not in ("logs", "work")
     }
 
 
 def last_words(said: str) -> str:
-    """How a run ends by what it said: its first ERROR line, else its last line; 'Traceback' where it shows one."""
+    """How a run ends by what it said: its first ERROR line, else its last line; 'Traceback' where
+    it shows one.
+    """
     lines = said.strip().splitlines()
     if TRACE.search(said):
         return "Traceback"

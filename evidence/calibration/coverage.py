@@ -1,10 +1,10 @@
 """Do intervals of posteriors hold the truth as often as they say (simulation-based calibration)?
 
-Truths are drawn from the prior, data from the engine's own surfaces at these truths, and every posterior is that of the
-product's responses and likelihood, by importance sampling of prior draws. Ranks of the truths are uniform if all is
-well (Talts et al., arXiv 1804.06788). A set is left out only where its own datum is missing: a surface that never
-pushes that much. That depends on the data alone, and so keeps ranks uniform.
-"""
+Truths are drawn from the prior, data from the engine's own surfaces at these truths, and every
+posterior is that of the product's responses and likelihood, by importance sampling of prior draws.
+Ranks of the truths are uniform if all is well (Talts et al., arXiv 1804.06788). A set is left out
+only where its own datum is missing: a surface that never pushes that much. That depends on the data
+alone, and so keeps ranks uniform."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -44,14 +44,20 @@ FEWEST_EFFECTIVE = 50.0
 FIRST_SET_SEED = 1_900_000_000
 FORCE_POINTS = 20
 RUNS = 3200
-"""Cycles behind the responses: their error is shared by all sets and would shift all ranks together."""
+"""Cycles behind the responses: their error is shared by all sets and would shift all ranks
+together.
+"""
 CONTACT = ContactSettings(mechanics="asperity", pixels=128, attraction="clamped")
 SIGNIFICANCE = 0.05
 """Chance that any of the tests of uniform ranks fails although all are uniform."""
 D0_SPREAD = 0.15
-"""Standard deviation of ln D0 between sets whose law of attraction the responses do not know; they have 0.165 nm."""
+"""Standard deviation of ln D0 between sets whose law of attraction the responses do not know; they
+have 0.165 nm.
+"""
 PULL_OFF_SPREAD = 2.8 * D0_SPREAD
-"""What that is in ln of the pull-off force: on 830 surfaces with D0 from 0.12 to 0.3 nm it went as D0^-2.8."""
+"""What that is in ln of the pull-off force: on 830 surfaces with D0 from 0.12 to 0.3 nm it went as
+D0^-2.8.
+"""
 
 
 @dataclass(frozen=True)
@@ -89,7 +95,8 @@ def rows(given: Any) -> Iterator[dict[str, Any]]:
     table = input_table()
     truths, pool = table.sample(SETS, 17), table.sample(POOL, 5)
     over_prior = [
-        random_runs(table, first, first + 100, seed=11, first_surface=FIRST_SET_SEED) for first in range(0, RUNS, 100)
+        random_runs(table, first, first + 100, seed=11, first_surface=FIRST_SET_SEED)
+        for first in range(0, RUNS, 100)
     ]
     drawn = CONTACT.gap_cutoff_nm * np.exp(
         D0_SPREAD * np.random.default_rng(np.random.SeedSequence([0xD0])).standard_normal(SETS)
@@ -100,21 +107,36 @@ def rows(given: Any) -> Iterator[dict[str, Any]]:
         for wrong in (False, True):
             at_truths = [
                 [
-                    Run(k, -1, FIRST_SET_SEED + 10_000 + 100 * number + k, dict(zip(table.names, truth, strict=True)))
+                    Run(
+                        k,
+                        -1,
+                        FIRST_SET_SEED + 10_000 + 100 * number + k,
+                        dict(zip(table.names, truth, strict=True)),
+                    )
                     for k in range(SURFACES)
                 ]
                 for number, truth in enumerate(truths.tolist())
             ]
-            contacts = [CONTACT.model_copy(update={"gap_cutoff_nm": d0} if wrong else {}) for d0 in drawn.tolist()]
-            known[wrong] = np.array([cycles.y for cycles in workers.map(_observed, at_truths, contacts)])
+            contacts = [
+                CONTACT.model_copy(update={"gap_cutoff_nm": d0} if wrong else {})
+                for d0 in drawn.tolist()
+            ]
+            known[wrong] = np.array(
+                [cycles.y for cycles in workers.map(_observed, at_truths, contacts)]
+            )
     cycles = Cycles(np.vstack([part.x for part in parts]), np.vstack([part.y for part in parts]))
     with ProcessPoolExecutor() as workers:
-        asked = [workers.submit(coverage_row, case, table, cycles, truths, known[case.wrong], pool) for case in CASES]
+        asked = [
+            workers.submit(coverage_row, case, table, cycles, truths, known[case.wrong], pool)
+            for case in CASES
+        ]
         yield from (one.result() for one in asked)
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """What 90 % intervals hold, and whether ranks are uniform (Kolmogorov and Smirnov's test, Bonferroni's bound)."""
+    """What 90 % intervals hold, and whether ranks are uniform (Kolmogorov and Smirnov's test,
+    Bonferroni's bound).
+    """
 
     def held(some: Sequence[Mapping[str, str]]) -> str:
         shares = [float(row[key]) for row in some for key in row if key.startswith("coverage_")]
@@ -135,8 +157,12 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     }
 
 
-def table_of(case: Case, y: Array, x: Array, names: Sequence[str], rng: np.random.Generator) -> Measurements | None:
-    """Data with drawn errors from the surfaces y (SURFACES, k) at inputs x (n,); None where a datum is missing."""
+def table_of(
+    case: Case, y: Array, x: Array, names: Sequence[str], rng: np.random.Generator
+) -> Measurements | None:
+    """Data with drawn errors from the surfaces y (SURFACES, k) at inputs x (n,); None where a datum
+    is missing.
+    """
     kind, count = case.kind, case.count
     named = dict(zip(names, x.tolist(), strict=True))
     specimens = tuple(f"s{k}" for k in range(count))
@@ -148,7 +174,11 @@ def table_of(case: Case, y: Array, x: Array, names: Sequence[str], rng: np.rando
     elif kind == "hardness":
         area = np.geomspace(40, 4000, count)
         truth = named["h_macro"] + named["h_prime"] * area**-0.25
-        columns = {"area": area, "hardness": truth + 0.3 * noise, "hardness_error": np.full(count, 0.3)}
+        columns = {
+            "area": area,
+            "hardness": truth + 0.3 * noise,
+            "hardness_error": np.full(count, 0.3),
+        }
     elif kind == "modulus":
         columns = {"e_star": named["e_star"] + 3 * noise, "e_star_error": np.full(count, 3.0)}
     else:
@@ -166,7 +196,8 @@ def _curves(kind: str, y: Array, rng: np.random.Generator) -> dict[str, Array]:
     forces = force_levels_nN(CONTACT.max_force_nN)
     points = np.geomspace(forces[0], forces[-1], FORCE_POINTS)
     curves = [
-        np.interp(np.log(points), np.log(forces), row) + rng.uniform(-20, 20) for row in y[:, first : first + 1] - steps
+        np.interp(np.log(points), np.log(forces), row) + rng.uniform(-20, 20)
+        for row in y[:, first : first + 1] - steps
     ]
     size = len(y) * FORCE_POINTS
     return {
@@ -196,7 +227,9 @@ def coverage_row(
         if data is None:
             missing += 1
             continue
-        logs = np.concatenate([model.posterior([data]).log_likelihood(part) for part in np.array_split(pool, 8)])
+        logs = np.concatenate(
+            [model.posterior([data]).log_likelihood(part) for part in np.array_split(pool, 8)]
+        )
         weights = np.exp(logs - logs.max())
         weights /= weights.sum()
         effective.append(1 / (weights**2).sum())

@@ -1,7 +1,7 @@
 """What does it change that attraction deforms the contact?
 
-The same surfaces by `coupled` and by `adhesive`: inputs and D0 drawn as in `contact.draws`, which also judges them.
-"""
+The same surfaces by `coupled` and by `adhesive`: inputs and D0 drawn as in `contact.draws`, which
+also judges them."""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
@@ -37,7 +37,9 @@ def _judged(number: int, pixels: int) -> dict[str, Any]:
     """Pull-off of one draw by both mechanics."""
     inputs = draw_inputs(number)
     cutoff = draw_cutoff(number)
-    settings = ContactSettings(mechanics="adhesive", pixels=pixels, q1_per_nm=Q1_PER_NM, gap_cutoff_nm=cutoff)
+    settings = ContactSettings(
+        mechanics="adhesive", pixels=pixels, q1_per_nm=Q1_PER_NM, gap_cutoff_nm=cutoff
+    )
     surface = random_surface(inputs, settings, number)
     cycle = partial(run_cycle, inputs, seed=number, heights=surface, contact_at="lowest")
     coupled = cycle(settings.model_copy(update={"mechanics": "coupled"}))
@@ -56,7 +58,8 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     finest = max(int(row["pixels"]) for row in rows)
     fine = [row for row in rows if int(row["pixels"]) == finest]
     coupled, adhesive = (
-        np.array([float(row[f"pull_off_{name}_nN"]) for row in fine]) for name in ("coupled", "adhesive")
+        np.array([float(row[f"pull_off_{name}_nN"]) for row in fine])
+        for name in ("coupled", "adhesive")
     )
     low, middle, high = np.quantile(coupled / adhesive - 1.0, (0.05, 0.5, 0.95))
     return {"overestimate": f"{middle:.0%} [{low:.0%}, {high:.0%}]"}

@@ -1,9 +1,8 @@
 """How near are forces and areas of the coupled engine to those of tamaas, another code?
 
-Both press the same periodic surfaces, the engine to the separations that tamaas finds: elastic, with saturated
-pressure, and unloading what plastic closing has flattened. tamaas (L. Frerot et al., J. Open Source
-Softw. 5 (2020) 2121) needs the optional extra `peers`.
-"""
+Both press the same periodic surfaces, the engine to the separations that tamaas finds: elastic,
+with saturated pressure, and unloading what plastic closing has flattened. tamaas (L. Frerot et al.,
+J. Open Source Softw. 5 (2020) 2121) needs the optional extra `peers`."""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
@@ -49,7 +48,9 @@ def by_tamaas(
     hardness: float | None = None,
     tolerance: float = 1e-10,
 ) -> Pressed:
-    """Contact of (N, N) heights in nm, mean zero, at their minima, with a half-space of E* and a hardness (GPa)."""
+    """Contact of (N, N) heights in nm, mean zero, at their minima, with a half-space of E* and a
+    hardness (GPa).
+    """
     import tamaas  # pyright: ignore[reportMissingImports]  (optional extra)
 
     tamaas.set_log_level(tamaas.LogLevel.error)
@@ -77,17 +78,26 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """A row for each kind and load: largest differences over the surfaces."""
     length = CELL_NM * given.pixels / 64
-    inputs = ContactInputs(**{**vars(MIDDLE), "h_macro": HARDNESS_GPA, "h_prime": 0.0, "q0": 0.15, "rms": 2.0})
+    inputs = ContactInputs(
+        **{**vars(MIDDLE), "h_macro": HARDNESS_GPA, "h_prime": 0.0, "q0": 0.15, "rms": 2.0}
+    )
     settings = ContactSettings(mechanics="coupled", pixels=given.pixels, length_nm=length)
     for kind, loads in LOADS_NN.items():
-        chosen = settings.model_copy(update={"model": "nonlinear" if kind == "nonlinear" else "elastic"})
+        chosen = settings.model_copy(
+            update={"model": "nonlinear" if kind == "nonlinear" else "elastic"}
+        )
         surfaces = [random_surface(inputs, settings, seed) for seed in range(1, given.surfaces + 1)]
         if kind == "unloading":
             surfaces = [_flattened(heights, inputs, settings) for heights in surfaces]
         for load in (load * (given.pixels / 64) ** 2 for load in loads):
             differences = [_difference(heights, inputs, chosen, load) for heights in surfaces]
             force, sites, share = np.max(np.abs(differences), axis=0).tolist()
-            yield {"kind": kind, "pixels": given.pixels, "surfaces": len(surfaces), "load_nN": load} | {
+            yield {
+                "kind": kind,
+                "pixels": given.pixels,
+                "surfaces": len(surfaces),
+                "load_nN": load,
+            } | {
                 "largest_share_of_area": share,
                 "force_difference": force,
                 "sites_difference": sites,
@@ -104,7 +114,9 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
 def _flattened(heights: np.ndarray, inputs: ContactInputs, settings: ContactSettings) -> np.ndarray:
     load = 2e3 * (settings.pixels / 64) ** 2
     bare = replace(inputs, hamaker=0.0)
-    flattened = run_cycle(bare, settings, 0, load, heights, keep_surface=True, contact_at="lowest").heights
+    flattened = run_cycle(
+        bare, settings, 0, load, heights, keep_surface=True, contact_at="lowest"
+    ).heights
     assert flattened is not None
     return flattened
 
@@ -112,7 +124,9 @@ def _flattened(heights: np.ndarray, inputs: ContactInputs, settings: ContactSett
 def _difference(
     heights: np.ndarray, inputs: ContactInputs, settings: ContactSettings, load_nN: float
 ) -> tuple[float, float, float]:
-    """Relative differences of force and touching sites at the separation of tamaas, and the share of sites."""
+    """Relative differences of force and touching sites at the separation of tamaas, and the share
+    of sites.
+    """
     hardness = HARDNESS_GPA if settings.model == "nonlinear" else None
     wanted = by_tamaas(heights, settings.length_nm, load_nN, inputs.e_star, hardness, 1e-8)
     touching = int((wanted.pressure > 0).sum())

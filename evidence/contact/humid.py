@@ -1,10 +1,10 @@
 """How does the work that opens rough films grow with humidity, and where does it jump?
 
-Polysilicon on polysilicon with a native oxide. Each wall has the RMS height s; two whose heights have the correlation c
-are one of s sqrt(2 (1 - c)) on a flat. Pads of a few cells are closed to 1 MPa and opened from there; the work counts
-from zero net force on. DelRio et al. (2007, doi:10.1063/1.2723658) found the work of dispersion up to a threshold of
-humidity, and then a jump towards 144 mJ/m2. Nothing here is fitted to them.
-"""
+Polysilicon on polysilicon with a native oxide. Each wall has the RMS height s; two whose heights
+have the correlation c are one of s sqrt(2 (1 - c)) on a flat. Pads of a few cells are closed to 1
+MPa and opened from there; the work counts from zero net force on. DelRio et al. (2007,
+doi:10.1063/1.2723658) found the work of dispersion up to a threshold of humidity, and then a jump
+towards 144 mJ/m2. Nothing here is fitted to them."""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,7 +26,8 @@ CELLS = 16
 LOAD_GPa = 1e-3
 STEP_NM = 0.1
 WET_J_M2 = 0.144
-# E* of two walls of polysilicon, 169 GPa and nu 0.22 (Sharpe, Yuan and Edwards, J. MEMS 6 (1997) 193)
+# E* of two walls of polysilicon, 169 GPa and nu 0.22 (Sharpe, Yuan and Edwards, J. MEMS 6 (1997)
+# 193)
 FILM = {"e_star": 88.8, "h_macro": 12.0, "h_prime": 0.0, "q0": 0.02, "hurst": 0.75}
 # A_H of silica, and its share across water (Bergstrom 1997, doi:10.1016/S0001-8686(97)00003-1)
 HAMAKER, SHARE = 0.065, 0.07
@@ -37,14 +38,28 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     for rms, correlation, humidity in product(ROUGHNESS_NM, CORRELATIONS, HUMIDITIES):
         both = rms * float(np.sqrt(2.0 * (1.0 - correlation)))
         inputs = ContactInputs(**FILM, hamaker=HAMAKER, rms=both)
-        opened = open_pad(inputs, AirSettings(humidity=humidity, hamaker_share=SHARE), LOAD_GPa, CELLS)
-        yield {"rms_nm": rms, "correlation": correlation, "combined_nm": both, "humidity": humidity, **opened}
+        opened = open_pad(
+            inputs, AirSettings(humidity=humidity, hamaker_share=SHARE), LOAD_GPa, CELLS
+        )
+        yield {
+            "rms_nm": rms,
+            "correlation": correlation,
+            "combined_nm": both,
+            "humidity": humidity,
+            **opened,
+        }
 
 
-def open_pad(inputs: ContactInputs, air: AirSettings, load_GPa: float, cells: int) -> dict[str, Any]:
+def open_pad(
+    inputs: ContactInputs, air: AirSettings, load_GPa: float, cells: int
+) -> dict[str, Any]:
     """Work that opens a pad after a load, and its pull-off."""
     contact = ContactSettings(
-        mechanics="coupled", pixels=128, q1_per_nm=0.4, gap_cutoff_nm=0.2, air=air if air.humidity else None
+        mechanics="coupled",
+        pixels=128,
+        q1_per_nm=0.4,
+        gap_cutoff_nm=0.2,
+        air=air if air.humidity else None,
     )
     pad = SideBySide(inputs, contact, sample_cells(inputs, cells))
     top = float(pad.first_contact_nm.max()) + STEP_NM
@@ -71,10 +86,16 @@ def open_pad(inputs: ContactInputs, air: AirSettings, load_GPa: float, cells: in
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """Work (mJ/m2) dry, at 50 and 95 %; the first humidity with a tenth of the work of wet flats."""
+    """Work (mJ/m2) dry, at 50 and 95 %; the first humidity with a tenth of the work of wet
+    flats.
+    """
     said = {}
     for rms, correlation in product(ROUGHNESS_NM, CORRELATIONS):
-        part = [row for row in rows if (float(row["rms_nm"]), float(row["correlation"])) == (rms, correlation)]
+        part = [
+            row
+            for row in rows
+            if (float(row["rms_nm"]), float(row["correlation"])) == (rms, correlation)
+        ]
         work = {float(row["humidity"]): float(row["work_mJ_m2"]) for row in part}
         wet = [humidity for humidity, value in work.items() if value > 1e2 * WET_J_M2]
         name = f"{rms:g}_{'like' if correlation else 'own'}"

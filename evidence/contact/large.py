@@ -1,8 +1,7 @@
 """How long does a large surface take to 1 % contact and back, and how much memory?
 
-Smooth elastic surfaces with sites of 1 nm, 63 to the shortest wave, in ten steps of force. Seconds are those of the
-processor. Memory is the largest of the process: give one grid a run.
-"""
+Smooth elastic surfaces with sites of 1 nm, 63 to the shortest wave, in ten steps of force. Seconds
+are those of the processor. Memory is the largest of the process: give one grid a run."""
 
 import argparse
 import resource
@@ -27,10 +26,15 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """One row."""
     cell = {**SMOOTH_CELL, "pixels": given.pixels, "length_nm": float(given.pixels)}
     settings = ContactSettings(mechanics="coupled", model="elastic", **cell)
-    heights, force_nN = random_surface(SMOOTH, settings, SEED), 20.5e-3 * given.pixels**2  # 20.5 MPa
+    heights, force_nN = (
+        random_surface(SMOOTH, settings, SEED),
+        20.5e-3 * given.pixels**2,
+    )  # 20.5 MPa
     start, numerics = time.process_time(), Numerics(force_steps=10)
     with mock.patch.object(cycle, "check_memory"):  # which is what is measured
-        found = run_cycle(SMOOTH, settings, SEED, force_nN, heights, contact_at="lowest", numerics=numerics)
+        found = run_cycle(
+            SMOOTH, settings, SEED, force_nN, heights, contact_at="lowest", numerics=numerics
+        )
     yield {
         "pixels": given.pixels,
         "share": found.closing.contact_area_nm2.max() / found.cell_area_nm2,

@@ -1,13 +1,14 @@
-"""Does an elastic, plastic and adhesive sphere close and open as in the granular model `mdr` of LAMMPS?
+"""Does an elastic, plastic and adhesive sphere close and open as in the granular model `mdr` of
+LAMMPS?
 
-`mdr` (S. Zunker and K. Kamrin, doi:10.1016/j.jmps.2023.105492) lets a sphere on a rigid flat yield at a mean pressure
-that falls with its depth, then recover elastically from an elliptic shape with the adhesion of JKR. Two equal spheres
-meet here, so that their plane of symmetry is the flat. The yield stress is chosen so that the pressure at the largest
-depth is our constant hardness. The attraction of `mdr` has no range, ours has D0. Its sphere flattens as a whole, too;
-ours is a sphere's shape on a periodic half-space. Its adhesion fades where a step lets the contact shrink by less than
-1 %, because its bonded radius then follows: 4000 steps back halve the pull-off that 400 have. A third answer is that of
-Mesarovic and Johnson (J. Mech. Phys. Solids 48 (2000) 2009).
-"""
+`mdr` (S. Zunker and K. Kamrin, doi:10.1016/j.jmps.2023.105492) lets a sphere on a rigid flat yield
+at a mean pressure that falls with its depth, then recover elastically from an elliptic shape with
+the adhesion of JKR. Two equal spheres meet here, so that their plane of symmetry is the flat. The
+yield stress is chosen so that the pressure at the largest depth is our constant hardness. The
+attraction of `mdr` has no range, ours has D0. Its sphere flattens as a whole, too; ours is a
+sphere's shape on a periodic half-space. Its adhesion fades where a step lets the contact shrink by
+less than 1 %, because its bonded radius then follows: 4000 steps back halve the pull-off that 400
+have. A third answer is that of Mesarovic and Johnson (J. Mech. Phys. Solids 48 (2000) 2009)."""
 
 import subprocess
 import tempfile
@@ -48,7 +49,8 @@ neighbor 2 bin
 neigh_modify delay 0 every 1 check no
 timestep 1
 pair_style granular
-pair_coeff * * mdr {young} {poisson} {strength} {work} 0.5 0 damping mdr 1 tangential linear_nohistory 0 0
+pair_coeff * * mdr {young} {poisson} {strength} {work} 0.5 0 &
+    damping mdr 1 tangential linear_nohistory 0 0
 variable pull equal fz[2]
 variable place equal z[2]
 group upper type 2
@@ -66,10 +68,18 @@ def rows(given: Any) -> Iterator[dict[str, Any]]:
     for work_of in WORKS_J_M2:
         depth, force, least = _by_mdr(work_of)
         settings = ContactSettings(
-            mechanics="adhesive", pixels=PIXELS, length_nm=CELL_NM, gap_cutoff_nm=CUTOFF_NM, max_force_nN=LOAD_NN
+            mechanics="adhesive",
+            pixels=PIXELS,
+            length_nm=CELL_NM,
+            gap_cutoff_nm=CUTOFF_NM,
+            max_force_nN=LOAD_NN,
         )
         inputs = replace(
-            MIDDLE, hamaker=12 * np.pi * CUTOFF_NM**2 * work_of, e_star=E_STAR, h_macro=HARDNESS, h_prime=0.0
+            MIDDLE,
+            hamaker=12 * np.pi * CUTOFF_NM**2 * work_of,
+            e_star=E_STAR,
+            h_macro=HARDNESS,
+            h_prime=0.0,
         )
         x = (np.arange(PIXELS) - PIXELS // 2 + 0.37) * CELL_NM / PIXELS
         heights = RADIUS - np.sqrt(RADIUS**2 - x[:, None] ** 2 - x[None, :] ** 2)
@@ -124,8 +134,12 @@ def _by_mdr(work_of: float) -> tuple[float, float, float]:
     return float(depth[turn]), float(force[turn]), float(force[turn:].min())
 
 
-def _path(work_of: float, strength: float, deepest: float, back: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Depths of one sphere (nm) and repulsive forces (nN) by `mdr`, on the way in and, if wanted, out."""
+def _path(
+    work_of: float, strength: float, deepest: float, back: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Depths of one sphere (nm) and repulsive forces (nN) by `mdr`, on the way in and, if wanted,
+    out.
+    """
     script = SCRIPT.format(
         size=4 * RADIUS,
         radius=RADIUS,
@@ -141,6 +155,14 @@ def _path(work_of: float, strength: float, deepest: float, back: bool) -> tuple[
     )
     with tempfile.TemporaryDirectory() as folder:
         command = [str(executable()), "-log", "none", "-nocite"]
-        subprocess.run(command, input=script, cwd=folder, env=environment(), text=True, check=True, capture_output=True)
+        subprocess.run(
+            command,
+            input=script,
+            cwd=folder,
+            env=environment(),
+            text=True,
+            check=True,
+            capture_output=True,
+        )
         place, force = np.loadtxt(Path(folder) / "path.txt").T
     return RADIUS - 0.5 * (place + RADIUS), force

@@ -1,12 +1,13 @@
-"""Are the forces of an adhesive contact those of the libraries Adhesion and tamaas, and how much faster are they?
+"""Are the forces of an adhesive contact those of the libraries Adhesion and tamaas, and how much
+faster are they?
 
-All press the same periodic, elastic surfaces to the same separations, and pull them off again, one core each; times are
-of the processor. Adhesion (A. Sanner and L. Pastewka, github.com/ContactEngineering/Adhesion) minimises the energy over
-the gaps by L-BFGS-B, each step from the last; the law of attraction is added to it as a potential of its own. tamaas
-(L. Frerot et al., J. Open Source Softw. 5 (2020) 2121) minimises it by Polonsky and Keer's conjugate gradients. It has
-exponential attraction only, so it sums those whose integral the law is. Both are run at every few separations, and
-their times are scaled to all. Needs `pip install Adhesion tamaas`.
-"""
+All press the same periodic, elastic surfaces to the same separations, and pull them off again, one
+core each; times are of the processor. Adhesion (A. Sanner and L. Pastewka,
+github.com/ContactEngineering/Adhesion) minimises the energy over the gaps by L-BFGS-B, each step
+from the last; the law of attraction is added to it as a potential of its own. tamaas (L. Frerot et
+al., J. Open Source Softw. 5 (2020) 2121) minimises it by Polonsky and Keer's conjugate gradients.
+It has exponential attraction only, so it sums those whose integral the law is. Both are run at
+every few separations, and their times are scaled to all. Needs `pip install Adhesion tamaas`."""
 
 import argparse
 import time
@@ -23,7 +24,10 @@ from mesoscale.settings import ContactSettings
 
 SITE_NM = 1.0
 STEPS = 10  # of each branch
-DEPTHS = (-6.0, 1.0)  # of the branches, from the first contact of the undeformed surface, in units of D0
+DEPTHS = (
+    -6.0,
+    1.0,
+)  # of the branches, from the first contact of the undeformed surface, in units of D0
 WORK_J_M2 = 0.05
 RANGES_NM = (0.012, 1000.0)  # of the exponentials
 RANGE_STEP = 0.5  # of their logarithms: the law to 1e-5
@@ -35,7 +39,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--pixels", type=int, nargs="+", default=[64, 128])
     parser.add_argument("--surfaces", type=int, default=2)
     parser.add_argument("--e-star", type=float, nargs="+", default=[5.0, 91.0])
-    parser.add_argument("--every", type=int, default=5, help="of how many separations the others solve one")
+    parser.add_argument(
+        "--every", type=int, default=5, help="of how many separations the others solve one"
+    )
 
 
 def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -54,7 +60,11 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
 def _compared(pixels: int, e_star: float, seed: int, every: int) -> dict[str, Any]:
     cutoff = 0.3
     settings = ContactSettings(
-        mechanics="adhesive", model="elastic", pixels=pixels, length_nm=SITE_NM * pixels, gap_cutoff_nm=cutoff
+        mechanics="adhesive",
+        model="elastic",
+        pixels=pixels,
+        length_nm=SITE_NM * pixels,
+        gap_cutoff_nm=cutoff,
     )
     hamaker = 12 * np.pi * cutoff**2 * WORK_J_M2
     inputs = replace(MIDDLE, e_star=e_star, hamaker=hamaker, q0=0.06, rms=1.5)
@@ -69,7 +79,9 @@ def _compared(pixels: int, e_star: float, seed: int, every: int) -> dict[str, An
         return np.array([row.force + row.attraction for row in rows])
 
     given = (heights, settings.length_nm, e_star, hamaker, cutoff)
-    (reached, adhesion), seconds_adhesion = _timed(lambda: _by_adhesion(*given, separations[::every]))
+    (reached, adhesion), seconds_adhesion = _timed(
+        lambda: _by_adhesion(*given, separations[::every])
+    )
     tamaas, seconds_tamaas = _timed(lambda: _by_tamaas(*given, reached))
     _, seconds = _timed(lambda: here(separations))
     forces = here(reached)
@@ -93,7 +105,12 @@ def _timed(work: Callable[[], Any]) -> tuple[Any, float]:
 
 
 def _by_tamaas(
-    heights: np.ndarray, length: float, e_star: float, hamaker: float, cutoff: float, separations: np.ndarray
+    heights: np.ndarray,
+    length: float,
+    e_star: float,
+    hamaker: float,
+    cutoff: float,
+    separations: np.ndarray,
 ) -> np.ndarray:
     """Net forces (nN), one after the other; 1/s^2 is the integral of t exp(-s t) over t."""
     import tamaas  # pyright: ignore[reportMissingImports]  (optional extra)
@@ -118,12 +135,17 @@ def _by_tamaas(
 
 
 def _by_adhesion(
-    heights: np.ndarray, length: float, e_star: float, hamaker: float, cutoff: float, separations: np.ndarray
+    heights: np.ndarray,
+    length: float,
+    e_star: float,
+    hamaker: float,
+    cutoff: float,
+    separations: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Separations of the mean planes and net forces (nN), one after the other.
 
-    The half-space of Adhesion yields as a whole, too: by the mean of its displacement it is farther away.
-    """
+    The half-space of Adhesion yields as a whole, too: by the mean of its displacement it is farther
+    away."""
     from Adhesion.Interactions import Potential  # pyright: ignore[reportMissingImports]  (not a dependency)
     from Adhesion.System import BoundedSmoothContactSystem, make_system  # pyright: ignore[reportMissingImports]
     from ContactMechanics import PeriodicFFTElasticHalfSpace  # pyright: ignore[reportMissingImports]
@@ -148,11 +170,15 @@ def _by_adhesion(
 
     sides = (length, length)
     half_space = PeriodicFFTElasticHalfSpace(heights.shape, e_star, sides)
-    system = make_system(Topography(-heights, sides), Walls(), half_space, system_class=BoundedSmoothContactSystem)
+    system = make_system(
+        Topography(-heights, sides), Walls(), half_space, system_class=BoundedSmoothContactSystem
+    )
     reached, forces, last = [], [], None
     for separation in separations.tolist():
         options = {"ftol": 0.0, "gtol": 1e-7, "maxcor": 30, "maxiter": 5000, "maxfun": 20000}
-        found = system.minimize_proxy(offset=-separation, initial_displacements=last, options=options)
+        found = system.minimize_proxy(
+            offset=-separation, initial_displacements=last, options=options
+        )
         last = found.x.reshape(heights.shape)
         reached.append(separation + float(last.mean()))
         forces.append(float(system.compute_normal_force()))

@@ -1,4 +1,5 @@
-"""The contact model written down plainly in NumPy and SciPy: its definition, and the oracle of the engine.
+"""The contact model written down plainly in NumPy and SciPy: its definition, and the oracle of the
+engine.
 
 Whole-grid passes, no local updates, no history beyond the heights. Slow and meant to be read beside
 docs/contact.md. Units nm, nN, GPa. It shares no code with the engine.
@@ -76,7 +77,9 @@ def curvature(h: np.ndarray, spacing: float) -> np.ndarray:
     return total / 2
 
 
-def asperities(h: np.ndarray, separation: float, inputs: ContactInputs, settings: ContactSettings) -> list[Asperity]:
+def asperities(
+    h: np.ndarray, separation: float, inputs: ContactInputs, settings: ContactSettings
+) -> list[Asperity]:
     """All asperities in contact at a separation, with eq. 3 and eq. 4."""
     spacing = settings.length_nm / len(h)
     reading = settings.reading
@@ -99,7 +102,9 @@ def asperities(h: np.ndarray, separation: float, inputs: ContactInputs, settings
         if reading.area == "hertz":
             area = np.pi * radius * indentation
         yields = hardness(area, inputs)
-        touching.append(Asperity(sites, divmod(int(peak), len(h)), indentation, radius, area, force, yields))
+        touching.append(
+            Asperity(sites, divmod(int(peak), len(h)), indentation, radius, area, force, yields)
+        )
     return touching
 
 
@@ -117,15 +122,26 @@ def attraction(h, separation, inputs: ContactInputs, settings: ContactSettings) 
     if not settings.reading.touching_attracts:
         gap = gap[gap >= 0]
     cutoff = settings.gap_cutoff_nm
-    gap = np.maximum(gap, 0.0) + cutoff if settings.attraction == "offset" else np.maximum(gap, cutoff)
+    gap = (
+        np.maximum(gap, 0.0) + cutoff
+        if settings.attraction == "offset"
+        else np.maximum(gap, cutoff)
+    )
     area = (settings.length_nm / len(h)) ** 2
     return -inputs.hamaker * area / (6 * np.pi) * np.sum(gap**-3)
 
 
 def raise_site(
-    h: np.ndarray, site: tuple[int, int], rise: float, asperity: Asperity, settings: ContactSettings, numerics: Numerics
+    h: np.ndarray,
+    site: tuple[int, int],
+    rise: float,
+    asperity: Asperity,
+    settings: ContactSettings,
+    numerics: Numerics,
 ):
-    """One flow, in place: a narrow Gaussian up, a wide one down, no change of volume on the periodic grid."""
+    """One flow, in place: a narrow Gaussian up, a wide one down, no change of volume on the
+    periodic grid.
+    """
     n = len(h)
     spacing = settings.length_nm / n
     contact = np.sqrt(asperity.area / np.pi)
@@ -149,8 +165,8 @@ def settle(
 ) -> tuple[np.ndarray, int, bool]:
     """Let yielding asperities flow until none is above its hardness.
 
-    Returns the surface, the sweeps, and whether flow came to its end. Nothing flows where every site touches.
-    """
+    Returns the surface, the sweeps, and whether flow came to its end. Nothing flows where every
+    site touches."""
     h = h.copy()
     returning = numerics.flow == "return"
     tolerance = numerics.flow_tolerance if returning else 0.0
@@ -183,7 +199,9 @@ def settle(
     return h, numerics.max_sweeps, False
 
 
-def walk(h, separations, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS):
+def walk(
+    h, separations, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
+):
     """Repulsion and attraction at falling separations; returns them and the final surface."""
     forces = []
     for separation in separations:

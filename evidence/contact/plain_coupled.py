@@ -1,7 +1,8 @@
-"""The coupled contact written down plainly: one dense matrix for the whole cell, SciPy's bounded least squares.
+"""The coupled contact written down plainly: one dense matrix for the whole cell, SciPy's bounded
+least squares.
 
-For small grids, meant to be read beside docs/contact.md. Units nm, nN, GPa. It shares no code with the engine.
-"""
+For small grids, meant to be read beside docs/contact.md. Units nm, nN, GPa. It shares no code with
+the engine."""
 
 import numpy as np
 from scipy import linalg, optimize
@@ -13,7 +14,9 @@ from mesoscale.settings import ContactSettings
 
 
 def influence_matrix(pixels: int, length: float, e_star: float) -> np.ndarray:
-    """Displacement (nm) of every site by a unit pressure (GPa) on every other: 2 / (E* |q|) summed wave by wave."""
+    """Displacement (nm) of every site by a unit pressure (GPa) on every other: 2 / (E* |q|) summed
+    wave by wave.
+    """
     waves = np.fft.fftfreq(pixels, length / pixels) * 2 * np.pi
     q = np.hypot(waves[:, None], waves[None, :])
     q[0, 0] = np.inf
@@ -24,7 +27,9 @@ def influence_matrix(pixels: int, length: float, e_star: float) -> np.ndarray:
 
 
 def pressures(gap: np.ndarray, limit: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    """p that minimises p G p / 2 + p gap with 0 <= p <= limit; the site farthest away is left out, p = 0 there."""
+    """p that minimises p G p / 2 + p gap with 0 <= p <= limit; the site farthest away is left out,
+    p = 0 there.
+    """
     kept = np.delete(np.arange(gap.size), np.argmax(gap))
     root = linalg.cholesky(matrix[np.ix_(kept, kept)])
     wanted = -linalg.solve_triangular(root, gap[kept], trans="T")
@@ -32,7 +37,9 @@ def pressures(gap: np.ndarray, limit: np.ndarray, matrix: np.ndarray) -> np.ndar
     if np.isinf(limit).all():
         p[kept] = optimize.nnls(root, wanted, maxiter=100 * kept.size)[0]
     else:
-        p[kept] = optimize.lsq_linear(root, wanted, (0, limit[kept]), method="bvls", tol=1e-15, max_iter=5000).x
+        p[kept] = optimize.lsq_linear(
+            root, wanted, (0, limit[kept]), method="bvls", tol=1e-15, max_iter=5000
+        ).x
     return p
 
 
@@ -50,7 +57,11 @@ def walk(h, separations, inputs: ContactInputs, settings: ContactSettings):
     h = h.astype(float).copy()
     pixels = len(h)
     matrix = influence_matrix(pixels, settings.length_nm, inputs.e_star)
-    limit = np.full(h.size, np.inf) if settings.model == "elastic" else hardness(h > np.inf, inputs, settings)
+    limit = (
+        np.full(h.size, np.inf)
+        if settings.model == "elastic"
+        else hardness(h > np.inf, inputs, settings)
+    )
     rows = []
     for separation in separations:
         for _ in range(50):
@@ -64,7 +75,9 @@ def walk(h, separations, inputs: ContactInputs, settings: ContactSettings):
                 break
         if settings.model == "plastic":
             overlap = -(h.ravel() + separation + matrix @ p)
-            yields = (p >= limit * (1 - 1e-12)) & (overlap > 0)  # the solver's own rounding lies below the limit
+            yields = (p >= limit * (1 - 1e-12)) & (
+                overlap > 0
+            )  # the solver's own rounding lies below the limit
             h.ravel()[yields] += overlap[yields]
         rows.append(p.reshape(h.shape))
     return np.array(rows), h

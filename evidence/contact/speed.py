@@ -1,10 +1,10 @@
 """What does a closing-opening cycle cost beside a plain model and other codes, in one run?
 
-Seconds of the processor, one thread each. The floor is a normal number per site, and a transform there and back. The
-plain model is `evidence.contact.plain_contact`. The peers solve one elastic load at the largest force, without plastic
-flow. Adhesive cycles have branches of 20 steps of force, beside what they need at touch, before it and after it.
-Memory is the largest of the process so far: run one by `--only`.
-"""
+Seconds of the processor, one thread each. The floor is a normal number per site, and a transform
+there and back. The plain model is `evidence.contact.plain_contact`. The peers solve one elastic
+load at the largest force, without plastic flow. Adhesive cycles have branches of 20 steps of force,
+beside what they need at touch, before it and after it. Memory is the largest of the process so far:
+run one by `--only`."""
 
 import argparse
 import importlib.util
@@ -31,7 +31,9 @@ SEED = 1
 PLAIN_PIXELS = 512  # the plain model takes minutes on more
 COUPLED_PIXELS = 1024  # and the others on more than this
 ADHESIVE = {"mechanics": "adhesive", "gap_cutoff_nm": 0.3, "q1_per_nm": 0.4}
-FILM = [[{"young_GPa": 72, "poisson": 0.17, "thickness_nm": 2.5}, {"young_GPa": 250, "poisson": 0.25}]]
+FILM = [
+    [{"young_GPa": 72, "poisson": 0.17, "thickness_nm": 2.5}, {"young_GPa": 250, "poisson": 0.25}]
+]
 CYCLES = {
     "coupled cycle": {"mechanics": "coupled"},
     "coupled elastic cycle": {"mechanics": "coupled", "model": "elastic"},
@@ -52,7 +54,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """What is timed."""
     parser.add_argument("--pixels", type=int, nargs="+", default=[512, 1024, 2048])
     parser.add_argument("--only", default="", help="what has these words in its name")
-    parser.add_argument("--repeats", type=int, default=3, help="timings, of which the median is given")
+    parser.add_argument(
+        "--repeats", type=int, default=3, help="timings, of which the median is given"
+    )
 
 
 def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -66,7 +70,13 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
                     note = work()
                     times.append(time.process_time() - start)
                 memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
-                row = {"pixels": pixels, "what": what, "cpu_s": statistics.median(times), "MB": memory, "note": note}
+                row = {
+                    "pixels": pixels,
+                    "what": what,
+                    "cpu_s": statistics.median(times),
+                    "MB": memory,
+                    "note": note,
+                }
                 if pixels > 128:
                     print(*row.values(), flush=True)
                     yield row
@@ -80,7 +90,9 @@ def _works(settings: ContactSettings) -> dict[str, Callable[[], str]]:
         changed = ContactSettings(**{**dict(settings), **changes})
         steps = Numerics(force_steps=20) if changed.mechanics == "adhesive" else NUMERICS
         surface = random_surface(MIDDLE, changed, SEED) if changed.q1_per_nm else heights
-        found = run_cycle(MIDDLE, changed, SEED, heights=surface, contact_at="lowest", numerics=steps)
+        found = run_cycle(
+            MIDDLE, changed, SEED, heights=surface, contact_at="lowest", numerics=steps
+        )
         return f"{len(found.closing.net_nN)} and {len(found.opening.net_nN)} rows"
 
     works: dict[str, Callable[[], str]] = {
@@ -90,7 +102,11 @@ def _works(settings: ContactSettings) -> dict[str, Callable[[], str]]:
     }
     if settings.pixels <= COUPLED_PIXELS:
         works |= {what: partial(cycle, changes) for what, changes in CYCLES.items()}
-        works |= {name: partial(f, heights, settings) for name, f in PEERS.items() if importlib.util.find_spec(name)}
+        works |= {
+            name: partial(f, heights, settings)
+            for name, f in PEERS.items()
+            if importlib.util.find_spec(name)
+        }
     if settings.pixels == PLAIN_PIXELS:
         works["plain model"] = lambda: _plain(heights, settings)
     return works
@@ -103,7 +119,13 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     for (pixels, what), row in last.items():
         humid = what.startswith("coupled cycle at")
         value = float(row["cpu_s"])
-        base = "coupled cycle" if humid else "adhesive cycle" if "film" in what else "surface and cycle"
+        base = (
+            "coupled cycle"
+            if humid
+            else "adhesive cycle"
+            if "film" in what
+            else "surface and cycle"
+        )
         over = value / float(last[pixels, base]["cpu_s"]) if (pixels, base) in last else np.nan
         if what == "adhesive cycle":
             found[f"adhesive_{pixels}"] = f"{value:.0f} s and {row['MB']} MB"
@@ -118,11 +140,16 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
 
 def _floor(pixels: int) -> str:
     noise = np.random.default_rng(SEED).standard_normal((pixels, pixels))
-    return f"{pixels**2} numbers, {np.asarray(fft.irfft2(np.asarray(fft.rfft2(noise)), s=noise.shape)).size} back"
+    return (
+        f"{pixels**2} numbers,"
+        f" {np.asarray(fft.irfft2(np.asarray(fft.rfft2(noise)), s=noise.shape)).size} back"
+    )
 
 
 def _plain(heights: np.ndarray, settings: ContactSettings) -> str:
-    """The plain model at the separations of a cycle, and how far its repulsion is from the cycle's."""
+    """The plain model at the separations of a cycle, and how far its repulsion is from the
+    cycle's.
+    """
     cycle = run_cycle(MIDDLE, settings, SEED, heights=heights, contact_at="lowest")
     there, flowed = plain_contact.walk(heights, cycle.closing.separation_nm, MIDDLE, settings)
     elastic = settings.model_copy(update={"model": "elastic"})
@@ -135,13 +162,20 @@ def _plain(heights: np.ndarray, settings: ContactSettings) -> str:
 def _tamaas(heights: np.ndarray, settings: ContactSettings) -> str:
     """Contact area (nm^2) of an elastic half-space at the largest force."""
     bare = replace(MIDDLE, hamaker=0.0)
-    pressed = by_tamaas(heights, settings.length_nm, settings.max_force_nN, bare.e_star, tolerance=1e-6)
-    return f"one elastic load, contact {(pressed.pressure > 0).mean() * settings.length_nm**2:.0f} nm^2"
+    pressed = by_tamaas(
+        heights, settings.length_nm, settings.max_force_nN, bare.e_star, tolerance=1e-6
+    )
+    return (
+        f"one elastic load, contact {(pressed.pressure > 0).mean() * settings.length_nm**2:.0f}"
+        " nm^2"
+    )
 
 
 def _contact_mechanics(heights: np.ndarray, settings: ContactSettings) -> str:
     """The same by ContactMechanics."""
-    from ContactMechanics import PeriodicFFTElasticHalfSpace  # pyright: ignore[reportMissingImports]  (optional extra)
+    from ContactMechanics import (
+        PeriodicFFTElasticHalfSpace,
+    )  # pyright: ignore[reportMissingImports]  (optional extra)
     from ContactMechanics.Factory import make_system  # pyright: ignore[reportMissingImports]
     from SurfaceTopography import Topography
 

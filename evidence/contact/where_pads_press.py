@@ -1,11 +1,12 @@
-"""What does a closing-opening cycle cost where pads press, in pairs of FFTs of its own grid and beside a peer?
+"""What does a closing-opening cycle cost where pads press, in pairs of FFTs of its own grid and
+beside a peer?
 
-A pair (there and back, double precision) is timed after every step of the cycle, so that the unit has the load of the
-machine. Film: the medians of scene `reduced` at 40 MPa. Table 1: the paper's means, 7 MPa, sites of 1 nm. Shares: a
-smooth elastic surface closed to a share of contact. tamaas solves one elastic load at the largest force; its time is
-multiplied by the rows of the cycle. Needs `pip install tamaas` for the ratio. With `--choices` each numerical choice
-of the solver is tried on the smooth surfaces: the largest error of a net force, over the largest force.
-"""
+A pair (there and back, double precision) is timed after every step of the cycle, so that the unit
+has the load of the machine. Film: the medians of scene `reduced` at 40 MPa. Table 1: the paper's
+means, 7 MPa, sites of 1 nm. Shares: a smooth elastic surface closed to a share of contact. tamaas
+solves one elastic load at the largest force; its time is multiplied by the rows of the cycle. Needs
+`pip install tamaas` for the ratio. With `--choices` each numerical choice of the solver is tried on
+the smooth surfaces: the largest error of a net force, over the largest force."""
 
 import argparse
 import importlib.util
@@ -74,13 +75,21 @@ def cases(pixels: int) -> Iterator[Case]:
         film = ContactSettings(pixels=pixels, mechanics="coupled", model=model, **FILM_CELL)
         if pixels <= 1024:
             yield Case(f"film {model}", FILM, film, 40.0)
-        coarse = ContactSettings(pixels=pixels, mechanics="coupled", model=model, length_nm=float(pixels))
+        coarse = ContactSettings(
+            pixels=pixels, mechanics="coupled", model=model, length_nm=float(pixels)
+        )
         yield Case(f"Table 1 {model}", MIDDLE, coarse, 7.0)
     smooth = ContactSettings(pixels=pixels, mechanics="coupled", model="elastic", **SMOOTH_CELL)
     for stress in (15.0, 140.0, 550.0) if pixels <= 512 else ():
         yield Case(f"smooth elastic {stress:g} MPa", SMOOTH, smooth, stress)
     if pixels <= 512:
-        yield Case("adhesive", MIDDLE, ContactSettings(pixels=pixels, **ADHESIVE), 7.0, Numerics(force_steps=20))
+        yield Case(
+            "adhesive",
+            MIDDLE,
+            ContactSettings(pixels=pixels, **ADHESIVE),
+            7.0,
+            Numerics(force_steps=20),
+        )
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -103,7 +112,12 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     for pixels in given.pixels:
         for case in cases(pixels):
             if given.only in case.name:
-                row = {"pixels": pixels, "what": case.name, "MPa": case.stress_MPa, **_timed(case)[0]}
+                row = {
+                    "pixels": pixels,
+                    "what": case.name,
+                    "MPa": case.stress_MPa,
+                    **_timed(case)[0],
+                }
                 if peer and case.settings.model == "elastic":
                     row |= _beside(case, row)
                 print(*row.values(), flush=True)
@@ -112,7 +126,9 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
 
 def _choices(grids: Sequence[int]) -> Iterator[dict[str, Any]]:
     """A row for each choice on each smooth surface; the error is over the largest force."""
-    for case in (case for pixels in grids for case in cases(pixels) if case.name.startswith("smooth")):
+    for case in (
+        case for pixels in grids for case in cases(pixels) if case.name.startswith("smooth")
+    ):
         exact = None
         for owner, name, value in CHOICES:
             with mock.patch.object(owner, name, value):
@@ -132,9 +148,13 @@ def _force_nN(case: Case) -> float:
 
 
 def _timed(case: Case) -> tuple[dict[str, Any], np.ndarray]:
-    """Seconds of a cycle, less those of the pairs that are its unit, and what it counted; its net forces (nN)."""
+    """Seconds of a cycle, less those of the pairs that are its unit, and what it counted; its net
+    forces (nN).
+    """
     heights, pairs, newton = _surface(case), [], []
-    np.empty(31 << 20, np.uint8)  # freed at once, after which as much stays with the process: no pair waits for pages
+    np.empty(
+        31 << 20, np.uint8
+    )  # freed at once, after which as much stays with the process: no pair waits for pages
     noise = np.random.default_rng(SEED).standard_normal(heights.shape)
 
     def pair(_: Any) -> None:
@@ -150,7 +170,15 @@ def _timed(case: Case) -> tuple[dict[str, Any], np.ndarray]:
     with every[0], every[1], every[2]:
         start = time.process_time()
         force = _force_nN(case)
-        cycle = run_cycle(case.inputs, case.settings, SEED, force, heights, contact_at="lowest", numerics=case.numerics)
+        cycle = run_cycle(
+            case.inputs,
+            case.settings,
+            SEED,
+            force,
+            heights,
+            contact_at="lowest",
+            numerics=case.numerics,
+        )
         seconds = time.process_time() - start - sum(pairs)
     return {
         "share": cycle.closing.contact_area_nm2.max() / cycle.cell_area_nm2,
@@ -184,7 +212,9 @@ def after(owner: Any, name: str, work: Callable[[Any], None]) -> Iterator[None]:
 def _beside(case: Case, row: Mapping[str, Any]) -> dict[str, float]:
     """Seconds of one load by tamaas, and how many times the cycle's those of all its rows are."""
     start = time.process_time()
-    by_tamaas(_surface(case), case.settings.length_nm, _force_nN(case), case.inputs.e_star, tolerance=1e-6)
+    by_tamaas(
+        _surface(case), case.settings.length_nm, _force_nN(case), case.inputs.e_star, tolerance=1e-6
+    )
     seconds = time.process_time() - start
     return {"peer_load_s": seconds, "times_peer": seconds * row["rows"] / row["cpu_s"]}
 

@@ -1,11 +1,11 @@
 """Is the cached-grid SCF exact, and how much faster is it than PySCF's own?
 
-A five-point PBE curve of β-Si3N4 (±3 %, 28 atoms, one thread) beside PySCF's multigrid.  The multigrid evaluates its
-potential twice at the cached grid's density of the first point; its curve is estimated as the faster of the two, as
-often as the cached grid needs a potential.  Then the difference to PySCF's FFTDF of the energy of 14 atoms at one
-density: for LDA the same discrete expression; for GGA FFTDF takes gradients of orbitals, so they differ by the mesh.
-The first rows were copied from a page of their commit, to the digits that it gave.
-"""
+A five-point PBE curve of β-Si3N4 (±3 %, 28 atoms, one thread) beside PySCF's multigrid.  The
+multigrid evaluates its potential twice at the cached grid's density of the first point; its curve
+is estimated as the faster of the two, as often as the cached grid needs a potential.  Then the
+difference to PySCF's FFTDF of the energy of 14 atoms at one density: for LDA the same discrete
+expression; for GGA FFTDF takes gradients of orbitals, so they differ by the mesh. The first rows
+were copied from a page of their commit, to the digits that it gave."""
 
 import time
 from argparse import ArgumentParser, Namespace
@@ -36,7 +36,12 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """The curve beside the multigrid's, then energies beside FFTDF's."""
     material = load_material(ROOT / "config" / "materials" / "silicon_nitride.yaml")
     small, cell = (crystal(material, "beta", (1, 1, cells)) for cells in (1, 2))
-    yield {"atoms": len(cell), "cutoff_Ha": given.cutoff, "xc": "GGA", **beside_multigrid(cell, given.cutoff)}
+    yield {
+        "atoms": len(cell),
+        "cutoff_Ha": given.cutoff,
+        "xc": "GGA",
+        **beside_multigrid(cell, given.cutoff),
+    }
     for xc in ("LDA", "GGA"):
         apart = difference_to_fftdf(small, xc, given.cutoff)
         head = {"atoms": len(small), "cutoff_Ha": given.cutoff, "xc": xc, "other": "FFTDF"}
@@ -45,7 +50,9 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Difference to FFTDF at 100 hartree, and how many times faster a curve at 80 is."""
-    apart = {row["xc"]: abs(float(row["difference_Ha_atom"])) for row in rows if _is(row, "FFTDF", 100)}
+    apart = {
+        row["xc"]: abs(float(row["difference_Ha_atom"])) for row in rows if _is(row, "FFTDF", 100)
+    }
     fast = next(row for row in reversed(rows) if _is(row, "multigrid", 80))
     return {
         "LDA": f"{apart['LDA']:.0e} Ha/atom",
@@ -89,7 +96,9 @@ def beside_multigrid(cell: Atoms, cutoff_Ha: float) -> dict[str, Any]:
 
 
 def difference_to_fftdf(cell: Atoms, xc: str, cutoff_Ha: float) -> float:
-    """Energy of the cached grid minus that of FFTDF at the cached grid's converged density, Ha/atom."""
+    """Energy of the cached grid minus that of FFTDF at the cached grid's converged density,
+    Ha/atom.
+    """
     from pyscf.pbc import dft
     from pyscf.pbc.dft import numint
 
@@ -103,5 +112,9 @@ def difference_to_fftdf(cell: Atoms, xc: str, cutoff_Ha: float) -> float:
     other.grids.build()
     exc = numint.NumInt().nr_rks(pyscf_cell, other.grids, other.xc, density)[1]
     hartree = other.with_df.get_jk(density, with_k=False)[0]
-    reference = np.einsum("ij,ji", other.get_hcore() + 0.5 * hartree, density) + exc + pyscf_cell.energy_nuc()
+    reference = (
+        np.einsum("ij,ji", other.get_hcore() + 0.5 * hartree, density)
+        + exc
+        + pyscf_cell.energy_nuc()
+    )
     return float(energy - reference) / len(cell)

@@ -1,8 +1,7 @@
 """Do bulk moduli by strains of 3 %, as in use, differ from those by 5 %, as in Kim et al. (2013)?
 
-E(V) of small glasses and of β-Si3N4 by PBE with clamped ions: five strains of each width by the stage's fit, beside a
-polynomial of degree 5 through all energies. Four minutes of one core.
-"""
+E(V) of small glasses and of β-Si3N4 by PBE with clamped ions: five strains of each width by the
+stage's fit, beside a polynomial of degree 5 through all energies. Four minutes of one core."""
 
 import tempfile
 from argparse import ArgumentParser, Namespace
@@ -12,7 +11,13 @@ from typing import Any
 
 from ase import Atoms
 
-from atomistic.elastic.accuracy import DEGREE, WIDTHS, ScannedGlass, five_strains, modulus_of_polynomial
+from atomistic.elastic.accuracy import (
+    DEGREE,
+    WIDTHS,
+    ScannedGlass,
+    five_strains,
+    modulus_of_polynomial,
+)
 from atomistic.elastic.dft import make_calculator
 from atomistic.elastic.equation_of_state import fit_equation_of_state
 from atomistic.elastic.networks import crystal, make_glass
@@ -68,7 +73,10 @@ def _cells(nitride: Material, dft: DftSettings, given: Namespace) -> Iterator[tu
             continue
         calculator = make_calculator(dft, "GGA", quenched.cell.array * 1.02, forces=True)
         made = relaxed_structure(
-            quenched, nitride.part("network_glass"), lambda engine=calculator: engine, dft.relaxation_steps
+            quenched,
+            nitride.part("network_glass"),
+            lambda engine=calculator: engine,
+            dft.relaxation_steps,
         )
         if not made.reasons:
             found += 1
@@ -78,7 +86,11 @@ def _cells(nitride: Material, dft: DftSettings, given: Namespace) -> Iterator[tu
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Largest errors of both widths, and by how much the wider one is softer."""
     off = {
-        width: {row["structure"]: float(row["off_percent"]) for row in rows if float(row["largest_strain"]) == width}
+        width: {
+            row["structure"]: float(row["off_percent"])
+            for row in rows
+            if float(row["largest_strain"]) == width
+        }
         for width in (IN_USE, PAPER)
     }
     change = [off[PAPER][name] - off[IN_USE][name] for name in off[IN_USE]]

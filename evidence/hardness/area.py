@@ -1,11 +1,11 @@
 """How large is the error of the contact area?
 
-Bodies whose section is known: a flat slab of glass is pressed at 300 K by a flat.  Its frozen snapshots have the layer
-of atoms of a contact under load.  Tiled and cut by planes, by a sphere and by a wave of the slopes in use, they have a
-section that geometry gives exactly.  The potential's file then gets the largest error as `contact_area`. With `--base`
-the slabs are that metal, and a film of the glass on it; the metal's file gets both errors (`film_base`). Rows with two
-`bodies` are of slabs pressed by a second one, which the stage did until commit 884b5d7.
-"""
+Bodies whose section is known: a flat slab of glass is pressed at 300 K by a flat.  Its frozen
+snapshots have the layer of atoms of a contact under load.  Tiled and cut by planes, by a sphere and
+by a wave of the slopes in use, they have a section that geometry gives exactly.  The potential's
+file then gets the largest error as `contact_area`. With `--base` the slabs are that metal, and a
+film of the glass on it; the metal's file gets both errors (`film_base`). Rows with two `bodies` are
+of slabs pressed by a second one, which the stage did until commit 884b5d7."""
 
 import tempfile
 from argparse import ArgumentParser, Namespace
@@ -43,12 +43,16 @@ def arguments(parser: ArgumentParser) -> None:
     """Potential, oxide and base."""
     parser.add_argument("--potential", default="pmmcs", help="of config/potentials")
     parser.add_argument("--material", default="SiO2")
-    parser.add_argument("--base", help="metal of config/materials, for slabs of it and of a film on it")
+    parser.add_argument(
+        "--base", help="metal of config/materials, for slabs of it and of a film on it"
+    )
     parser.add_argument("--energy-scales", type=float, nargs="+", default=[1.0, 0.5])
 
 
 def rows(given: Namespace) -> Iterator[dict]:
-    """Cut bodies of a slab of glass at each energy scale, or of slabs of the base and of a film on it."""
+    """Cut bodies of a slab of glass at each energy scale, or of slabs of the base and of a film on
+    it.
+    """
     oxides = oxide_glasses(load_materials(ROOT / "config" / "materials").values())
     first = load_potential(ROOT / "config" / "potentials" / f"{given.potential}.yaml")
     area = Area()
@@ -60,13 +64,25 @@ def rows(given: Namespace) -> Iterator[dict]:
             protocol = slowed(PROTOCOL, below.below_films.timestep_factor)
             for name, slab in on_base(glass, first, below, work).items():
                 for row in cut_bodies(pressed_layers(slab, 1.0, area, work / name, protocol), area):
-                    yield {"potential": name, "energy_scale": 1.0, "bodies": 1, "touch_A": 2.4, **row}
+                    yield {
+                        "potential": name,
+                        "energy_scale": 1.0,
+                        "bodies": 1,
+                        "touch_A": 2.4,
+                        **row,
+                    }
             return
         for scale in given.energy_scales:
             slab = cut_asperity(glass, SLAB_TILES, 0.0, 10 * SLAB_BASE_NM, lammps_seed(1, 0, 3))
             body = CutBody(slab, formula_of(glass), first)
             for row in cut_bodies(pressed_layers(body, scale, area, work / f"{scale:g}"), area):
-                yield {"potential": first.name, "energy_scale": scale, "bodies": 1, "touch_A": 2.4, **row}
+                yield {
+                    "potential": first.name,
+                    "energy_scale": scale,
+                    "bodies": 1,
+                    "touch_A": 2.4,
+                    **row,
+                }
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
@@ -74,7 +90,9 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     groups: dict[str, list[float]] = {}
     for row in rows:
         if row["bodies"] == "1" and row["touch_A"] == "2.4":
-            name = row["potential"].replace(" ", "_") + "_halved" * (float(row["energy_scale"]) == 0.5)
+            name = row["potential"].replace(" ", "_") + "_halved" * (
+                float(row["energy_scale"]) == 0.5
+            )
             groups.setdefault(name, []).append(abs(float(row["error"])))
     return {name: f"{100 * max(errors):.1f} %" for name, errors in groups.items()}
 
@@ -99,7 +117,10 @@ class Layer:
 
 def on_base(glass: Atoms, potential: Potential, below: Base, work: Path) -> dict[str, CutBody]:
     """Flat slabs of the base, and of a film on it, by the name of their rows."""
-    cell, base = below.make(float(glass.cell_A[0]), SLAB_TILES, 1, work / "base"), below.material.name
+    cell, base = (
+        below.make(float(glass.cell_A[0]), SLAB_TILES, 1, work / "base"),
+        below.material.name,
+    )
     found = {}
     for name, film_nm in ((base, 0.0), (f"{potential.name} film on {base}", SLAB_FILM_NM)):
         run = _flat_run(1.0, film_nm)
@@ -109,7 +130,9 @@ def on_base(glass: Atoms, potential: Potential, below: Base, work: Path) -> dict
 
 def _flat_run(energy_scale: float, film_nm: float | None = None) -> ClosingRun:
     """Of a slab: no asperity."""
-    flat = AsperitySettings.model_construct(name="slab", tiles=SLAB_TILES, amplitude_nm=0.0, film_nm=film_nm)
+    flat = AsperitySettings.model_construct(
+        name="slab", tiles=SLAB_TILES, amplitude_nm=0.0, film_nm=film_nm
+    )
     return ClosingRun.model_construct(name="slab", asperity=flat, seed=1, energy_scale=energy_scale)
 
 
@@ -124,11 +147,15 @@ def pressed_layers(
     """
     closing, run = ClosingSettings(), _flat_run(energy_scale)
     plan = plan_closing(closing, run, protocol)
-    start = plan.segments * plan.segment_steps  # from the clearance to first touch; the slab is pressed after it
+    start = (
+        plan.segments * plan.segment_steps
+    )  # from the clearance to first touch; the slab is pressed after it
     steps = start + round(SLAB_TRAVEL_A / (plan.speed * plan.timestep))
     plan = replace(plan, segments=-(-steps // plan.segment_steps))
     aside, place = LammpsFolder(work / "anneal", {}, "anneal.in"), (1, 0)
-    annealed = prepare_body(run, slab.atoms, slab.formula, slab.force, closing, protocol, aside, place)
+    annealed = prepare_body(
+        run, slab.atoms, slab.formula, slab.force, closing, protocol, aside, place
+    )
     workspace = LammpsFolder(work / "pressed", {}, "closing.in")
     low, high = (run.energy_scale * stress for stress in STRESS_GPA)
 
@@ -137,7 +164,9 @@ def pressed_layers(
         force = load_averages(workspace / f"averages.{segments}")[-1, 2]
         return force / cell.wavelength_A**2 * EV_PER_A3_IN_GPA > high
 
-    cell, reached = press_body(run, annealed, slab.force, closing, protocol, plan, (1, 9), workspace, pressed_enough)
+    cell, reached = press_body(
+        run, annealed, slab.force, closing, protocol, plan, (1, 9), workspace, pressed_enough
+    )
     layers = []
     for n in range(1, reached.segments + 1):
         force = {int(row[0]): row[2] for row in load_averages(workspace / f"averages.{n}")}
@@ -145,11 +174,15 @@ def pressed_layers(
             if low < force.get(step, 0.0) / cell.wavelength_A**2 * EV_PER_A3_IN_GPA < high:
                 places, height, beyond = near[:, 2:4], near[:, 4], near[:, 5]
                 plane = np.max(height - beyond)
-                layers.append(Layer(cell.wavelength_A, places, beyond, np.maximum(0.0, plane - height)))
+                layers.append(
+                    Layer(cell.wavelength_A, places, beyond, np.maximum(0.0, plane - height))
+                )
     return layers
 
 
-Flank = Callable[[np.ndarray, float], np.ndarray]  # depth below the section (Å), its length (Å) -> half-width (Å)
+Flank = Callable[
+    [np.ndarray, float], np.ndarray
+]  # depth below the section (Å), its length (Å) -> half-width (Å)
 
 
 def _planes(depth: np.ndarray, length: float) -> np.ndarray:
@@ -172,8 +205,12 @@ def _wave(depth: np.ndarray, length: float) -> np.ndarray:
 FLANKS: dict[str, Flank] = {"planes": _planes, "sphere": _sphere, "wave": _wave}
 
 
-def cut_layer(layer: Layer, shape: str, length_A: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Places and `beyond` of the atoms of a body cut from the tiled layer, its section of area length² about 0."""
+def cut_layer(
+    layer: Layer, shape: str, length_A: float, rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
+    """Places and `beyond` of the atoms of a body cut from the tiled layer, its section of area
+    length² about 0.
+    """
     tiles = int(np.ceil(1.5 * length_A / layer.cell)) + 2
     steps = layer.cell * (np.arange(tiles) - tiles / 2)
     shifts = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -193,9 +230,13 @@ def cut_bodies(layers: list[Layer], area: Area) -> Iterator[dict]:
             edge = 20 * length  # Å, twice the length: room for the rim
             ratios = []
             for _ in range(TRIALS):
-                places, beyond = cut_layer(layers[rng.integers(len(layers))], shape, 10 * length, rng)
+                places, beyond = cut_layer(
+                    layers[rng.integers(len(layers))], shape, 10 * length, rng
+                )
                 touching = places[beyond > -area.depth_A]
-                ratios.append(contact_area(touching, (edge, edge), area, (0.0, 0.0)) / (10 * length) ** 2)
+                ratios.append(
+                    contact_area(touching, (edge, edge), area, (0.0, 0.0)) / (10 * length) ** 2
+                )
             yield {
                 "shape": shape,
                 "length_nm": length,

@@ -1,12 +1,13 @@
-"""How much do speed, base, anneal, snapshots, potential and steepness of the asperity change the hardness?
+"""How much do speed, base, anneal, snapshots, potential and steepness of the asperity change the
+hardness?
 
-Single closing runs, each with one choice changed.  Differences of speed, base, potential and steepness are the
-systematic errors that `size_effect.py` adds to every run alike.  A protocol that is cheaper is taken where it moves
-hardness and D0 by less than a third of what runs scatter (`figures`, rows `..._shift`).
+Single closing runs, each with one choice changed.  Differences of speed, base, potential and
+steepness are the systematic errors that `size_effect.py` adds to every run alike.  A protocol that
+is cheaper is taken where it moves hardness and D0 by less than a third of what runs scatter
+(`figures`, rows `..._shift`).
 
-The rows of 2026-11-23 were not made by this command: they were copied, rounded, from the page that the runs were first
-written up on.
-"""
+The rows of 2026-11-23 were not made by this command: they were copied, rounded, from the page that
+the runs were first written up on."""
 
 import resource
 import tempfile
@@ -33,20 +34,29 @@ from evidence.record import ROOT
 SMALL, MEDIUM = {"tiles": 2, "amplitude_nm": 0.43}, {"tiles": 3, "amplitude_nm": 0.64}
 CASES: dict[str, dict] = {  # asperity; what differs from a scene's default
     "default": {"asperity": SMALL},
-    "base_half": {"asperity": SMALL, "closing": {"base_nm": 1.4}, "protocol": {"base_over_contact": 0.0}},
+    "base_half": {
+        "asperity": SMALL,
+        "closing": {"base_nm": 1.4},
+        "protocol": {"base_over_contact": 0.0},
+    },
     "base_thick": {"asperity": SMALL, "closing": {"base_nm": 5.2}},
     "slow": {"asperity": SMALL, "closing": {"speed_m_s": 10}},
     "teter": {"asperity": SMALL, "potential": "teter"},
     "medium": {"asperity": MEDIUM, "closing": {"stop": "window"}},
     "blunt": {"asperity": {**MEDIUM, "amplitude_nm": 0.32}, "closing": {"stop": "window"}},
     "steep": {"asperity": {**MEDIUM, "amplitude_nm": 1.28}, "closing": {"stop": "window"}},
-    "base_0.7": {"asperity": SMALL, "closing": {"base_nm": 1.0}, "protocol": {"base_over_contact": 0.7}},
+    "base_0.7": {
+        "asperity": SMALL,
+        "closing": {"base_nm": 1.0},
+        "protocol": {"base_over_contact": 0.7},
+    },
     "anneal_half": {"asperity": SMALL, "closing": {"anneal_ps": 2.5}},
     "snapshots_half": {"asperity": SMALL, "protocol": {"segments_per_snapshot": 2}},
 }
 CHEAPER = ("base_0.7", "anneal_half", "snapshots_half")
 COLUMNS = (
-    "status", "contact_length_nm", "hardness_GPa", "hardness_lo", "hardness_hi", "plateau_exponent", "same_shape_GPa",
+    "status", "contact_length_nm", "hardness_GPa", "hardness_lo", "hardness_hi",
+    "plateau_exponent", "same_shape_GPa",
 )  # fmt: skip
 
 
@@ -70,7 +80,10 @@ def close(case: str, seed: int) -> dict:
     changed = CASES[case]
     silica, potential = silica_and(changed.get("potential", "pmmcs"))
     run = ClosingRun(
-        name=case, asperity=AsperitySettings(name="single", **changed["asperity"]), seed=seed, energy_scale=1.0
+        name=case,
+        asperity=AsperitySettings(name="single", **changed["asperity"]),
+        seed=seed,
+        energy_scale=1.0,
     )
     closing, protocol = (
         ClosingSettings(**changed.get("closing", {})),
@@ -107,10 +120,11 @@ def quenched(name: str, seed: int) -> Atoms:
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """Mean stress of each case over that of its default: of the plateau, or for steepness at one share of the cell.
+    """Mean stress of each case over that of its default: of the plateau, or for steepness at one
+    share of the cell.
 
-    Of a cheaper protocol also how far hardness, H' and D0 move, with a standard error, in scatters between runs.
-    """
+    Of a cheaper protocol also how far hardness, H' and D0 move, with a standard error, in scatters
+    between runs."""
     found = {}
     for case, reference, column in (
         ("base_half", "base_thick", "hardness_GPa"),
@@ -126,7 +140,9 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         )
         both = one.keys() & other.keys()  # the glasses that have been pressed both ways
         if both:
-            found[case] = f"{sum(one[seed] for seed in both) / sum(other[seed] for seed in both):.2f}"
+            found[case] = (
+                f"{sum(one[seed] for seed in both) / sum(other[seed] for seed in both):.2f}"
+            )
     for case in CHEAPER:
         for quantity in QUANTITIES:
             tried = logs_of(rows, case, quantity)
@@ -135,19 +151,25 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
                 scatter = float(usual.std(ddof=1))
                 error = np.hypot(tried.std(ddof=1) / tried.size**0.5, scatter / usual.size**0.5)
                 shift = (tried.mean() - usual.mean()) / scatter
-                found[f"{case}_{quantity}_shift"] = f"{shift:+.2f} ± {error / scatter:.2f} of {scatter:.1%}"
+                found[f"{case}_{quantity}_shift"] = (
+                    f"{shift:+.2f} ± {error / scatter:.2f} of {scatter:.1%}"
+                )
     return found
 
 
 H_MACRO_GPA = 1.95  # middle of Kim et al. (2013), Table 1
 QUANTITIES: dict[str, Callable[[Mapping[str, str]], float]] = {
     "hardness": lambda row: float(row["hardness_GPa"]),
-    "h_prime": lambda row: (float(row["hardness_GPa"]) - H_MACRO_GPA) * float(row["contact_length_nm"]) ** 0.5,
+    "h_prime": lambda row: (
+        (float(row["hardness_GPa"]) - H_MACRO_GPA) * float(row["contact_length_nm"]) ** 0.5
+    ),
     "d0": lambda row: float(row["d0_nm"]),
 }
 
 
 def logs_of(rows: Sequence[Mapping[str, str]], case: str, quantity: str) -> np.ndarray:
     """Logarithms of a quantity of the defended runs of a case that have it, shape (runs,)."""
-    runs = [row for row in rows if row["case"] == case and row["status"] == "yield" and row["d0_nm"]]
+    runs = [
+        row for row in rows if row["case"] == case and row["status"] == "yield" and row["d0_nm"]
+    ]
     return np.log([QUANTITIES[quantity](row) for row in runs])

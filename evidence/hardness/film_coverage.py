@@ -1,15 +1,15 @@
 """How often do the 90 % intervals of the law of films hold made-up films of known k and m?
 
-Each set has the runs of scene `films`, with the lengths that they reached. Its k is drawn between 0.01 and 1, its m
-over all that the fit accepts, 0.5 to 4; oxide and metal have 9 and 4.9 GPa. Each run errs as a run of scene `films`
-does, drawn from all of them: by all its differences from the mean of its thickness, so that slopes within runs are
-those of real ones. `share` is what a film keeps of the difference between both hardnesses at L/t = 3.6, a contact of
-18 nm on 5 nm of oxide.
+Each set has the runs of scene `films`, with the lengths that they reached. Its k is drawn between
+0.01 and 1, its m over all that the fit accepts, 0.5 to 4; oxide and metal have 9 and 4.9 GPa. Each
+run errs as a run of scene `films` does, drawn from all of them: by all its differences from the
+mean of its thickness, so that slopes within runs are those of real ones. `share` is what a film
+keeps of the difference between both hardnesses at L/t = 3.6, a contact of 18 nm on 5 nm of oxide.
 
-The range of truths was changed after a first run: of 200 sets with k from 0.02 to 0.4 and m from 1 to 3.2, intervals
-held k in 94 %, m in 98 % and the share in 88 %. With each bin counted, a trial of such sets (no rows kept) gave 98,
-100 and 96 %; with errors between and within runs told apart, 91, 96 and 83 %.
-"""
+The range of truths was changed after a first run: of 200 sets with k from 0.02 to 0.4 and m from 1
+to 3.2, intervals held k in 94 %, m in 98 % and the share in 88 %. With each bin counted, a trial of
+such sets (no rows kept) gave 98, 100 and 96 %; with errors between and within runs told apart, 91,
+96 and 83 %."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
@@ -62,7 +62,9 @@ def _errors(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
     ]
     pool = []
     for run in runs:
-        same = [other for other in runs if points.thickness_nm[other][0] == points.thickness_nm[run][0]]
+        same = [
+            other for other in runs if points.thickness_nm[other][0] == points.thickness_nm[run][0]
+        ]
         mean = np.mean([logs[other].mean() for other in same])
         pool.append((logs[run] - mean) * (len(same) / (len(same) - 1)) ** 0.5)
     errors = np.zeros(len(logs))
@@ -76,6 +78,8 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Share of the sets whose interval holds the truth."""
     held = {"sets": f"{len(rows)}"}
     for name in ("k", "m", "share"):
-        true, low, high = (np.array([float(row[f"{name}_{of}"]) for row in rows]) for of in ("true", "low", "high"))
+        true, low, high = (
+            np.array([float(row[f"{name}_{of}"]) for row in rows]) for of in ("true", "low", "high")
+        )
         held[name] = f"{np.mean((low < true) & (true < high)):.0%}"
     return held

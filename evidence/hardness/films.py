@@ -1,18 +1,19 @@
-"""Which law of hardness foretells films on titanium, and what of the paper's fall from 10 to 2 GPa is the film's?
+"""Which law of hardness foretells films on titanium, and what of the paper's fall from 10 to 2 GPa
+is the film's?
 
-The dielectric of the paper, silica on silicon nitride, is pressed by scene `nitride`. Rows of scenes `..._by_force`
-and `..._on_asperity` were pressed by controlled force and by an asperity of silica, which the stage did until commit
-884b5d7.
+The dielectric of the paper, silica on silicon nitride, is pressed by scene `nitride`. Rows of
+scenes `..._by_force` and `..._on_asperity` were pressed by controlled force and by an asperity of
+silica, which the stage did until commit 884b5d7.
 
-The closing runs of a scene with films, as `films`: oxide throughout, the metal by itself, and films of some
-thicknesses. Each row is the mean stress of a run at a contact length. The constant and eq. 4 (`paper`) know only the
-contact length L; `film` has the thickness t, and the hardness of oxide and metal by themselves. An error is the root
-mean square of ln(predicted / found) at a thickness that the fit had not. `prediction` has k and m of a prototype,
-written down before any of these runs.
+The closing runs of a scene with films, as `films`: oxide throughout, the metal by itself, and films
+of some thicknesses. Each row is the mean stress of a run at a contact length. The constant and eq.
+4 (`paper`) know only the contact length L; `film` has the thickness t, and the hardness of oxide
+and metal by themselves. An error is the root mean square of ln(predicted / found) at a thickness
+that the fit had not. `prediction` has k and m of a prototype, written down before any of these
+runs.
 
-`slope` is the paper's hardness of a run: the contact stress where the slope of stress against contact length drops, by
-the two straight lines that fit best.
-"""
+`slope` is the paper's hardness of a run: the contact stress where the slope of stress against
+contact length drops, by the two straight lines that fit best."""
 
 import os
 import subprocess
@@ -48,8 +49,14 @@ KEPT = 400  # of the draws
 MAIN, OTHER = "films", "nitride"  # scenes: the electrode, the dielectric
 LENGTHS_NM = (3.0, 5.0, 10.0, 15.0, 30.0, 100.0)
 OXIDE_NM = 5.0  # of TiO2 on the titanium of Kim et al. (2013)
-SOFT_GPA, SIZE_EFFECT = (0.7, 3.2), (3.7, 16.7)  # H_macro, and H' (GPa nm^0.5) of eq. 4 fitted to a glass
-LEAST_SIDE, LEAST_LENGTH_NM = 4, 1.0  # points on either side of the drop of the slope; smaller contacts are noise
+SOFT_GPA, SIZE_EFFECT = (
+    (0.7, 3.2),
+    (3.7, 16.7),
+)  # H_macro, and H' (GPa nm^0.5) of eq. 4 fitted to a glass
+LEAST_SIDE, LEAST_LENGTH_NM = (
+    4,
+    1.0,
+)  # points on either side of the drop of the slope; smaller contacts are noise
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -67,7 +74,8 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     folder = ROOT / "results" / name / "hardness"
     for point in load_table(folder / "points.csv"):
         curve = [
-            {key: float(row[key]) for key in row} for row in load_table(folder / "closing" / f"{point['run']}.csv")
+            {key: float(row[key]) for key in row}
+            for row in load_table(folder / "closing" / f"{point['run']}.csv")
         ]
         drop = slope_drop(curve)
         for length, stress in mean_stresses(curve, float(point["wavelength_nm"])):
@@ -83,8 +91,12 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
 
 
 def slope_drop(curve: Sequence[Mapping[str, float]]) -> tuple[float, float]:
-    """Contact length (nm) and stress (GPa) where the slope of stress against length drops; NaN where it does not."""
-    length, stress = (np.array([row[f"contact_{key}"] for row in curve]) for key in ("length_nm", "stress_GPa"))
+    """Contact length (nm) and stress (GPa) where the slope of stress against length drops; NaN
+    where it does not.
+    """
+    length, stress = (
+        np.array([row[f"contact_{key}"] for row in curve]) for key in ("length_nm", "stress_GPa")
+    )
     touching = length > LEAST_LENGTH_NM
     x, y = length[touching], stress[touching]
     best, at = np.inf, (np.nan, np.nan)
@@ -92,18 +104,28 @@ def slope_drop(curve: Sequence[Mapping[str, float]]) -> tuple[float, float]:
         parts = (slice(None, k), slice(k, None))
         lines = [np.polyfit(x[part], y[part], 1) for part in parts]
         misfit = sum(
-            np.sum((np.polyval(line, x[part]) - y[part]) ** 2) for line, part in zip(lines, parts, strict=True)
+            np.sum((np.polyval(line, x[part]) - y[part]) ** 2)
+            for line, part in zip(lines, parts, strict=True)
         )
         if misfit < best:
             best = misfit
-            at = (float(x[k]), float(np.polyval(lines[1], x[k]))) if lines[1][0] < lines[0][0] else (np.nan, np.nan)
+            at = (
+                (float(x[k]), float(np.polyval(lines[1], x[k])))
+                if lines[1][0] < lines[0][0]
+                else (np.nan, np.nan)
+            )
     return at
 
 
 def points_of(rows: Sequence[Mapping[str, str]], scene: str = MAIN) -> FilmPoints:
     """The points of the sound runs of a scene."""
     kept = [
-        (float(row["seed"]), float(row["film_nm"] or "inf"), float(row["length_nm"]), float(row["stress_GPa"]))
+        (
+            float(row["seed"]),
+            float(row["film_nm"] or "inf"),
+            float(row["length_nm"]),
+            float(row["stress_GPa"]),
+        )
         for row in rows
         if row["scene"] == scene and row["sound"] == "True"
     ]
@@ -126,7 +148,9 @@ def laws() -> dict[str, Any]:
     """Fit of the law `film`, its draws, and hardness over 5 nm in three cases."""
     points, rng = points_of(load("hardness.films")), np.random.default_rng(43)
     draws, area = likely(points, rng), titanium().below_films.area_error
-    shared = np.exp(rng.normal(0, np.linalg.norm([area / np.sqrt(3), *SYSTEMATIC.values()]), len(draws)))
+    shared = np.exp(
+        rng.normal(0, np.linalg.norm([area / np.sqrt(3), *SYSTEMATIC.values()]), len(draws))
+    )
     soft, size = rng.uniform(*SOFT_GPA, len(draws)), rng.uniform(*SIZE_EFFECT, len(draws))
     h_film, h_base, *_ = draws.T
     k, m = joint(draws, rng).T
@@ -151,8 +175,14 @@ def samples() -> str:
     rng = np.random.default_rng(60)
     kept = joint(likely(points_of(load("hardness.films")), rng), rng)[:KEPT]
     lines = [
-        "# Joint samples of the law of films (docs/films.md): silica on titanium, 20 runs of scene films",
-        "# (python -m evidence hardness.films), with the error of the assumed bonds of film and metal",
+        (
+            "# Joint samples of the law of films (docs/films.md): silica on titanium, 20 runs of"
+            " scene films"
+        ),
+        (
+            "# (python -m evidence hardness.films), with the error of the assumed bonds of film and"
+            " metal"
+        ),
         "k_film,m_film",
         *(f"{k:.4g},{m:.4g}" for k, m in kept),
     ]
@@ -163,14 +193,19 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Errors of the laws, values with 68 % intervals, and the paper's hardness over ours."""
     of = laws()
     runs = {(row["seed"], row["film_nm"]): row["sound"] for row in rows if row["scene"] == MAIN}
-    found = {"runs": str(len(runs)), "sound": f"{list(runs.values()).count('True') / len(runs):.0%}"}
+    found = {
+        "runs": str(len(runs)),
+        "sound": f"{list(runs.values()).count('True') / len(runs):.0%}",
+    }
     points = points_of(rows)
     for name in LAWS:
         found[f"{name}_left_out"] = f"{100 * left_out(name, points):.0f} %"
     found["prediction_left_out"] = f"{100 * error_left_out(points, prediction, True):.0f} %"
     ratios = points.length_over_thickness
     found["range"] = f"{ratios.min():.1f} to {ratios.max():.1f}"
-    for name, value, column in zip(("H_film", "H_base", "k", "m"), of["best"], of["draws"].T, strict=True):
+    for name, value, column in zip(
+        ("H_film", "H_base", "k", "m"), of["best"], of["draws"].T, strict=True
+    ):
         found[name] = f"{value:.2g}{_interval(column)}"
     for length, cases in of["hardness"].items():
         for case, values in cases.items():
@@ -187,7 +222,9 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         runs = {
             (row["seed"], row["film_nm"]): row
             for row in rows
-            if row["scene"] == scene and row["status"] == "yield" and row["slope_GPa"] not in ("", "nan")
+            if row["scene"] == scene
+            and row["status"] == "yield"
+            and row["slope_GPa"] not in ("", "nan")
         }
         flat = other if scene.startswith(OTHER) else points
         if scene not in (MAIN, OTHER) and (ratios := over_flat(flat, points_of(rows, scene))):
@@ -195,12 +232,15 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
             found[f"{scene}_over_flat"] = f"{np.mean(ratios):.2f} ({span})"
         if runs:
             ratios = [float(row["slope_GPa"]) / float(row["hardness_GPa"]) for row in runs.values()]
-            found[f"{scene}_slope_over_plateau"] = f"{np.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
+            found[f"{scene}_slope_over_plateau"] = (
+                f"{np.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
+            )
     return found
 
 
 def over_flat(flat: FilmPoints, other: FilmPoints) -> list[float]:
-    """Mean stress over that of the same body pressed by a flat at constant speed, a ratio for each run.
+    """Mean stress over that of the same body pressed by a flat at constant speed, a ratio for each
+    run.
 
     Both are taken at the contact lengths that both runs reached.
     """
@@ -214,11 +254,15 @@ def over_flat(flat: FilmPoints, other: FilmPoints) -> list[float]:
 
 
 def ends_of_bodies(points: FilmPoints) -> dict[float, str]:
-    """Stress of each body at its smallest and its largest contacts, by thickness of its film: means over runs, GPa."""
+    """Stress of each body at its smallest and its largest contacts, by thickness of its film: means
+    over runs, GPa.
+    """
     ends = {}
     for thickness in np.unique(points.thickness_nm):
         same = points.take(points.thickness_nm == thickness)
-        means = [np.mean(same.stress_GPa[same.bin == one]) for one in (same.bin.min(), same.bin.max())]
+        means = [
+            np.mean(same.stress_GPa[same.bin == one]) for one in (same.bin.min(), same.bin.max())
+        ]
         ends[float(thickness)] = " to ".join(f"{mean:.0f}" for mean in means) + " GPa"
     return ends
 
@@ -229,22 +273,45 @@ def _interval(values: np.ndarray) -> str:
 
 
 def draw(axes: Axes) -> None:
-    """Mean stress over seeds with its standard error; what the law says of 5 nm, and what was said before."""
+    """Mean stress over seeds with its standard error; what the law says of 5 nm, and what was said
+    before.
+    """
     of = laws()
     colors = ("#20242b", "#b5482a", "#d99a2b", "#4c9a5b", "#1f5fa8")
     on_nitride = points_of(load("hardness.films"), OTHER)
-    on_nitride = on_nitride.take(np.isfinite(on_nitride.thickness_nm))  # its silica is that of the other scene
-    for points, base, style in ((of["points"], "titanium", "o-"), (on_nitride, "silicon nitride", "s:")):
+    on_nitride = on_nitride.take(
+        np.isfinite(on_nitride.thickness_nm)
+    )  # its silica is that of the other scene
+    for points, base, style in (
+        (of["points"], "titanium", "o-"),
+        (on_nitride, "silicon nitride", "s:"),
+    ):
         for thickness, color in zip(np.unique(points.thickness_nm), colors, strict=False):
-            name = {0: base, np.inf: "silica"}.get(thickness, f"{thickness:g} nm of silica on {base}")
+            name = {0: base, np.inf: "silica"}.get(
+                thickness, f"{thickness:g} nm of silica on {base}"
+            )
             same = points.take(points.thickness_nm == thickness)
-            each = [same.take(same.bin == one) for one in np.unique(same.bin) if np.sum(same.bin == one) > 1]
+            each = [
+                same.take(same.bin == one)
+                for one in np.unique(same.bin)
+                if np.sum(same.bin == one) > 1
+            ]
             error = [np.std(of_bin.stress_GPa, ddof=1) / len(of_bin.seed) ** 0.5 for of_bin in each]
             length = [np.mean(of_bin.length_nm) for of_bin in each]
             stress = [np.mean(of_bin.stress_GPa) for of_bin in each]
             axes.errorbar(length, stress, error, fmt=style, ms=3, color=color, label=name)
     for case, color in (("metal_as_pressed", "#b5482a"), ("metal_of_H_macro", "#8a8f98")):
-        low, high = np.array([np.quantile(of["hardness"][at][case], [0.16, 0.84]) for at in LENGTHS_NM]).T
-        axes.fill_between(LENGTHS_NM, low, high, color=color, alpha=0.2, label=f"5 nm, {case.replace('_', ' ')}")
+        low, high = np.array(
+            [np.quantile(of["hardness"][at][case], [0.16, 0.84]) for at in LENGTHS_NM]
+        ).T
+        axes.fill_between(
+            LENGTHS_NM, low, high, color=color, alpha=0.2, label=f"5 nm, {case.replace('_', ' ')}"
+        )
     lengths, said = np.array(LENGTHS_NM), np.array([10.5, 0.7, *PREDICTION])
-    axes.plot(lengths, film(said, lengths, np.full(6, OXIDE_NM)), "--", color="#8a8f98", label="said before, 0.7 GPa")
+    axes.plot(
+        lengths,
+        film(said, lengths, np.full(6, OXIDE_NM)),
+        "--",
+        color="#8a8f98",
+        label="said before, 0.7 GPa",
+    )

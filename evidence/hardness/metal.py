@@ -1,11 +1,12 @@
-"""How hard is titanium by itself: a crystal, one with dislocations, a polycrystal? Does its potential give its crystal?
+"""How hard is titanium by itself: a crystal, one with dislocations, a polycrystal? Does its
+potential give its crystal?
 
-The potential is that of `config/materials/titanium.yaml`. Gates come first: lattice and elastic constants at 0 K by a
-sum over neighbours, the same energy by LAMMPS, the drift of the energy, the density of the polycrystal. Then
-asperities are pressed as the hardness stage presses them; hardness is the mean stress while the contact is judged.
-Dislocations are loops about discs of missing basal planes, closed by an anneal; `disordered_share` of the atoms have
-not the twelve neighbours of a hexagonal crystal.
-"""
+The potential is that of `config/materials/titanium.yaml`. Gates come first: lattice and elastic
+constants at 0 K by a sum over neighbours, the same energy by LAMMPS, the drift of the energy, the
+density of the polycrystal. Then asperities are pressed as the hardness stage presses them; hardness
+is the mean stress while the contact is judged. Dislocations are loops about discs of missing basal
+planes, closed by an anneal; `disordered_share` of the atoms have not the twelve neighbours of a
+hexagonal crystal."""
 
 import tempfile
 from argparse import ArgumentParser, Namespace
@@ -20,7 +21,15 @@ from scipy.spatial import KDTree
 from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import run_segments
-from atomistic.hardness.metal import METAL, PLACES, Metal, crystal, electron_density, embedding_energy, pair_energy
+from atomistic.hardness.metal import (
+    METAL,
+    PLACES,
+    Metal,
+    crystal,
+    electron_density,
+    embedding_energy,
+    pair_energy,
+)
 from atomistic.hardness.motion import drift_meV_atom_ps, free_motion, heated
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
@@ -32,11 +41,26 @@ from evidence.record import ROOT
 
 STRAIN = 4e-3
 STEEPNESS = 0.1  # amplitude over wavelength, as in scene reduced
-LOOPS, LOOP_A, LOOP_K, LOOP_PS = 2, 10.0, 600.0, 15.0  # in a crystal twice as high as wide ones are; radius
+LOOPS, LOOP_A, LOOP_K, LOOP_PS = (
+    2,
+    10.0,
+    600.0,
+    15.0,
+)  # in a crystal twice as high as wide ones are; radius
 FIRST_SHELL_A = 3.5  # between the first and the second neighbours of the crystal at 300 K
-CRYSTAL_A, EXPANDED = 20.0, 1.0043  # height of its cell, which is tiled; its edges at 300 K over those at 0 K
+CRYSTAL_A, EXPANDED = (
+    20.0,
+    1.0043,
+)  # height of its cell, which is tiled; its edges at 300 K over those at 0 K
 KINDS = ("crystal", "dislocated", "polycrystal")
-MEASURED = {"a_A": 2.951, "c_A": 4.684, "C11_GPa": 162.4, "C12_GPa": 92.0, "C13_GPa": 69.0, "C33_GPa": 180.7}
+MEASURED = {
+    "a_A": 2.951,
+    "c_A": 4.684,
+    "C11_GPa": 162.4,
+    "C12_GPa": 92.0,
+    "C13_GPa": 69.0,
+    "C33_GPa": 180.7,
+}
 """Experiment at room temperature: Fisher and Renken (1964), and the lattice of any handbook."""
 
 
@@ -60,7 +84,9 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
                 if kind == "polycrystal":
                     body = metal.make(edge, 1, seed, work / "bulk")
                 elif kind == "dislocated":
-                    body = dislocated(metal, square_crystal(metal, edge, 2 * CRYSTAL_A), seed, work / "bulk")
+                    body = dislocated(
+                        metal, square_crystal(metal, edge, 2 * CRYSTAL_A), seed, work / "bulk"
+                    )
                 else:
                     body = square_crystal(metal, edge, CRYSTAL_A)
                 yield row(kind, "density_over_crystal", density(metal, body), seed)
@@ -74,7 +100,14 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     found: dict[str, list[float]] = {}
     for row in rows:
         found.setdefault(f"{row['body']}_{row['quantity']}", []).append(float(row["value"]))
-    shown = ("lattice_a_A", "lattice_c_A", "lattice_C11_GPa", "lattice_C12_GPa", "lattice_C13_GPa", "lattice_C33_GPa")
+    shown = (
+        "lattice_a_A",
+        "lattice_c_A",
+        "lattice_C11_GPa",
+        "lattice_C12_GPa",
+        "lattice_C13_GPa",
+        "lattice_C33_GPa",
+    )
     texts = {name: f"{found[name][-1]:.4g}" for name in shown if name in found}
     for kind in KINDS:
         if values := found.get(f"{kind}_hardness_GPa"):
@@ -86,7 +119,13 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
 def row(body: str, quantity: str, value: float, seed: int | str = "") -> dict[str, Any]:
     """A row of the table; `experiment` where the quantity was measured."""
     measured = MEASURED.get(quantity, "")
-    return {"body": body, "seed": seed, "quantity": quantity, "value": float(value), "experiment": measured}
+    return {
+        "body": body,
+        "seed": seed,
+        "quantity": quantity,
+        "value": float(value),
+        "experiment": measured,
+    }
 
 
 def titanium() -> Metal:
@@ -95,7 +134,9 @@ def titanium() -> Metal:
 
 
 def gates(metal: Metal, work: Path) -> Iterator[dict[str, Any]]:
-    """Lattice, constants, LAMMPS's energy less that of the sum, and the drift of the energy at 300 K."""
+    """Lattice, constants, LAMMPS's energy less that of the sum, and the drift of the energy at 300
+    K.
+    """
     (a, c), energy = lattice(metal.eam)
     found = {"a_A": a, "c_A": c, "energy_eV": energy, **constants(metal.eam, a, c)}
     for name, value in found.items():
@@ -107,7 +148,9 @@ def gates(metal: Metal, work: Path) -> Iterator[dict[str, Any]]:
     yield row("lattice", "LAMMPS_less_sum_eV", record[0, 1] / len(atoms) - alike)
     warm = heated(atoms, metal, 600)
     record, _ = free_motion(warm, metal, work / "warm", PROTOCOL.timestep_fs, 3000)
-    yield row("lattice", "drift_meV_atom_ps", drift_meV_atom_ps(record, len(atoms), PROTOCOL.timestep_fs))
+    yield row(
+        "lattice", "drift_meV_atom_ps", drift_meV_atom_ps(record, len(atoms), PROTOCOL.timestep_fs)
+    )
 
 
 def lattice(eam: Eam) -> tuple[tuple[float, float], float]:
@@ -116,7 +159,9 @@ def lattice(eam: Eam) -> tuple[tuple[float, float], float]:
     def energy(edges: np.ndarray) -> float:
         return lattice_energy(eam, np.diag([edges[0], edges[0] * np.sqrt(3), edges[1]]), PLACES)
 
-    found = minimize(energy, eam.lattice_A, method="Nelder-Mead", options={"xatol": 1e-6, "fatol": 1e-12})
+    found = minimize(
+        energy, eam.lattice_A, method="Nelder-Mead", options={"xatol": 1e-6, "fatol": 1e-12}
+    )
     return (float(found.x[0]), float(found.x[1])), float(found.fun)
 
 
@@ -135,13 +180,19 @@ def constants(eam: Eam, a: float, c: float) -> dict[str, float]:
     found = {}
     for name, i, j in (("C11", 0, 0), ("C12", 0, 1), ("C13", 0, 2), ("C33", 2, 2)):
         first, second = STRAIN * np.eye(3)[i], STRAIN * np.eye(3)[j]
-        mixed = energy(first + second) - energy(first - second) - energy(second - first) + energy(-first - second)
+        mixed = (
+            energy(first + second)
+            - energy(first - second)
+            - energy(second - first)
+            + energy(-first - second)
+        )
         found[f"{name}_GPa"] = mixed / (4 * STRAIN**2 * volume) * EV_PER_A3_IN_GPA
     return found
 
 
 def square_crystal(metal: Metal, edge_A: float, height_A: float) -> Atoms:
-    """One crystal as wide as at 300 K, strained into a square cell by less than 0.5 %, about as wide as asked for.
+    """One crystal as wide as at 300 K, strained into a square cell by less than 0.5 %, about as
+    wide as asked for.
 
     Raises
     ------
@@ -159,9 +210,13 @@ def square_crystal(metal: Metal, edge_A: float, height_A: float) -> Atoms:
 
 
 def dislocated(metal: Metal, whole: Atoms, seed: int, work: Path) -> Atoms:
-    """A crystal from which discs of basal planes are missing, annealed so that they close and leave loops."""
+    """A crystal from which discs of basal planes are missing, annealed so that they close and leave
+    loops.
+    """
     rng = np.random.default_rng(np.random.SeedSequence([seed, 53]))
-    spacing = whole.cell_A[2] / round(whole.cell_A[2] / (EXPANDED * metal.eam.lattice_A[1] / 2))  # of basal planes
+    spacing = whole.cell_A[2] / round(
+        whole.cell_A[2] / (EXPANDED * metal.eam.lattice_A[1] / 2)
+    )  # of basal planes
     plane = np.round(whole.positions_A[:, 2] / spacing).astype(int)
     missing = np.zeros(len(whole), bool)
     for k in range(LOOPS):
@@ -172,31 +227,50 @@ def dislocated(metal: Metal, whole: Atoms, seed: int, work: Path) -> Atoms:
         missing |= (np.hypot(*apart.T) < LOOP_A) & (plane == at)
     steps = round(1000 * LOOP_PS / METAL.timestep_fs)
     parts = [(LOOP_K, LOOP_K), (LOOP_K, METAL.final_K), (METAL.final_K, METAL.final_K)]
-    segments = [{"ensemble": "npt_height", "from": start, "to": end, "steps": steps} for start, end in parts]
+    segments = [
+        {"ensemble": "npt_height", "from": start, "to": end, "steps": steps} for start, end in parts
+    ]
     workspace = LammpsFolder(work, {"seed": seed}, "glass.in")
     start = whole.take(~missing)
     return run_segments(
-        workspace, metal, whole.elements, lambda: start, segments, seed, METAL.timestep_fs, "anneal", None
+        workspace,
+        metal,
+        whole.elements,
+        lambda: start,
+        segments,
+        seed,
+        METAL.timestep_fs,
+        "anneal",
+        None,
     )
 
 
 def disordered_share(body: Atoms) -> float:
     """Share of the atoms without twelve nearest neighbours."""
     places = np.mod(body.positions_A, body.cell_A)
-    neighbours = KDTree(places, boxsize=body.cell_A).query_ball_point(places, FIRST_SHELL_A, return_length=True)
+    neighbours = KDTree(places, boxsize=body.cell_A).query_ball_point(
+        places, FIRST_SHELL_A, return_length=True
+    )
     return float(np.mean(neighbours != 13))  # itself among them
 
 
 def press(metal: Metal, body: Atoms, seed: int, work: Path) -> dict[str, float]:
-    """Mean stress of an asperity cut out of a body and pressed by a flat, while the contact is judged."""
+    """Mean stress of an asperity cut out of a body and pressed by a flat, while the contact is
+    judged.
+    """
     silica, oxide = silica_and("pmmcs")
     wavelength_nm = float(body.cell_A[0]) / 10
-    asperity = AsperitySettings(name="metal", tiles=1, amplitude_nm=STEEPNESS * wavelength_nm, film_nm=0.0)
+    asperity = AsperitySettings(
+        name="metal", tiles=1, amplitude_nm=STEEPNESS * wavelength_nm, film_nm=0.0
+    )
     run = ClosingRun(name="metal", asperity=asperity, seed=seed, energy_scale=1.0)
     no_glass = Atoms(("Si", "O"), np.zeros(0, int), np.zeros((0, 3)), body.cell_A)
     closing = ClosingSettings(stop="window")
     made = run_closing(run, silica, no_glass, oxide, closing, work, base=(metal, body))
-    length, stress = (np.array([row[f"contact_{key}"] for row in made.curve]) for key in ("length_nm", "stress_GPa"))
+    length, stress = (
+        np.array([row[f"contact_{key}"] for row in made.curve])
+        for key in ("length_nm", "stress_GPa")
+    )
     used = (length > RULES.min_length_nm) & (length < RULES.max_area_fraction**0.5 * wavelength_nm)
     return {"hardness_GPa": float(np.mean(stress[used])), "averages": int(used.sum())}
 
@@ -208,7 +282,8 @@ def density(metal: Metal, body: Atoms) -> float:
 
 
 def lattice_energy(eam: Eam, cell_A: np.ndarray, places: np.ndarray) -> float:
-    """Energy of an atom (eV) of a periodic cell by the sum over all neighbours: for gates, beside LAMMPS.
+    """Energy of an atom (eV) of a periodic cell by the sum over all neighbours: for gates, beside
+    LAMMPS.
 
     Parameters
     ----------

@@ -1,16 +1,16 @@
 """Does hardness fall as the contact grows?
 
-The closing runs of a scene: `sizes` takes asperities of one shape to the end of their window, `reduced` stops them once
-their plateau is known, `oxide_on_oxide` pressed them by controlled force against titania, which the stage did until
-commit 884b5d7.  Runs of one shape are alike
-where the contact is 0.5 to 0.6 wavelengths wide, whatever their size: the columns `same_shape`.
+The closing runs of a scene: `sizes` takes asperities of one shape to the end of their window,
+`reduced` stops them once their plateau is known, `oxide_on_oxide` pressed them by controlled force
+against titania, which the stage did until commit 884b5d7.  Runs of one shape are alike where the
+contact is 0.5 to 0.6 wavelengths wide, whatever their size: the columns `same_shape`.
 
-The rows of 2026-11-23 were not made by this command.  They were copied, rounded, from the page that the runs were first
-written up on; the runs' own files are lost.  Their `same_shape_length_nm` is the middle of the range, 0.55 wavelengths,
-not a measured length, so the exponents of these rows are approximate and have no interval.  With the measured lengths
-that page gave -0.30 [-0.41, -0.19] at full energies (nine runs, wavelengths up to 8.5 nm) and -0.19 [-0.29, -0.08] at
-halved ones (ten runs).  The two largest runs at full energies are of glasses made on another processor.
-"""
+The rows of 2026-11-23 were not made by this command.  They were copied, rounded, from the page that
+the runs were first written up on; the runs' own files are lost.  Their `same_shape_length_nm` is
+the middle of the range, 0.55 wavelengths, not a measured length, so the exponents of these rows are
+approximate and have no interval.  With the measured lengths that page gave -0.30 [-0.41, -0.19] at
+full energies (nine runs, wavelengths up to 8.5 nm) and -0.19 [-0.29, -0.08] at halved ones (ten
+runs).  The two largest runs at full energies are of glasses made on another processor."""
 
 import os
 import subprocess
@@ -23,7 +23,8 @@ import numpy as np
 from evidence.record import ROOT, load_table
 
 COLUMNS = (
-    "energy_scale", "wavelength_nm", "seed", "status", "contact_length_nm", "hardness_GPa", "hardness_lo",
+    "energy_scale", "wavelength_nm", "seed", "status", "contact_length_nm", "hardness_GPa",
+    "hardness_lo",
     "hardness_hi", "same_shape_length_nm", "same_shape_GPa",
 )  # fmt: skip
 
@@ -50,7 +51,9 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     for name, scale in (("full", "1"), ("halved", "0.5")):
         of_scale = [row for row in rows if float(row["energy_scale"]) == float(scale)]
         length, stress = (
-            np.array([float(row[f"same_shape_{key}"]) for row in of_scale if row["scene"] == "sizes"])
+            np.array(
+                [float(row[f"same_shape_{key}"]) for row in of_scale if row["scene"] == "sizes"]
+            )
             for key in ("length_nm", "GPa")
         )
         found[f"n_{name}"] = f"{-np.polyfit(np.log(length), np.log(stress), 1)[0]:.2f}"

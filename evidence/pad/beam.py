@@ -1,10 +1,11 @@
-"""What does the beam do to pull-in and release, cause by cause, and is it that of finite differences?
+"""What does the beam do to pull-in and release, cause by cause, and is it that of finite
+differences?
 
-Causes are added one by one: `bending` alone, `stretching`, `plate` for the modulus of a wide beam, `fringe` for the
-field at the sides. Then each property of the device departs by one standard deviation to either side, and E is that of
-other nickel. `by`: the product's elements, or a plain twin by finite differences, from the snap on. Folders hold
-results of target `device`, with their cells at central inputs.
-"""
+Causes are added one by one: `bending` alone, `stretching`, `plate` for the modulus of a wide beam,
+`fringe` for the field at the sides. Then each property of the device departs by one standard
+deviation to either side, and E is that of other nickel. `by`: the product's elements, or a plain
+twin by finite differences, from the snap on. Folders hold results of target `device`, with their
+cells at central inputs."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
@@ -50,7 +51,9 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
 
 
 def _departed(device: DeviceSettings) -> Iterator[tuple[str, DeviceSettings]]:
-    for name, less, more in departed(device, 0.841345):  # the probability one standard deviation out
+    for name, less, more in departed(
+        device, 0.841345
+    ):  # the probability one standard deviation out
         yield f"{name} -", less
         yield f"{name} +", more
     yield "temperature_C +", device.model_copy(update={"temperature_C": device.temperature_C + 1.0})
@@ -68,7 +71,12 @@ def _by_differences(settings: DeviceSettings, law: Any) -> dict[str, Any]:
     started = process_time()
     pad = with_pad(lambda pad: solve_beam(settings, pad), law)[1]
     pull_in, release = finite_differences.release(settings, pad)
-    return {"by": "finite differences", "pull_in_V": pull_in, "release_V": release, "cpu_s": process_time() - started}
+    return {
+        "by": "finite differences",
+        "pull_in_V": pull_in,
+        "release_V": release,
+        "cpu_s": process_time() - started,
+    }
 
 
 def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
@@ -84,10 +92,16 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
             for (scene, case, method), row in by.items()
             if method == "finite differences"
         ]
-        shown[f"differences_{column.removesuffix('_V')}"] = f"{max(*apart, 1e-4):.2%}"  # rows have four digits
+        shown[f"differences_{column.removesuffix('_V')}"] = (
+            f"{max(*apart, 1e-4):.2%}"  # rows have four digits
+        )
     central = {scene: by[scene, "fringe", wanted] for scene, _, _ in by}
     for case in dict.fromkeys(row["case"] for row in table if row["case"] not in CAUSES):
-        moved = [float(row["release_V"]) - float(central[s]["release_V"]) for (s, c, _), row in by.items() if c == case]
+        moved = [
+            float(row["release_V"]) - float(central[s]["release_V"])
+            for (s, c, _), row in by.items()
+            if c == case
+        ]
         shown[case.replace(" ", "_").replace("+", "more").replace("-", "less")] = (
             f"{min(moved):+.2f} to {max(moved):+.2f} V"
         )

@@ -1,8 +1,8 @@
 """Does what the interval holds add up to its width, and what does the budget in volts cost?
 
-Of finished scenes: what the interval holds, added in quadrature, beside the 5 to 95 % of the answer; processor time of
-the switch on its pads and of the budget. With `--press` all pads are pressed again, which is the rest of the answer.
-"""
+Of finished scenes: what the interval holds, added in quadrature, beside the 5 to 95 % of the
+answer; processor time of the switch on its pads and of the budget. With `--press` all pads are
+pressed again, which is the rest of the answer."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
@@ -51,12 +51,20 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
             "effects": len(found),
             "quadrature_V": float(np.linalg.norm(held)),
             "interval_V": high - low,
-            **dict(zip(("press_cpu_s", "switch_cpu_s", "budget_cpu_s"), np.diff(times).tolist(), strict=True)),
+            **dict(
+                zip(
+                    ("press_cpu_s", "switch_cpu_s", "budget_cpu_s"),
+                    np.diff(times).tolist(),
+                    strict=True,
+                )
+            ),
         }
 
 
 def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """Of each scene the two widths; where its pads were pressed, the cost of the answer over that without budget."""
+    """Of each scene the two widths; where its pads were pressed, the cost of the answer over that
+    without budget.
+    """
     shown = {}
     for row in table:
         scene, without = row["scene"], float(row["press_cpu_s"]) + float(row["switch_cpu_s"])

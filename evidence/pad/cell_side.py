@@ -1,8 +1,8 @@
 """How long must cells be, so that the waves of a film that are longer do not matter?
 
-Pads of equal area on one film, of cells of different sides, drive the switch of a finished scene with measured scans,
-at central inputs. All places have the same RMS height, so that pads of few cells compare. Repeats have other surfaces.
-"""
+Pads of equal area on one film, of cells of different sides, drive the switch of a finished scene
+with measured scans, at central inputs. All places have the same RMS height, so that pads of few
+cells compare. Repeats have other surfaces."""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
@@ -28,8 +28,12 @@ APART = 10_000_000
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Which scene, and which cells."""
     parser.add_argument("--scene", default="diamond")
-    parser.add_argument("--sides", type=float, nargs="+", default=[1000.0, 2000.0, 4000.0, 8000.0], help="nm")
-    parser.add_argument("--spacings", type=float, nargs="+", default=[7.8125], help="of grid points, nm")
+    parser.add_argument(
+        "--sides", type=float, nargs="+", default=[1000.0, 2000.0, 4000.0, 8000.0], help="nm"
+    )
+    parser.add_argument(
+        "--spacings", type=float, nargs="+", default=[7.8125], help="of grid points, nm"
+    )
     parser.add_argument("--area", type=float, default=512.0, help="of a pad, um^2")
     parser.add_argument("--repeats", type=int, default=3)
 
@@ -49,7 +53,9 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
             count = round(given.area / (side / 1000.0) ** 2)
             for repeat in range(given.repeats):
                 solved = solve_point(point, contact, count, PAD.first_seed + APART * repeat)
-                opening = solved.pad.law.opening[0].sum(axis=0) if solved.pad else np.array([np.nan])
+                opening = (
+                    solved.pad.law.opening[0].sum(axis=0) if solved.pad else np.array([np.nan])
+                )
                 yield {
                     "scene": given.scene,
                     "side_nm": side,

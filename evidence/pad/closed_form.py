@@ -1,4 +1,5 @@
-"""A closed form of a pad that closes, opens and remembers how deep it was closed: known pads for checks.
+"""A closed form of a pad that closes, opens and remembers how deep it was closed: known pads for
+checks.
 
 With s the separation, D the deepest closing so far, r = s - D and p_0 = 1 MPa,
 
@@ -51,10 +52,14 @@ class ClosedForm:
         """Repulsion and attraction (negative) at separations not below the deepest closing."""
         s, deep = np.asarray(separation_nm, float), np.asarray(deepest_nm, float)
         load = np.exp(-self.c0 - self.c1_per_nm * deep - self.c2_per_nm2 * deep**2)
-        decay = (self.b0_per_nm + self.b1_per_nm2 * deep) * (s - deep) + self.b2_per_nm2 * (s - deep) ** 2
+        decay = (self.b0_per_nm + self.b1_per_nm2 * deep) * (s - deep) + self.b2_per_nm2 * (
+            s - deep
+        ) ** 2
         left = np.exp(-decay)
         rim = self.beta * UNIT_GPa * (load / UNIT_GPa) ** self.m * left**self.n
-        return load * left, -self.flats.pull_GPa(s) - rim * (1.0 + self.lifted * np.maximum(1.0 - left, 0.0) ** 3)
+        return load * left, -self.flats.pull_GPa(s) - rim * (
+            1.0 + self.lifted * np.maximum(1.0 - left, 0.0) ** 3
+        )
 
     def law(self, separation_nm: Array, depth_nm: Array) -> PadLaw:
         """Its curves at rising separations, opened from rising depths."""
@@ -63,11 +68,17 @@ class ClosedForm:
             above = separation_nm >= depth - 1e-9
             opening[k][:, above] = self.opening_GPa(separation_nm[above], depth)
             # what was flattened never pushes harder than it did on the way down
-            opening[k, 0, above] = np.minimum(opening[k, 0, above], self.closing_GPa(separation_nm[above])[0])
-        return PadLaw(separation_nm, np.stack(self.closing_GPa(separation_nm)), depth_nm, opening, self.flats)
+            opening[k, 0, above] = np.minimum(
+                opening[k, 0, above], self.closing_GPa(separation_nm[above])[0]
+            )
+        return PadLaw(
+            separation_nm, np.stack(self.closing_GPa(separation_nm)), depth_nm, opening, self.flats
+        )
 
     def pressed(self, wanted_GPa: Array, separation_nm: Array, depths: int = 24) -> PadLaw:
-        """Its curves from where closing carries what is wanted at rising separations, or the most that it does."""
+        """Its curves from where closing carries what is wanted at rising separations, or the most
+        that it does.
+        """
         net = np.add(*self.closing_GPa(separation_nm))
         deep = np.flatnonzero(net >= wanted_GPa)
         s = separation_nm[deep[-1] if deep.size else int(net.argmax()) :]

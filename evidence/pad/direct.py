@@ -1,11 +1,11 @@
 """Are the releases of an answer those of pads with many more cells, of other surfaces?
 
-`answer`: points of a finished scene as its answer has them. `other`: the same points on pads of 64 cells of other
-surfaces. `many`: the points that differ most, on pads of 1,024 independent places (drawn one by one, as a device has
-them), each with a cell of its own. `fresh`: further points of the joint distribution on pads of 64 cells, whose
-quantiles and share that sticks are set beside those of the answer. The cells of these pads stand only for themselves:
-their curves are not shifted as those of the answer are.
-"""
+`answer`: points of a finished scene as its answer has them. `other`: the same points on pads of 64
+cells of other surfaces. `many`: the points that differ most, on pads of 1,024 independent places
+(drawn one by one, as a device has them), each with a cell of its own. `fresh`: further points of
+the joint distribution on pads of 64 cells, whose quantiles and share that sticks are set beside
+those of the answer. The cells of these pads stand only for themselves: their curves are not shifted
+as those of the answer are."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
@@ -50,7 +50,15 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         apart = {}
         for k, one in enumerate(model.points):
             release = one.states.get("release_V", np.nan)
-            yield _row(folder.name, "answer", k, one.pad.cells.count if one.pad else 0, release, one.error_V, 0.0)
+            yield _row(
+                folder.name,
+                "answer",
+                k,
+                one.pad.cells.count if one.pad else 0,
+                release,
+                one.error_V,
+                0.0,
+            )
             if k < given.points:
                 other = _pressed(folder.name, "other", k, one.point, coarse, OTHERS + k)
                 apart[k] = abs(other["release_V"] - release)
@@ -66,20 +74,31 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
 
 
 def _pressed(
-    scene: str, kind: str, number: int, point: Point, contact: ContactSettings, cells: Sequence[Cell] | int
+    scene: str,
+    kind: str,
+    number: int,
+    point: Point,
+    contact: ContactSettings,
+    cells: Sequence[Cell] | int,
 ) -> dict[str, Any]:
     """The row of a point on cells, or on 64 of the surfaces of a number."""
     started = process_time()
     inputs, settings = point.contact_of(contact)
     pad_cells = point.device.pad_um2 * 1e6 / settings.length_nm**2
-    classes = sample_cells(inputs, OTHER_CELLS, surfaces_of(cells if isinstance(cells, int) else OTHERS), pad_cells)
+    classes = sample_cells(
+        inputs, OTHER_CELLS, surfaces_of(cells if isinstance(cells, int) else OTHERS), pad_cells
+    )
     cells = classes if isinstance(cells, int) else cells
     release = release_V(point, inputs, settings, cells, classes)
     return _row(scene, kind, number, len(cells), release, np.nan, process_time() - started)
 
 
 def release_V(
-    point: Point, inputs: ContactInputs, settings: ContactSettings, cells: Sequence[Cell], pilots: Sequence[Cell]
+    point: Point,
+    inputs: ContactInputs,
+    settings: ContactSettings,
+    cells: Sequence[Cell],
+    pilots: Sequence[Cell],
 ) -> float:
     """Release on the mean curves of cells; NaN where they cannot carry the switch.
 
@@ -104,7 +123,9 @@ def _row(
 
 
 def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """RMS and mean of the differences, beside the stated error; the worst points; quantiles and share that sticks."""
+    """RMS and mean of the differences, beside the stated error; the worst points; quantiles and
+    share that sticks.
+    """
     shown = {}
     for scene in dict.fromkeys(row["scene"] for row in table):
         by = {kind: _by_point(table, scene, kind) for kind in ("answer", "other", "many", "fresh")}
@@ -119,18 +140,24 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
             shown[f"{scene}_median_apart"] = f"{np.median(np.abs(apart)):.2f} V"
             shown[f"{scene}_stated"] = f"{np.sqrt(np.nanmean(errors**2)):.2f} V"
         shown |= {
-            f"{scene}_worst_{n}": f"{by['answer'][k]:.2f}, {by['other'][k]:.2f}, {by['many'][k]:.2f} V"
+            f"{scene}_worst_{n}": (
+                f"{by['answer'][k]:.2f}, {by['other'][k]:.2f}, {by['many'][k]:.2f} V"
+            )
             for n, k in enumerate(by["many"], 1)
         }
         for kind in ("answer", "fresh"):
             release = np.array([value for value in by[kind].values() if np.isfinite(value)])
             if release.size:
                 low, middle, high = np.quantile(release, (0.05, 0.5, 0.95))
-                said = f"{middle:.2f} [{low:.2f}, {high:.2f}] V, {np.mean(release == 0.0):.1%} stick"
+                said = (
+                    f"{middle:.2f} [{low:.2f}, {high:.2f}] V, {np.mean(release == 0.0):.1%} stick"
+                )
                 shown[f"{scene}_{kind}"] = f"{said}, {release.size} points"
     return shown
 
 
-def _by_point(table: Sequence[Mapping[str, str]], scene: str, kind: str, column: str = "release_V") -> dict[int, float]:
+def _by_point(
+    table: Sequence[Mapping[str, str]], scene: str, kind: str, column: str = "release_V"
+) -> dict[int, float]:
     rows = (row for row in table if (row["scene"], row["kind"]) == (scene, kind))
     return {int(row["point"]): float(row[column]) for row in rows}

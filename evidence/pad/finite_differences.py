@@ -1,4 +1,6 @@
-"""A clamped beam by finite differences, written apart from the product: a plain twin for its answers."""
+"""A clamped beam by finite differences, written apart from the product: a plain twin for its
+answers.
+"""
 
 import numpy as np
 from scipy.linalg import solve_banded
@@ -9,15 +11,23 @@ EPS0 = 8.8541878128e-12
 
 
 class Beam:
-    """Lengths in m, loads in N/m; `nodes` inner points of the deflection w, positive away from the dielectric."""
+    """Lengths in m, loads in N/m; `nodes` inner points of the deflection w, positive away from the
+    dielectric.
+    """
 
     def __init__(self, settings, nodes=399):
         self.length, self.width = settings.length_um * 1e-6, settings.width_um * 1e-6
         thick, modulus = settings.thickness_um * 1e-6, settings.youngs_modulus_GPa * 1e9
-        plate = settings.bends_as == "plate" or (settings.bends_as is None and self.width >= 5 * thick)
-        self.bending = modulus / (1 - settings.poisson_ratio**2 if plate else 1) * self.width * thick**3 / 12
+        plate = settings.bends_as == "plate" or (
+            settings.bends_as is None and self.width >= 5 * thick
+        )
+        self.bending = (
+            modulus / (1 - settings.poisson_ratio**2 if plate else 1) * self.width * thick**3 / 12
+        )
         self.axial = modulus * self.width * thick / self.length
-        self.tension = settings.residual_stress_MPa * 1e6 * (1 - settings.poisson_ratio) * self.width * thick
+        self.tension = (
+            settings.residual_stress_MPa * 1e6 * (1 - settings.poisson_ratio) * self.width * thick
+        )
         self.h = self.length / (nodes + 1)
         share = np.arange(1, nodes + 1) / (nodes + 1)
         self.shape0 = settings.shape_at_rest_nm(share) * 1e-9
@@ -88,7 +98,9 @@ class Beam:
 
 
 def settle(beam, w, deepest_nm, pad, voltage, largest_nm=0.25):
-    """Overdamped motion to balance at a voltage; the shape, the depths, and whether it is still closed."""
+    """Overdamped motion to balance at a voltage; the shape, the depths, and whether it is still
+    closed.
+    """
     speed, fastest, last = 1e-3, 1e9, np.zeros_like(w)
     for _ in range(200000):
         s = (beam.gap + w) * 1e9
@@ -97,7 +109,9 @@ def settle(beam, w, deepest_nm, pad, voltage, largest_nm=0.25):
         load, slope = beam.width * push * 1e9 - q, beam.width * steep * 1e18 - dq
         inertia = beam.width * 1e9 / speed
         x, _ = beam.step(w, load, slope, inertia)
-        allowed = np.maximum(0.25 * (s - pad.law.separation_nm[0] - 40.0), largest_nm).clip(max=50.0)
+        allowed = np.maximum(0.25 * (s - pad.law.separation_nm[0] - 40.0), largest_nm).clip(
+            max=50.0
+        )
         over = np.max(abs(x) * 1e9 / allowed)
         if over > 1.0:
             speed *= max(0.8 / over, 0.1)

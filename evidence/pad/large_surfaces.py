@@ -1,8 +1,9 @@
-"""Does a pad assembled from cells press and pull as a surface of its size that is computed directly?
+"""Does a pad assembled from cells press and pull as a surface of its size that is computed
+directly?
 
-Surfaces of 4 µm × 4 µm and cells of 1 µm are closed and opened at the same separations; sixteen cells are a pad of the
-area of one large surface. `apart_in_errors` is the difference of both means over its standard error.
-"""
+Surfaces of 4 µm × 4 µm and cells of 1 µm are closed and opened at the same separations; sixteen
+cells are a pad of the area of one large surface. `apart_in_errors` is the difference of both means
+over its standard error."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,7 +20,9 @@ from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
 
-INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
+INPUTS = ContactInputs(
+    hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5
+)
 LOADS_MPa = (2.0, 6.6)
 PIXELS = 128
 PILOTS = 32
@@ -38,19 +41,27 @@ def arguments(parser: ArgumentParser) -> None:
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """Closing pressure and deepest net pressure on opening of both, for each load."""
     contact = ContactSettings(mechanics="asperity", pixels=PIXELS)
-    wide = contact.model_copy(update={"pixels": SIDE * PIXELS, "length_nm": SIDE * contact.length_nm})
+    wide = contact.model_copy(
+        update={"pixels": SIDE * PIXELS, "length_nm": SIDE * contact.length_nm}
+    )
     grid = opened_grid(INPUTS, contact)
     small = closed(INPUTS, contact, grid, random_cells(given.cells, PAD.first_seed))
-    yield from comparison_rows(small, closed(INPUTS, wide, grid, random_cells(given.large, FIRST_LARGE_SEED)))
+    yield from comparison_rows(
+        small, closed(INPUTS, wide, grid, random_cells(given.large, FIRST_LARGE_SEED))
+    )
 
 
 def random_cells(count: int, first_seed: int) -> list[Cell]:
     """Independent places of a film, as a device has them."""
     numbers = np.random.default_rng([first_seed, 0x9A11]).normal(size=(count, 2)).tolist()
-    return [Cell(first_seed + k, rough, plane, 1.0 / count) for k, (rough, plane) in enumerate(numbers)]
+    return [
+        Cell(first_seed + k, rough, plane, 1.0 / count) for k, (rough, plane) in enumerate(numbers)
+    ]
 
 
-def closed(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cells: Sequence[Cell]) -> PadCells:
+def closed(
+    inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cells: Sequence[Cell]
+) -> PadCells:
     """A pad of cells."""
     return press_cells(inputs, contact, grid, cells)
 
@@ -58,7 +69,13 @@ def closed(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cells
 def opened_grid(inputs: ContactInputs, contact: ContactSettings) -> PadGrid:
     """Separations of the pad, opened from those at which pilot cells carry the loads."""
     pilots, largest_GPa = random_cells(PILOTS, PAD.first_seed), max(LOADS_MPa) * 1e-3
-    grid = plan_grid(inputs, contact, pilots, lambda separation: np.full_like(separation, largest_GPa), step_nm=0.1)
+    grid = plan_grid(
+        inputs,
+        contact,
+        pilots,
+        lambda separation: np.full_like(separation, largest_GPa),
+        step_nm=0.1,
+    )
     shut = closed(inputs, contact, PadGrid(grid.separation_nm, np.empty(0, int)), pilots)
     repelled = shut.mean(shut.closing)[0] * 1e3
     depths = np.array([int(np.argmax(repelled >= load)) for load in LOADS_MPa])
@@ -66,7 +83,9 @@ def opened_grid(inputs: ContactInputs, contact: ContactSettings) -> PadGrid:
 
 
 def deepest_kPa(net: Array) -> float:
-    """Largest net adhesive pressure of the mean of some cells, shape (cells, n); 0 where they only push."""
+    """Largest net adhesive pressure of the mean of some cells, shape (cells, n); 0 where they only
+    push.
+    """
     return max(-float(np.nanmin(net.mean(axis=0))), 0.0) * 1e6
 
 
@@ -105,7 +124,8 @@ def comparison_rows(cells: PadCells, large: PadCells) -> Iterator[dict[str, Any]
 
 def _row(quantity: str, load: float, assembled: Array, direct: Array) -> dict[str, Any]:
     (ours, error), (theirs, other) = (
-        (float(values.mean()), float(values.std(ddof=1) / len(values) ** 0.5)) for values in (assembled, direct)
+        (float(values.mean()), float(values.std(ddof=1) / len(values) ** 0.5))
+        for values in (assembled, direct)
     )
     return {
         "quantity": quantity,

@@ -1,11 +1,11 @@
-"""Does a slow loop of the lumped switch pull in and let go as finite elements do, in balance and in ngspice?
+"""Does a slow loop of the lumped switch pull in and let go as finite elements do, in balance and in
+ngspice?
 
-`fe`: 1,024 elements. `lumps`: so many pairs in balance. `ngspice`: the fewest pairs whose release is within 1 %, in
-motion in a vacuum, with a drag that takes what rings; the voltage rises for 3 s and falls for 11 s.
-`ended_s`: where ngspice stopped; a release before 14 s is none.
-Folders hold results of target `device`, with their cells at central inputs. Attraction is that of the scene times the
-column.
-"""
+`fe`: 1,024 elements. `lumps`: so many pairs in balance. `ngspice`: the fewest pairs whose release
+is within 1 %, in motion in a vacuum, with a drag that takes what rings; the voltage rises for 3 s
+and falls for 11 s. `ended_s`: where ngspice stopped; a release before 14 s is none. Folders hold
+results of target `device`, with their cells at central inputs. Attraction is that of the scene
+times the column."""
 
 import subprocess
 import tempfile
@@ -31,10 +31,11 @@ from mesoscale.settings import DeviceSettings
 PAIRS = (4, 8, 12, 16, 20, 24, 28, 32, 48, 64)
 ELEMENTS = 1024
 DRAG, STEP_S = 3e4, 1e-3
-"""Drag (Pa us/nm): the beam forgets in 2.4 ms. Of a step ngspice allows an error of reltol times the way from rest,
-some 3 um: with steps of 2 ms and reltol=1e-4 it leapt from a closed to an open balance 0.5 V too early on `ci`, with
-more of both up to 30 V. With maxord=2 it overshot, which the pad remembers, and one stuck. A memory of 10 us misses
-part of the landing, and with a capacitance in proportion to it ngspice stopped there."""
+"""Drag (Pa us/nm): the beam forgets in 2.4 ms. Of a step ngspice allows an error of reltol times
+the way from rest, some 3 um: with steps of 2 ms and reltol=1e-4 it leapt from a closed to an open
+balance 0.5 V too early on `ci`, with more of both up to 30 V. With maxord=2 it overshot, which the
+pad remembers, and one stuck. A memory of 10 us misses part of the landing, and with a capacitance
+in proportion to it ngspice stopped there."""
 SAME = ("scene", "attraction")
 OVER, TIMES_S, SHARES = 1.02, (0.0, 1.0, 3.0, 6.0, 14.0), (0.0, 0.93, 1.0, 0.5, 0.0)
 """The largest voltage over that of the pull-in, and shares of it in time."""
@@ -67,14 +68,19 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         for times in (1.0, 0.0):
             same = {"scene": folder.name, "attraction": times}
             started = process_time()
-            exact, law = with_pad(lambda pad, of=device: solve_beam(of, pad, ELEMENTS), attracting(scene_law, times))
+            exact, law = with_pad(
+                lambda pad, of=device: solve_beam(of, pad, ELEMENTS), attracting(scene_law, times)
+            )
             yield same | _of("fe", ELEMENTS, exact, started)
             enough = 0
             for pairs in PAIRS:
                 started = process_time()
                 states = solve_bent(lumped_beam(device, pairs), device, law)
                 yield same | _of("lumps", pairs, states, started)
-                if not enough and abs(states.release_V / exact.release_V - 1.0) <= CIRCUIT.release_error:
+                if (
+                    not enough
+                    and abs(states.release_V / exact.release_V - 1.0) <= CIRCUIT.release_error
+                ):
                     enough = pairs
             if times:
                 loop = _by_ngspice(lumps_of(device, enough), law, OVER * exact.pull_in_V)
@@ -88,12 +94,24 @@ def central_pad(results: Path) -> tuple[DeviceSettings, PadLaw]:
 
 
 def _of(by: str, pairs: int, states: BeamStates, started: float) -> dict[str, Any]:
-    volts = {"pull_in_V": states.pull_in_V, "release_V": states.release_V, "held_fF": states.capacitance_fF}
-    return {"by": by, "pairs": pairs, **volts, "cpu_s": process_time() - started, "ended_s": TIMES_S[-1]}
+    volts = {
+        "pull_in_V": states.pull_in_V,
+        "release_V": states.release_V,
+        "held_fF": states.capacitance_fF,
+    }
+    return {
+        "by": by,
+        "pairs": pairs,
+        **volts,
+        "cpu_s": process_time() - started,
+        "ended_s": TIMES_S[-1],
+    }
 
 
 def _loop(time_s: Any, volts: Any, middle_nm: Any, held_fF: float, cpu_s: float) -> dict[str, Any]:
-    """Voltages at which mid-span leaves and comes back to half its separation at rest; `held_fF` at the top."""
+    """Voltages at which mid-span leaves and comes back to half its separation at rest; `held_fF` at
+    the top.
+    """
     top, half = int(np.argmax(volts)), 0.5 * middle_nm[0]
     closed, opened = middle_nm[:top] < half, middle_nm[top:] > half
     return {
@@ -107,7 +125,9 @@ def _loop(time_s: Any, volts: Any, middle_nm: Any, held_fF: float, cpu_s: float)
 
 def _by_ngspice(lumps: Lumps, law: PadLaw, top: float) -> dict[str, Any]:
     started = getrusage(RUSAGE_CHILDREN).ru_utime
-    voltages = " ".join(f"{at} {share * top:.9g}" for at, share in zip(TIMES_S, SHARES, strict=True))
+    voltages = " ".join(
+        f"{at} {share * top:.9g}" for at, share in zip(TIMES_S, SHARES, strict=True)
+    )
     with tempfile.TemporaryDirectory() as folder:
         netlist = spice_switch(lumps, LumpErrors(lumps.count, *[0.0] * 6), law, 1, top / OVER)
         (Path(folder) / "switch.sub").write_text(netlist, encoding="utf-8")
@@ -116,21 +136,27 @@ def _by_ngspice(lumps: Lumps, law: PadLaw, top: float) -> dict[str, Any]:
         time_s, volts, moved, charge = np.loadtxt(Path(folder) / "out.txt").T
     top_at = int(np.argmax(volts))
     cpu_s = getrusage(RUSAGE_CHILDREN).ru_utime - started
-    return _loop(time_s, volts, lumps.rest_nm[-1] - moved, float(charge[top_at] / volts[top_at]), cpu_s)
+    return _loop(
+        time_s, volts, lumps.rest_nm[-1] - moved, float(charge[top_at] / volts[top_at]), cpu_s
+    )
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Largest errors of lumps in balance, and of the loops in motion."""
 
     def error(row: Mapping[str, str], column: str) -> float:
-        (other,) = (one for one in rows if one["by"] == "fe" and all(one[key] == row[key] for key in SAME))
+        (other,) = (
+            one for one in rows if one["by"] == "fe" and all(one[key] == row[key] for key in SAME)
+        )
         return abs(float(row[column]) / float(other[column]) - 1.0)
 
     def ended(row: Mapping[str, str]) -> bool:
         return float(row["ended_s"]) >= TIMES_S[-1]
 
     def largest(by: str, column: str, pairs: str = "") -> str:
-        kept = [row for row in rows if row["by"] == by and pairs in ("", row["pairs"]) and ended(row)]
+        kept = [
+            row for row in rows if row["by"] == by and pairs in ("", row["pairs"]) and ended(row)
+        ]
         return f"{max(error(row, column) for row in kept):.1%}"
 
     spice = [row for row in rows if row["by"] == "ngspice" and ended(row)]

@@ -1,11 +1,11 @@
-"""Does a pad of unequal places press and pull as a surface whose places differ, and how many cells does that take?
+"""Does a pad of unequal places press and pull as a surface whose places differ, and how many cells
+does that take?
 
-`direct`: surfaces of 4 µm × 4 µm, of which each µm² is a place with an RMS height of its own (independent, lognormal),
-beside pads of sixteen cells with the same RMS heights. `cells`: pads of so many successive cells beside pads of
-independent places. `kinds`: all cells beside a film of two kinds of places, half of each, with the same mean and
-scatter of ln RMS. `alike`: all cells beside a film whose places all have the median RMS height. `spread` is the
-standard deviation of pads.
-"""
+`direct`: surfaces of 4 µm × 4 µm, of which each µm² is a place with an RMS height of its own
+(independent, lognormal), beside pads of sixteen cells with the same RMS heights. `cells`: pads of
+so many successive cells beside pads of independent places. `kinds`: all cells beside a film of two
+kinds of places, half of each, with the same mean and scatter of ln RMS. `alike`: all cells beside a
+film whose places all have the median RMS height. `spread` is the standard deviation of pads."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,7 +15,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from evidence.pad.large_surfaces import FIRST_LARGE_SEED, INPUTS, PILOTS, SIDE, closed, deepest_kPa, random_cells
+from evidence.pad.large_surfaces import (
+    FIRST_LARGE_SEED,
+    INPUTS,
+    PILOTS,
+    SIDE,
+    closed,
+    deepest_kPa,
+    random_cells,
+)
 from mesoscale.contact.displacement import close_by_separation
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
 from mesoscale.pad.cells import Cell, close_cells, plan_grid, surface_of
@@ -54,10 +62,17 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         depths=2,
     )
     cells = random_cells(given.cells, PAD.first_seed)
-    pads = {"film": closed(FILM, contact, grid, cells), "alike": closed(MEDIAN, contact, grid, cells)}
+    pads = {
+        "film": closed(FILM, contact, grid, cells),
+        "alike": closed(MEDIAN, contact, grid, cells),
+    }
     for kind, sign in (("smooth", -1), ("rough", 1)):
-        pads[kind] = closed(at_rms(float(np.exp(sign * SCATTER))), contact, grid, cells[: len(cells) // 2])
-    wide = contact.model_copy(update={"pixels": SIDE * PIXELS, "length_nm": SIDE * contact.length_nm})
+        pads[kind] = closed(
+            at_rms(float(np.exp(sign * SCATTER))), contact, grid, cells[: len(cells) // 2]
+        )
+    wide = contact.model_copy(
+        update={"pixels": SIDE * PIXELS, "length_nm": SIDE * contact.length_nm}
+    )
     large, assembled = [], []
     for seed in range(FIRST_LARGE_SEED, FIRST_LARGE_SEED + given.large):
         factors = np.exp(SCATTER * np.random.default_rng([seed, 0x91ACE]).normal(size=(SIDE, SIDE)))
@@ -75,7 +90,9 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         about = {"mechanics": given.mechanics, "from_nm": float(grid.separation_nm[place])}
         closing = {name: pad.closing[:, 0, place] * 1e3 for name, pad in pads.items()}
         yield from comparisons(about | {"quantity": "closing pressure, MPa"}, closing)
-        net = {name: pad.opening[:, k].sum(axis=1)[:, : place + 1] * 1e6 for name, pad in pads.items()}
+        net = {
+            name: pad.opening[:, k].sum(axis=1)[:, : place + 1] * 1e6 for name, pad in pads.items()
+        }
         yield from comparisons(about | {"quantity": "net pressure on opening, kPa"}, net)
 
 
@@ -85,9 +102,13 @@ def at_rms(factor: float) -> ContactInputs:
 
 
 def comparisons(about: Mapping[str, Any], of: Mapping[str, Array]) -> Iterator[dict[str, Any]]:
-    """Rows of one quantity from its values, or its curves over separation, of the cells and surfaces of each pad."""
+    """Rows of one quantity from its values, or its curves over separation, of the cells and
+    surfaces of each pad.
+    """
     cells, rng = of["film"], np.random.default_rng(0)
-    yield _row("direct", SIDE**2, about, pads_of(of["assembled"], SIDE**2), pads_of(of["direct"], 1))
+    yield _row(
+        "direct", SIDE**2, about, pads_of(of["assembled"], SIDE**2), pads_of(of["direct"], 1)
+    )
     for size in SIZES:
         if len(cells) // size >= FEWEST_PADS:
             chosen = rng.integers(len(cells), size=INDEPENDENT_PADS * size)
@@ -99,13 +120,21 @@ def comparisons(about: Mapping[str, Any], of: Mapping[str, Array]) -> Iterator[d
 
 
 def pads_of(cells: Array, size: int) -> Array:
-    """Pressures of pads of `size` successive cells: the mean, or the deepest net pressure of the mean curve."""
+    """Pressures of pads of `size` successive cells: the mean, or the deepest net pressure of the
+    mean curve.
+    """
     groups = [cells[start : start + size] for start in range(0, len(cells) - size + 1, size)]
-    return np.array([float(group.mean()) if cells.ndim == 1 else deepest_kPa(group * 1e-6) for group in groups])
+    return np.array(
+        [float(group.mean()) if cells.ndim == 1 else deepest_kPa(group * 1e-6) for group in groups]
+    )
 
 
-def _row(question: str, size: int, about: Mapping[str, Any], pads: Array, beside: Array) -> dict[str, Any]:
-    error = float(np.hypot(pads.std(ddof=1) / len(pads) ** 0.5, beside.std(ddof=1) / len(beside) ** 0.5))
+def _row(
+    question: str, size: int, about: Mapping[str, Any], pads: Array, beside: Array
+) -> dict[str, Any]:
+    error = float(
+        np.hypot(pads.std(ddof=1) / len(pads) ** 0.5, beside.std(ddof=1) / len(beside) ** 0.5)
+    )
     if question == "direct":  # pair by pair the same RMS heights
         error = float((pads - beside).std(ddof=1) / len(pads) ** 0.5)
     return {
@@ -123,9 +152,15 @@ def _row(question: str, size: int, about: Mapping[str, Any], pads: Array, beside
 
 
 def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """How near assembled pads are to direct ones, what mixing does, and the spread of pads of so many cells."""
+    """How near assembled pads are to direct ones, what mixing does, and the spread of pads of so
+    many cells.
+    """
     deep = min(float(row["from_nm"]) for row in table)
-    part = [row for row in table if float(row["from_nm"]) == deep and row["quantity"].startswith("closing")]
+    part = [
+        row
+        for row in table
+        if float(row["from_nm"]) == deep and row["quantity"].startswith("closing")
+    ]
     ratio = {row["question"]: float(row["mean"]) / float(row["beside_mean"]) for row in part}
     apart = [abs(float(row["apart_in_errors"])) for row in table if row["question"] == "direct"]
     return {

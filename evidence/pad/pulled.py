@@ -1,9 +1,9 @@
 """Does a diamond film pull as measured (Thimons et al., 2021)?
 
-Cells of scene `diamond` at central inputs, in four attractions. A ruby sphere of 0.5 mm was measured to pull off such
-films with 0.08 to 7.15 mJ/m². It feels some ten square micrometres: cells of a median place, without the film's scatter
-of places. This film hardly flows, so the energy of opening them is the work that a sphere would read.
-"""
+Cells of scene `diamond` at central inputs, in four attractions. A ruby sphere of 0.5 mm was
+measured to pull off such films with 0.08 to 7.15 mJ/m². It feels some ten square micrometres: cells
+of a median place, without the film's scatter of places. This film hardly flows, so the energy of
+opening them is the work that a sphere would read."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
@@ -34,25 +34,37 @@ def arguments(parser: ArgumentParser) -> None:
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """A row for each attraction, pad and load."""
     scene = load_scene("diamond")
-    described = SimpleNamespace(input={"topography": given.results / "topography" / "parameters.json"})
+    described = SimpleNamespace(
+        input={"topography": given.results / "topography" / "parameters.json"}
+    )
     contact = contact_settings(scene.contact.model_dump(mode="json"), described)
     table = from_rows(load_table(given.results / "pad" / "inputs.csv"))
     contact, values = on_pad_grid(contact, table), table.medians() | {"rms_scatter": 0.0}
     fitted = values | {"hamaker": FITTED.hamaker(contact.attraction)}
     attractions = [("hamaker", values, cutoff) for cutoff in (contact.gap_cutoff_nm, 0.3, 1.0)]
-    for attraction, inputs, cutoff in (*attractions, ("fitted", fitted, FITTED.gap_cutoff_nm(contact.attraction))):
+    for attraction, inputs, cutoff in (
+        *attractions,
+        ("fitted", fitted, FITTED.gap_cutoff_nm(contact.attraction)),
+    ):
         for number in range(given.pads):
             point = Point(inputs, cutoff, scene.device)
             pad = press_pad(point, contact, given.cells, surfaces_of(number))
             for opened in adhesion_of(pad.law):
-                yield {"attraction": attraction, "gap_cutoff_nm": cutoff, "pad": number, **asdict(opened)}
+                yield {
+                    "attraction": attraction,
+                    "gap_cutoff_nm": cutoff,
+                    "pad": number,
+                    **asdict(opened),
+                }
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """The energy of a pad by both attractions, from its lowest to its highest."""
 
     def energy(attraction: str) -> str:
-        kept = [1e-3 * float(row["energy_uJ_m2"]) for row in rows if row["attraction"] == attraction]
+        kept = [
+            1e-3 * float(row["energy_uJ_m2"]) for row in rows if row["attraction"] == attraction
+        ]
         return f"{min(kept):.2g} to {max(kept):.2g} mJ/m²"
 
     return {"hamaker": energy("hamaker"), "fitted": energy("fitted")}

@@ -1,9 +1,9 @@
 """Do rare-event intervals of the failure rate hold what brute force finds, and what does each cost?
 
-`repeat`: a plate on pads of a known closed form fails with a probability near 1e-2 or 1e-3, by attraction. The same
-switches are drawn and solved one by one (`brute_force`), and the rare-event method is repeated with new random numbers.
-`exact`: a reserve whose probability is known to be one in a million, by independent runs of subset simulation.
-"""
+`repeat`: a plate on pads of a known closed form fails with a probability near 1e-2 or 1e-3, by
+attraction. The same switches are drawn and solved one by one (`brute_force`), and the rare-event
+method is repeated with new random numbers. `exact`: a reserve whose probability is known to be one
+in a million, by independent runs of subset simulation."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
@@ -58,7 +58,9 @@ class KnownPad:
 
 
 def known_pad(point: Point, *_: int) -> KnownPad:
-    """The pad of a point, of a closed form with numbers near those of Table 1, as hard as its switch presses."""
+    """The pad of a point, of a closed form with numbers near those of Table 1, as hard as its
+    switch presses.
+    """
     rms, z = point.values["rms"], (point.values["e_star"] - 90.0) / 10.0
     size, hamaker = np.log(rms / 9.0), point.values["hamaker"]
     strength = -1.5 + 0.1 * z - 1.2 * np.log(point.gap_cutoff_nm / 0.165)
@@ -92,7 +94,9 @@ def population(points: int = 128) -> Population:
 def arguments(parser: ArgumentParser) -> None:
     """Options on the command line."""
     parser.add_argument("--repeats", type=int, default=20)
-    parser.add_argument("--brute-force", type=int, default=40_000, help="plates; 0: those of a run before stand")
+    parser.add_argument(
+        "--brute-force", type=int, default=40_000, help="plates; 0: those of a run before stand"
+    )
 
 
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
@@ -107,26 +111,53 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     for name, count in failed.items() if len(z) else ():
         share = count / len(z)
         error = (share * (1.0 - share) / len(z)) ** 0.5
-        yield _row(name, "brute_force", 0, share, (share - 1.96 * error, share + 1.96 * error), len(z), started)
+        yield _row(
+            name,
+            "brute_force",
+            0,
+            share,
+            (share - 1.96 * error, share + 1.96 * error),
+            len(z),
+            started,
+        )
     for seed in range(given.repeats):
         started = process_time()
         response = learn(plates, lambda *_: None, seed)
         for name, times in ATTRACTIONS.items():
             found = corrected(response, times, plates.hold_V, seed)
             solved = response.switches + found.runs
-            yield _row(name, "rare_event", seed, found.probability, (found.low, found.high), solved, started)
+            yield _row(
+                name,
+                "rare_event",
+                seed,
+                found.probability,
+                (found.low, found.high),
+                solved,
+                started,
+            )
     distance = -float(ndtri(EXACT_P))
     for seed in range(given.repeats):
         started = process_time()
         found = sample_event(
-            lambda z: (distance + z.sum(axis=1) / np.sqrt(DIMENSION), np.full(len(z), 1e-9)), DIMENSION, 0.0, seed
+            lambda z: (distance + z.sum(axis=1) / np.sqrt(DIMENSION), np.full(len(z), 1e-9)),
+            DIMENSION,
+            0.0,
+            seed,
         )
         ends = found.interval(CONFIDENCE)
-        yield _row("1e-6", "exact", seed, found.probability, ends, 0, started) | {"variation": found.variation}
+        yield _row("1e-6", "exact", seed, found.probability, ends, 0, started) | {
+            "variation": found.variation
+        }
 
 
 def _row(
-    wanted: str, method: str, seed: int, value: float, interval: tuple[float, float], switches: int, started: float
+    wanted: str,
+    method: str,
+    seed: int,
+    value: float,
+    interval: tuple[float, float],
+    switches: int,
+    started: float,
 ) -> dict[str, Any]:
     return {
         "wanted": wanted,
@@ -145,7 +176,10 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """In how many repetitions brute force lies in the interval, and how many switches both need."""
     shown = {}
     for wanted in ATTRACTIONS:
-        by = {kind: [row for row in table if (row["wanted"], row["method"]) == (wanted, kind)] for kind in METHODS}
+        by = {
+            kind: [row for row in table if (row["wanted"], row["method"]) == (wanted, kind)]
+            for kind in METHODS
+        }
         truth = float(by["brute_force"][-1]["probability"])
         held = [float(row["low"]) <= truth <= float(row["high"]) for row in by["rare_event"]]
         shown[f"held_{wanted[-1]}"] = f"{sum(held)} of {len(held)}"

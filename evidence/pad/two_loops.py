@@ -1,10 +1,11 @@
-"""Is the share of devices that fail, by what is not known, and are the bands of the release those of brute force?
+"""Is the share of devices that fail, by what is not known, and are the bands of the release those
+of brute force?
 
-A plate on pads of a known closed form. E* and D0 are common to all plates, A_H and the RMS height are of each.
-`truth`: for draws of what is common, the share that fails by quadrature in A_H and bisection in the RMS height, and the
-releases of plates that are solved one by one. `stated`: the same by the response of the failure rate, and by the sum
-that is fitted to the answer's points; each again with new random numbers.
-"""
+A plate on pads of a known closed form. E* and D0 are common to all plates, A_H and the RMS height
+are of each. `truth`: for draws of what is common, the share that fails by quadrature in A_H and
+bisection in the RMS height, and the releases of plates that are solved one by one. `stated`: the
+same by the response of the failure rate, and by the sum that is fitted to the answer's points; each
+again with new random numbers."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
@@ -28,7 +29,8 @@ from mesoscale.uncertainty.rare_events import LEAST, quantiles_of
 
 EACH = ("hamaker", "rms")
 VARIED = InputTable(
-    tuple(replace(row, varies="each" if row.name in EACH else "common") for row in TABLE.rows), np.eye(3)
+    tuple(replace(row, varies="each" if row.name in EACH else "common") for row in TABLE.rows),
+    np.eye(3),
 )
 NODES, STEPS = 8, 14
 """Of the quadrature in A_H, and of the bisection in the RMS height, within 7 deviations."""
@@ -46,7 +48,10 @@ def arguments(parser: ArgumentParser) -> None:
     """Options on the command line."""
     parser.add_argument("--repeats", type=int, default=20)
     parser.add_argument(
-        "--draws", type=int, default=200, help="of what is common, by brute force; 0: those before stand"
+        "--draws",
+        type=int,
+        default=200,
+        help="of what is common, by brute force; 0: those before stand",
     )
 
 
@@ -56,7 +61,9 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     if given.draws:
         for name, times in ATTRACTIONS.items():
             started = process_time()
-            yield from _rows(f"rate_{name}", "truth", 0, quantiles_of(shares_that_fail(drawn, times)), started)
+            yield from _rows(
+                f"rate_{name}", "truth", 0, quantiles_of(shares_that_fail(drawn, times)), started
+            )
         for kind, chosen in (("unknown", plates().common), ("between", ~plates().common)):
             started, units = process_time(), np.where(chosen, ndtr(drawn), 0.5)
             yield from _rows(kind, "truth", 0, quantiles_of(releases_V(units)), started)
@@ -82,7 +89,9 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
 
 
 def shares_that_fail(z: np.ndarray, times: float) -> np.ndarray:
-    """Shares by draws of what is common; the places of A_H and RMS height in z (m, 4) are not used."""
+    """Shares by draws of what is common; the places of A_H and RMS height in z (m, 4) are not
+    used.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     shares = np.zeros(len(z))
     for k, row in enumerate(z):
@@ -101,9 +110,14 @@ def shares_that_fail(z: np.ndarray, times: float) -> np.ndarray:
 
 def releases_V(units: np.ndarray) -> np.ndarray:
     """Releases of plates at probabilities (m, 4)."""
-    points = [point_of(row, TABLE.names, PLATE) for row in values_at(units, TABLE, PLATE, CUTOFFS_NM)]
+    points = [
+        point_of(row, TABLE.names, PLATE) for row in values_at(units, TABLE, PLATE, CUTOFFS_NM)
+    ]
     return np.array(
-        [solve_on_pad(plate_from_settings(PLATE), known_pad(point).law, None).release_V for point in points]
+        [
+            solve_on_pad(plate_from_settings(PLATE), known_pad(point).law, None).release_V
+            for point in points
+        ]
     )
 
 
@@ -111,18 +125,29 @@ def _rows(
     kind: str, method: str, seed: int, ends: Mapping[str, Mapping[str, float]], started: float
 ) -> Iterator[dict[str, Any]]:
     for q, row in ends.items():
-        yield {"kind": kind, "method": method, "seed": seed, "quantile": q, **row, "cpu_s": process_time() - started}
+        yield {
+            "kind": kind,
+            "method": method,
+            "seed": seed,
+            "quantile": q,
+            **row,
+            "cpu_s": process_time() - started,
+        }
 
 
 def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """In how many repetitions the interval meets that of brute force; rates below `LEAST` are alike."""
+    """In how many repetitions the interval meets that of brute force; rates below `LEAST` are
+    alike.
+    """
     shown = {}
     for kind in ("unknown", "between", *(f"rate_{name}" for name in ATTRACTIONS)):
         for q in map(str, ENDS):
             of = [row for row in table if (row["kind"], row["quantile"]) == (kind, q)]
             truth = [row for row in of if row["method"] == "truth"][-1]
             stated = [row for row in of if row["method"] == "stated"]
-            low, high = ([max(float(row[end]), LEAST) for row in (truth, *stated)] for end in ("low", "high"))
+            low, high = (
+                [max(float(row[end]), LEAST) for row in (truth, *stated)] for end in ("low", "high")
+            )
             held = [low[k] <= high[0] and low[0] <= high[k] for k in range(1, len(low))]
             name = f"{kind.replace('-', '_')}_{q[2:]}"
             shown[f"{name}_held"], shown[f"{name}_truth"] = (

@@ -1,10 +1,11 @@
-"""The prediction of an indentation: 500 nm of thermal silica on silicon, P/S2 against depth, with nothing fitted.
+"""The prediction of an indentation: 500 nm of thermal silica on silicon, P/S2 against depth, with
+nothing fitted.
 
-Prints the numbers of evidence/predictions/indentation.yaml. P/S2 needs no area function. The contact pressure is the
-law of films. The stiffness is that of a rigid circular punch on elastic layers, by the integral equation of its
-pressure (Sneddon, Mixed Boundary Value Problems in Potential Theory, 1966, chapter 4). The depth is h_c + 0.75 P/S
-(Oliver and Pharr, J. Mater. Res. 7 (1992) 1564), with the area 24.5 h_c^2 of a Berkovich tip.
-"""
+Prints the numbers of evidence/predictions/indentation.yaml. P/S2 needs no area function. The
+contact pressure is the law of films. The stiffness is that of a rigid circular punch on elastic
+layers, by the integral equation of its pressure (Sneddon, Mixed Boundary Value Problems in
+Potential Theory, 1966, chapter 4). The depth is h_c + 0.75 P/S (Oliver and Pharr, J. Mater. Res. 7
+(1992) 1564), with the area 24.5 h_c^2 of a Berkovich tip."""
 
 import json
 import sys
@@ -25,13 +26,18 @@ TIP = MaterialSettings(young_GPa=1141.0, poisson=0.07)  # diamond, Oliver and Ph
 FACE = 24.5  # area of a Berkovich tip over the square of the contact depth
 
 
-def stiffness_GPa(silica_GPa: float, silicon_GPa: float, thickness_nm: float, half_width_nm: np.ndarray) -> np.ndarray:
+def stiffness_GPa(
+    silica_GPa: float, silicon_GPa: float, thickness_nm: float, half_width_nm: np.ndarray
+) -> np.ndarray:
     """E_r of contacts on the film."""
     film = MaterialSettings(young_GPa=silica_GPa, poisson=0.17, thickness_nm=thickness_nm)
     bodies = ((film, MaterialSettings(young_GPa=silicon_GPa, poisson=0.22)), (TIP,))
     q = np.linspace(1e-4, 10.0, 600) / thickness_nm  # beyond, the base is not felt
     compliance = softness(bodies, q) / base_modulus(bodies)
-    excess, distance = compliance / compliance[-1] - 1.0, np.linspace(0.0, 2.0 * half_width_nm.max(), 2000)
+    excess, distance = (
+        compliance / compliance[-1] - 1.0,
+        np.linspace(0.0, 2.0 * half_width_nm.max(), 2000),
+    )
     kernel = np.trapezoid(excess * np.cos(np.outer(distance, q)), q, axis=1) / np.pi
     nodes, weights = np.polynomial.legendre.leggauss(48)
     found = []
@@ -55,9 +61,13 @@ def curve(draw: dict[str, float]) -> np.ndarray:
 
 
 def draws(fit: Path) -> list[dict[str, float]]:
-    """Inputs: the film's hardness at the tip's slope from a finished hardness stage, k and m as scenes have them."""
+    """Inputs: the film's hardness at the tip's slope from a finished hardness stage, k and m as
+    scenes have them.
+    """
     film, rng = json.loads(fit.read_text())["inputs"]["h_film"], np.random.default_rng(0)
-    factor = np.interp(np.log(BERKOVICH), np.log(film["steepness"]["rms_slope"]), film["steepness"]["factor"])
+    factor = np.interp(
+        np.log(BERKOVICH), np.log(film["steepness"]["rms_slope"]), film["steepness"]["factor"]
+    )
     joint = np.loadtxt(SAMPLES, delimiter=",", skiprows=3)  # two lines of comment, and the names
     return [
         {
@@ -76,4 +86,6 @@ def draws(fit: Path) -> list[dict[str, float]]:
 if __name__ == "__main__":
     curves = np.array([curve(draw) for draw in draws(Path(sys.argv[1]))])
     for at, values in zip(DEPTHS_NM, np.quantile(curves, LEVELS, axis=0).T, strict=True):
-        print(f"  - {{at: {at:g} nm, quantiles: [{', '.join(f'{value:.3f}' for value in values)}]}}")
+        print(
+            f"  - {{at: {at:g} nm, quantiles: [{', '.join(f'{value:.3f}' for value in values)}]}}"
+        )

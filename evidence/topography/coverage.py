@@ -1,17 +1,19 @@
 """How often do 90 % intervals hold the truth, by kind of film and of measurement?
 
-Maps have 256 x 256 pixels. Fine ones are of 1 and 5 um, seen by a tip whose radius is told wrong by up to 20 %. Coarse
-ones are of 20 to 100 um, with a roll-off that goes into the cell or is longer. Lines are of 2 and 8 um; mixed are maps
-of 1 um with lines of 8 um. Grainy and grooved maps, of 1 and 3 um, have log-normal heights, upright or upside down. On
-uneven films RMS heights of places scatter by 40 %. Alone is one line or map of 1 to 10 um, with 0.3 to 30 waves of the
-knee. Few are a map of 1 um and a line of 200 um, as the diamond film has them, of places that scatter by up to 50 %.
+Maps have 256 x 256 pixels. Fine ones are of 1 and 5 um, seen by a tip whose radius is told wrong by
+up to 20 %. Coarse ones are of 20 to 100 um, with a roll-off that goes into the cell or is longer.
+Lines are of 2 and 8 um; mixed are maps of 1 um with lines of 8 um. Grainy and grooved maps, of 1
+and 3 um, have log-normal heights, upright or upside down. On uneven films RMS heights of places
+scatter by 40 %. Alone is one line or map of 1 to 10 um, with 0.3 to 30 waves of the knee. Few are a
+map of 1 um and a line of 200 um, as the diamond film has them, of places that scatter by up to 50
+%.
 
-Held are: q0, slope and RMS height of eq. 9; the RMS height of the cell in use (`cell`); RMS slope and curvature of the
-one spectrum (`steep`, `curved`); first contact of one more cell (`touch`), of waves up to the measured end. Where eq. 9
-is not used, its parameters do not count.
+Held are: q0, slope and RMS height of eq. 9; the RMS height of the cell in use (`cell`); RMS slope
+and curvature of the one spectrum (`steep`, `curved`); first contact of one more cell (`touch`), of
+waves up to the measured end. Where eq. 9 is not used, its parameters do not count.
 
-Grooves of little skewness (0.4) look Gaussian in their images. Their RMS height is then found a tenth too small, and
-no interval holds it: these are the sets of grooved maps that eq. 9 describes.
+Grooves of little skewness (0.4) look Gaussian in their images. Their RMS height is then found a
+tenth too small, and no interval holds it: these are the sets of grooved maps that eq. 9 describes.
 """
 
 import argparse
@@ -39,20 +41,28 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_sl
 from mesoscale.topography.synthetic_scans import ScanSet, dilate, measure, synthetic_scans
 
 # the tip meets the surface on 2 nm or 5 nm; of what it traces every second pixel is kept, for speed
-BASE = ScanSet(pixels=512, small_scans=4, large_scans=3, large_length_nm=5000.0, rms_variation=0.0, seed=17)
+BASE = ScanSet(
+    pixels=512, small_scans=4, large_scans=3, large_length_nm=5000.0, rms_variation=0.0, seed=17
+)
 THINNED = 2
 TIP_ERROR = 0.2
-# of grainy maps: one step for both sizes, because finer roughness under a tip changes all waves of its image
+# of grainy maps: one step for both sizes, because finer roughness under a tip changes all waves of
+# its image
 GRAINY_MAPS = ((1000.0, 512), (3000.0, 1536))
 LINES = ((8000.0, 4), (2000.0, 4))  # length in nm and number of the profiles of a set
 LINE_POINTS, FINER = 2048, 4
-SHAPES = 0.1, 0.3  # log-normal heights: skewness 0.3 to 0.95; for more the spectrum can no longer be kept
+SHAPES = (
+    0.1,
+    0.3,
+)  # log-normal heights: skewness 0.3 to 0.95; for more the spectrum can no longer be kept
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Kinds and sets."""
     parser.add_argument("--kinds", nargs="*", default=list(KINDS), choices=list(KINDS))
-    parser.add_argument("--sets", type=int, default=40, help="of each kind, 1 to 6 s each on one core")
+    parser.add_argument(
+        "--sets", type=int, default=40, help="of each kind, 1 to 6 s each on one core"
+    )
 
 
 def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -96,35 +106,53 @@ def _thinned(scan: Scan, stride: int) -> Scan:
 
 
 def grainy_maps(truth: ScanSet, stated_nm: float, upright: int = 1) -> Iterator[Measurement]:
-    """Scans of a surface of the same spectrum whose heights are distributed log-normally: tall grains."""
+    """Scans of a surface of the same spectrum whose heights are distributed log-normally: tall
+    grains.
+    """
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(2,)))
     heights = grains(truth, upright)
-    for (length, sites), count in zip(GRAINY_MAPS, (truth.small_scans, truth.large_scans), strict=True):
+    for (length, sites), count in zip(
+        GRAINY_MAPS, (truth.small_scans, truth.large_scans), strict=True
+    ):
         for _ in range(count):
             spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
             rms = _random_rms(spectrum, 2 * length, 2 * sites, rng)
-            larger = synthesize_heights(2 * sites, 2 * length, spectrum.psd, heights, rms, int(rng.integers(2**31)))
+            larger = synthesize_heights(
+                2 * sites, 2 * length, spectrum.psd, heights, rms, int(rng.integers(2**31))
+            )
             surface = dilate(larger[:sites, :sites], truth.tip_radius_nm, length / sites)
             scan = measure(surface, length, truth, rng, f"grainy_{rng.integers(2**31)}")
             yield Measurement(_thinned(scan, sites * THINNED // truth.pixels), stated_nm, True)
 
 
 def grains(truth: ScanSet, upright: int) -> tuple[float, ...]:
-    """Log-normal heights of a set: their values at the normal variables `Z`; tall peaks, or deep grooves (-1)."""
-    shape = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(7,))).uniform(*SHAPES)
+    """Log-normal heights of a set: their values at the normal variables `Z`; tall peaks, or deep
+    grooves (-1).
+    """
+    shape = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(7,))).uniform(
+        *SHAPES
+    )
     return common_heights([upright * np.exp(upright * shape * Z)])
 
 
-def _random_rms(spectrum: RoughSpectrum, length: float, sites: int, rng: np.random.Generator) -> float:
-    """RMS height of one periodic surface: `synthesize_heights` gives each the same, chance does not."""
+def _random_rms(
+    spectrum: RoughSpectrum, length: float, sites: int, rng: np.random.Generator
+) -> float:
+    """RMS height of one periodic surface: `synthesize_heights` gives each the same, chance does
+    not.
+    """
     q = np.geomspace(2 * np.pi / length, np.pi * sites / length, 400)
     square = np.trapezoid(2 * np.pi * q * spectrum.psd(q), q)
     fourth = np.trapezoid(2 * np.pi * q * spectrum.psd(q) ** 2, q) * (2 * np.pi / length) ** 2
-    return float(np.sqrt(square * max(1 + np.sqrt(2 * fourth) / square * rng.standard_normal(), 0.1)))
+    return float(
+        np.sqrt(square * max(1 + np.sqrt(2 * fourth) / square * rng.standard_normal(), 0.1))
+    )
 
 
 def lines(truth: ScanSet, counts: Sequence[tuple[float, int]] = LINES) -> Iterator[Measurement]:
-    """Profiles of some lengths across a Gaussian surface, by an instrument without tip, tilted and noisy."""
+    """Profiles of some lengths across a Gaussian surface, by an instrument without tip, tilted and
+    noisy.
+    """
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(3,)))
     spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
     q = np.geomspace(1e-5, truth.q1, 4000)
@@ -132,12 +160,16 @@ def lines(truth: ScanSet, counts: Sequence[tuple[float, int]] = LINES) -> Iterat
         for number in range(count):
             heights = _line(q, spectrum.psd(q), length, rng)
             heights += truth.noise_nm * rng.standard_normal(LINE_POINTS)
-            heights += np.linspace(0, length * np.tan(np.radians(truth.tilt_deg * rng.uniform(-1, 1))), LINE_POINTS)
+            heights += np.linspace(
+                0, length * np.tan(np.radians(truth.tilt_deg * rng.uniform(-1, 1))), LINE_POINTS
+            )
             yield Measurement(Profile(heights, length, f"line_{length:g}_{number}"), 0.0, True)
 
 
 def _line(q: np.ndarray, psd: np.ndarray, length: float, rng: np.random.Generator) -> np.ndarray:
-    """Heights along a line across a surface, cut from twice its length, sampled from finer points."""
+    """Heights along a line across a surface, cut from twice its length, sampled from finer
+    points.
+    """
     n, step = 2 * FINER * LINE_POINTS, length / LINE_POINTS / FINER
     k = 2 * np.pi * np.fft.rfftfreq(n, step)[1:]
     c1 = np.where(k < q[-1], projected(q, psd, np.minimum(k, 0.999 * q[-1])), 0.0)
@@ -153,8 +185,15 @@ def alone(truth: ScanSet, stated_nm: float, line: bool) -> tuple[ScanSet, Iterat
     first = 2 * np.pi / length
     q0 = first * float(np.exp(rng.uniform(*np.log(ALONE_WAVES))))
     # the RMS height drawn is that of waves up to its length
-    seen = 1 - mean_square(1.0, q0, truth.slope, first) / mean_square(1.0, q0, truth.slope, truth.q1)
-    known = {"q0": q0, "rms_nm": truth.rms_nm / float(np.sqrt(seen)), "small_scans": 0, "large_scans": 1}
+    seen = 1 - mean_square(1.0, q0, truth.slope, first) / mean_square(
+        1.0, q0, truth.slope, truth.q1
+    )
+    known = {
+        "q0": q0,
+        "rms_nm": truth.rms_nm / float(np.sqrt(seen)),
+        "small_scans": 0,
+        "large_scans": 1,
+    }
     truth = truth.model_copy(update=known | {"large_length_nm": length})
     return truth, lines(truth, counts=((length, 1),)) if line else maps(truth, stated_nm)
 
@@ -170,7 +209,9 @@ def few(truth: ScanSet, stated_nm: float) -> Iterator[Measurement]:
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(13,)))
     yield from maps(truth.model_copy(update={"small_scans": 1, "large_scans": 0}), stated_nm)
     level = float(np.exp(truth.rms_variation * rng.standard_normal()))
-    yield from lines(truth.model_copy(update={"rms_nm": level * truth.rms_nm}), counts=((200e3, 1),))
+    yield from lines(
+        truth.model_copy(update={"rms_nm": level * truth.rms_nm}), counts=((200e3, 1),)
+    )
 
 
 def _few_truth(truth: ScanSet) -> ScanSet:
@@ -182,7 +223,9 @@ def _few_truth(truth: ScanSet) -> ScanSet:
 
 def coarse(truth: ScanSet) -> Iterator[Measurement]:
     """Maps of `large_length_nm` by an instrument without tip."""
-    yield from maps(truth.model_copy(update={"small_scans": 0, "large_scans": 4, "tip_radius_nm": 0.0}), 0.0)
+    yield from maps(
+        truth.model_copy(update={"small_scans": 0, "large_scans": 4, "tip_radius_nm": 0.0}), 0.0
+    )
 
 
 def _coarse_truth(truth: ScanSet, waves: tuple[float, float]) -> ScanSet:
@@ -190,7 +233,9 @@ def _coarse_truth(truth: ScanSet, waves: tuple[float, float]) -> ScanSet:
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(5,)))
     length = float(np.exp(rng.uniform(*np.log(COARSE_NM))))
     q0 = 2 * np.pi / length * float(np.exp(rng.uniform(*np.log(waves))))
-    return truth.model_copy(update={"large_length_nm": length, "q0": q0, "rms_nm": 10 * truth.rms_nm})
+    return truth.model_copy(
+        update={"large_length_nm": length, "q0": q0, "rms_nm": 10 * truth.rms_nm}
+    )
 
 
 CHARTS = {"grainy": 1, "grooved": -1}
@@ -206,7 +251,10 @@ KINDS: dict[str, Kind] = {
     "mixed": lambda truth, told: (truth, mixed(truth, told)),
     "grainy": lambda truth, told: (truth, grainy_maps(truth, told)),
     "grooved": lambda truth, told: (truth, grainy_maps(truth, told, upright=-1)),
-    "uneven": lambda truth, told: (made := truth.model_copy(update={"rms_variation": 0.4}), maps(made, told)),
+    "uneven": lambda truth, told: (
+        made := truth.model_copy(update={"rms_variation": 0.4}),
+        maps(made, told),
+    ),
     "line_alone": lambda truth, told: alone(truth, told, line=True),
     "map_alone": lambda truth, told: alone(truth, told, line=False),
     "few": lambda truth, told: (made := _few_truth(truth), few(made, told)),
@@ -214,7 +262,8 @@ KINDS: dict[str, Kind] = {
 FINE_CELL_NM = 1000.0
 NAMES = ("q0", "slope", "rms")
 HELD = (*NAMES, "cell", "steep", "curved", "touch")
-DRAWN = 39  # cells of the description; one more lies between the second from both ends with probability 0.9
+# cells of the description; one more lies between the second from both ends with probability 0.9
+DRAWN = 39
 GRIDS = (32, 64, 128, 256, 512)
 
 
@@ -245,7 +294,9 @@ def set_row(kind: str, number: int) -> dict[str, Any]:
     row |= {"measurements": len(arrays), "description": pooled.choice.name}
     row["doubts"] = " ".join(doubt.code for doubt in pooled.doubts)
     spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
-    found = {name: (item.value, *item.interval) for name, item in pooled.topography.estimates.items()}
+    found = {
+        name: (item.value, *item.interval) for name, item in pooled.topography.estimates.items()
+    }
     true = {"q0": truth.q0, "slope": truth.slope, "rms": _rms(spectrum, pooled.topography.cutoff)}
     one = pooled.one
     if "rms" in pooled.film:
@@ -255,32 +306,47 @@ def set_row(kind: str, number: int) -> dict[str, Any]:
         true["cell"] = _cell_rms(spectrum, cell_nm, end)
     if one is not None:
         statistics = one.statistics()
-        for name, of, power, factor in (("steep", "rms_slope", 2, 1.0), ("curved", "rms_curvature", 4, 0.5)):
+        for name, of, power, factor in (
+            ("steep", "rms_slope", 2, 1.0),
+            ("curved", "rms_curvature", 4, 0.5),
+        ):
             found[name] = (statistics[of]["value"], *statistics[of]["interval"])
             q = np.geomspace(one.first, min(one.q[-1], truth.q1), 4000)
             moment = np.trapezoid(2 * np.pi * q ** (power + 1) * spectrum.psd(q), q)
             true[name] = factor * float(np.sqrt(moment))
     if pooled.rows:
         chart = grains(truth, CHARTS[kind]) if kind in CHARTS else ()
-        true["touch"], found["touch"] = _first_contacts(pooled, truth, chart, cell_nm, list(KINDS).index(kind))
+        true["touch"], found["touch"] = _first_contacts(
+            pooled, truth, chart, cell_nm, list(KINDS).index(kind)
+        )
     for name in true:
         if name in found:
             value, low, high = found[name]
-            row |= {f"{name}_true": true[name], name: value, f"{name}_low": low, f"{name}_high": high}
+            row |= {
+                f"{name}_true": true[name],
+                name: value,
+                f"{name}_low": low,
+                f"{name}_high": high,
+            }
     return row
 
 
 def _first_contacts(
     pooled: Pooled, truth: ScanSet, chart: tuple[float, ...], cell_nm: float, kind: int
 ) -> tuple[float, tuple[float, float, float]]:
-    """First contact (nm) of a cell of the truth, and median and 90 % interval of cells by the description."""
+    """First contact (nm) of a cell of the truth, and median and 90 % interval of cells by the
+    description.
+    """
     q1, rms_scatter = (
-        pooled.film[name] if name in pooled.film else pooled.rows[name] for name in ("q1", "rms_scatter")
+        pooled.film[name] if name in pooled.film else pooled.rows[name]
+        for name in ("q1", "rms_scatter")
     )
     end = min(_middle(q1), truth.q1)
     pixels = next((n for n in GRIDS if np.pi * n / cell_nm >= end), GRIDS[-1])
     end = min(end, np.pi * pixels / cell_nm)
-    rms = rms_before({**q1, "a": end, "b": end}, pooled.film["rms"], pooled.topography, pooled.surface)
+    rms = rms_before(
+        {**q1, "a": end, "b": end}, pooled.film["rms"], pooled.topography, pooled.surface
+    )
     grid = {"pixels": pixels, "length_nm": cell_nm, "q1_per_nm": end}
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(8, kind)))
 
@@ -293,7 +359,13 @@ def _first_contacts(
     spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
     hurst = hurst_from_slope(truth.slope, "areal")
     surface = {"heights": chart} if chart else {}
-    true = touches(surface, truth.rms_variation, q0=truth.q0, hurst=hurst, rms=_cell_rms(spectrum, cell_nm, end))
+    true = touches(
+        surface,
+        truth.rms_variation,
+        q0=truth.q0,
+        hurst=hurst,
+        rms=_cell_rms(spectrum, cell_nm, end),
+    )
     rows = {"q0": pooled.film["q0"], "hurst": pooled.film["hurst"], "rms": rms}
     drawn = sorted(
         touches(
@@ -312,11 +384,15 @@ def _middle(row: Mapping[str, float]) -> float:
 
 def _rms(spectrum: RoughSpectrum, end: float) -> float:
     """RMS height (nm) of the waves up to `end` (1/nm)."""
-    return float(np.sqrt(mean_square(spectrum.plateau, spectrum.q0, spectrum.slope, min(end, spectrum.q1))))
+    return float(
+        np.sqrt(mean_square(spectrum.plateau, spectrum.q0, spectrum.slope, min(end, spectrum.q1)))
+    )
 
 
 def _cell_rms(spectrum: RoughSpectrum, cell_nm: float, end: float) -> float:
-    """RMS height (nm) of a periodic cell of a film that is flat beyond its longest wave, by a sum over all waves."""
+    """RMS height (nm) of a periodic cell of a film that is flat beyond its longest wave, by a sum
+    over all waves.
+    """
     numbers = np.arange(-CELL_WAVES, CELL_WAVES + 1)
     step = 2 * np.pi / cell_nm
     q = step * np.hypot(numbers[:, None], numbers)
@@ -330,14 +406,20 @@ CELL_WAVES = 64
 
 
 def errors_of(rows: Sequence[Mapping[str, str]], name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Error of each estimate, relative but for the slope, and whether its interval holds the truth."""
+    """Error of each estimate, relative but for the slope, and whether its interval holds the
+    truth.
+    """
     columns = (f"{name}_true", name, f"{name}_low", f"{name}_high")
-    true, value, low, high = np.array([[float(row[key]) for key in columns] for row in rows if row[name]]).T
+    true, value, low, high = np.array(
+        [[float(row[key]) for key in columns] for row in rows if row[name]]
+    ).T
     return value - true if name == "slope" else value / true - 1, (low <= true) & (true <= high)
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """Of each kind its sets, and of each quantity the share held and the RMS error (relative, but of the slope)."""
+    """Of each kind its sets, and of each quantity the share held and the RMS error (relative, but
+    of the slope).
+    """
     found = {}
     for kind in KINDS:
         mine = [row for row in rows if row["kind"] == kind and row["measurements"] != "0"]

@@ -1,9 +1,10 @@
-"""Does what pressing a quarter of a real map gives lie inside the 90 % interval that the other three quarters give?
+"""Does what pressing a quarter of a real map gives lie inside the 90 % interval that the other
+three quarters give?
 
-Every map with square pixels below a folder, cut into four. The description, of the kind that all four choose, is made
-from three quarters and judged by pressing the fourth, as a scene judges the scans of a film. A map has one place
-of a film only, and its quarters are small: they see few long waves.
-"""
+Every map with square pixels below a folder, cut into four. The description, of the kind that all
+four choose, is made from three quarters and judged by pressing the fourth, as a scene judges the
+scans of a film. A map has one place of a film only, and its quarters are small: they see few long
+waves."""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
@@ -36,7 +37,9 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """One row for each number that a quarter is judged by, of maps that the table does not have."""
     present = {(row["file"], row["map"]) for row in load("topography.quarters")}
     for path in sorted(path for path in given.folder.rglob("*") if path.is_file()):
-        settings = TopographySettings.model_validate({"scans": ["file"], **STATED.get(path.name, {})})
+        settings = TopographySettings.model_validate(
+            {"scans": ["file"], **STATED.get(path.name, {})}
+        )
         try:
             measured = load_measurements(path, path.stem, settings)
         except InputError:  # `real_files` has the refusals
@@ -49,12 +52,18 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
                     yield {"file": path.name, "map": item.data.name, **row}
 
 
-def judged(measured: Measurement, scans: Sequence[Scan], settings: TopographySettings) -> Iterator[dict[str, Any]]:
-    """Each quarter of a map pressed beside surfaces of the other three; nothing where they cannot be described."""
+def judged(
+    measured: Measurement, scans: Sequence[Scan], settings: TopographySettings
+) -> Iterator[dict[str, Any]]:
+    """Each quarter of a map pressed beside surfaces of the other three; nothing where they cannot
+    be described.
+    """
     arrays, attributes = {}, {}
     try:
         for scan in scans:
-            arrays[scan.name], attributes[scan.name] = record(replace(measured, data=scan), settings)
+            arrays[scan.name], attributes[scan.name] = record(
+                replace(measured, data=scan), settings
+            )
             attributes[scan.name] |= {"file": scan.name, "sha256": ""}
         name = pool(arrays, attributes, settings, cell_nm=None).choice.name
     except InputError:
@@ -62,7 +71,17 @@ def judged(measured: Measurement, scans: Sequence[Scan], settings: TopographySet
     spectra = [trusted_record(key, data, attributes[key]) for key, data in arrays.items()]
     for row in judge(scans, spectra, name, INPUTS, settings, ContactSettings(mechanics="asperity")):
         yield {
-            key: row[key] for key in ("scan", "description", "quantity", "pressed", "median", "low", "high", "inside")
+            key: row[key]
+            for key in (
+                "scan",
+                "description",
+                "quantity",
+                "pressed",
+                "median",
+                "low",
+                "high",
+                "inside",
+            )
         }
 
 
@@ -71,7 +90,9 @@ def cut(scan: Scan) -> list[Scan]:
     nx, ny = (side // 2 for side in scan.heights_nm.shape)
     quarters = []
     for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
-        heights = np.ascontiguousarray(scan.heights_nm[i * nx : (i + 1) * nx, j * ny : (j + 1) * ny])
+        heights = np.ascontiguousarray(
+            scan.heights_nm[i * nx : (i + 1) * nx, j * ny : (j + 1) * ny]
+        )
         sides = nx * scan.pixel_nm[0], ny * scan.pixel_nm[1]
         quarters.append(Scan(heights, sides, f"{scan.name}_{2 * i + j + 1}"))
     return quarters

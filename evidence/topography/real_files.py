@@ -1,10 +1,10 @@
 """Does what pressing a real scan gives lie inside the 90 % interval that its description gives?
 
-Every file below a folder: the test data of SurfaceTopography, and the diamond film of `config/measurements`. Each map
-with square pixels judges the description made from itself. Loads that
-press more than half of a scan into contact are counted apart: a scene does not ask for them. Outside are an
-interferometer map of 1.8 mm with dust, and numbers of two ridged maps (doubt `anisotropic`).
-"""
+Every file below a folder: the test data of SurfaceTopography, and the diamond film of
+`config/measurements`. Each map with square pixels judges the description made from itself. Loads
+that press more than half of a scan into contact are counted apart: a scene does not ask for them.
+Outside are an interferometer map of 1.8 mm with dust, and numbers of two ridged maps (doubt
+`anisotropic`)."""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,7 +21,8 @@ from mesoscale.topography.measurements.loading import load_measurements
 from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import record, trusted_record
 
-# what a scene would state for these files: channels where there are several, units where there are none, instruments
+# what a scene would state for these files: channels where there are several, units where there are
+# none, instruments
 STATED: dict[str, dict[str, Any]] = {
     "di-3.di": {"channel": "Height"},
     "nid-1.nid": {"channel": "Scan forward (Z-Axis)"},
@@ -37,9 +38,23 @@ STATED: dict[str, dict[str, Any]] = {
     },
 }
 INPUTS = ContactInputs(hamaker=0.2, e_star=91, h_macro=2, h_prime=8, q0=0.05, hurst=0.5, rms=4)
-FIRST_CONTACT = {"pressed": "first_contact_nm", "median": "described_nm", "low": "low_nm", "high": "high_nm"}
+FIRST_CONTACT = {
+    "pressed": "first_contact_nm",
+    "median": "described_nm",
+    "low": "low_nm",
+    "high": "high_nm",
+}
 COLUMNS = (
-    *("file", "measurements", "description", "doubts", "cell_nm", "length_nm", *FIRST_CONTACT.values(), "inside"),
+    *(
+        "file",
+        "measurements",
+        "description",
+        "doubts",
+        "cell_nm",
+        "length_nm",
+        *FIRST_CONTACT.values(),
+        "inside",
+    ),
     *("numbers_inside", "all_loads_inside", "refused"),
 )
 
@@ -75,14 +90,26 @@ def described(path: Path) -> dict[str, Any]:
         "cell_nm": pooled.cell_nm,
         "length_nm": max(float(values["length_x_nm"]) for values in attributes.values()),
     }
-    maps = [item.data for item in measured if isinstance(item.data, Scan) and has_square_pixels(item.data)]
+    maps = [
+        item.data
+        for item in measured
+        if isinstance(item.data, Scan) and has_square_pixels(item.data)
+    ]
     judged = list(
         judge(
-            maps, images, pooled.choice.name, INPUTS, settings, ContactSettings(mechanics="asperity"), most_contact=1.0
+            maps,
+            images,
+            pooled.choice.name,
+            INPUTS,
+            settings,
+            ContactSettings(mechanics="asperity"),
+            most_contact=1.0,
         )
     )
     for first in [item for item in judged if item["quantity"] == "first_contact"][:1]:
-        found |= {name: first[key] for key, name in FIRST_CONTACT.items()} | {"inside": first["inside"]}
+        found |= {name: first[key] for key, name in FIRST_CONTACT.items()} | {
+            "inside": first["inside"]
+        }
         asked = [item["inside"] for item in judged if item["in_contact"] <= MOST_CONTACT]
         found["numbers_inside"] = f"{sum(asked)} of {len(asked)}"
         found["all_loads_inside"] = f"{sum(item['inside'] for item in judged)} of {len(judged)}"

@@ -1,12 +1,11 @@
 """How often are maps of one surface taken for two, and maps of two for one?
 
-Maps of 1 um and 256 x 256 pixels: three of one surface and three of another, that differs in one property. The middle
-of the places' RMS heights is that of their surface; about it they scatter by nothing, 5 % or 20 %. Seeds are new: the
-test was fixed on others.
+Maps of 1 um and 256 x 256 pixels: three of one surface and three of another, that differs in one
+property. The middle of the places' RMS heights is that of their surface; about it they scatter by
+nothing, 5 % or 20 %. Seeds are new: the test was fixed on others.
 
-The test tells what differs by about ten times the scatter between places. Where places of one film scatter by 20 %,
-six maps cannot tell a film of half as much roughness again.
-"""
+The test tells what differs by about ten times the scatter between places. Where places of one film
+scatter by 20 %, six maps cannot tell a film of half as much roughness again."""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
@@ -45,7 +44,9 @@ FIRST_SEED = 50_000
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Sets of maps."""
-    parser.add_argument("--sets", type=int, default=40, help="of each pair of surfaces and scatter, 0.5 s each")
+    parser.add_argument(
+        "--sets", type=int, default=40, help="of each pair of surfaces and scatter, 0.5 s each"
+    )
     parser.add_argument("--scatters", type=float, nargs="*", default=list(SCATTERS))
 
 
@@ -69,14 +70,24 @@ def set_row(case: tuple[str, float, int]) -> dict[str, Any]:
     for k, change in enumerate(({}, OTHERS[other])):
         update = {**change, "seed": FIRST_SEED + 2 * number + k, "rms_variation": scatter}
         made = synthetic_scans(BASE.model_copy(update=update))
-        spectra += [trusted_map(clean(item.scan, settings), with_limits(item.scan, settings)) for item in made]
+        spectra += [
+            trusted_map(clean(item.scan, settings), with_limits(item.scan, settings))
+            for item in made
+        ]
     spectra = [replace(item, name=f"{k}") for k, item in enumerate(spectra)]
     doubts = several_surfaces(spectra, overlaps(spectra), {})
     text = doubts[0].text if doubts else ""
     grouped = any(
-        f"{first} and {second} look" in text for first, second in (("0, 1, 2", "3, 4, 5"), ("3, 4, 5", "0, 1, 2"))
+        f"{first} and {second} look" in text
+        for first, second in (("0, 1, 2", "3, 4, 5"), ("3, 4, 5", "0, 1, 2"))
     )
-    return {"other": other, "scatter": f"{scatter:g}", "set": number, "doubted": bool(doubts), "grouped": grouped}
+    return {
+        "other": other,
+        "scatter": f"{scatter:g}",
+        "set": number,
+        "doubted": bool(doubts),
+        "grouped": grouped,
+    }
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:

@@ -1,12 +1,14 @@
-"""Are maps found that a program smoothed or interpolated, and numbers that stand for missing points, and no others?
+"""Are maps found that a program smoothed or interpolated, and numbers that stand for missing
+points, and no others?
 
-Honest maps are of twelve kinds: slopes of 2.2 to 5, with grains, steps of 8 bits, blunt tips, pixels that average,
-offsets of 1/f noise, a slow feedback, and surfaces stretched up to fivefold. Treated ones begin as one of these. Of a
-filter that is found, `restored` is C at the end of what is trusted, over C of the map before; `trusted` is that end
-over the Nyquist wave vector. Of missing points, `restored` is the RMS height over that of the whole map.
+Honest maps are of twelve kinds: slopes of 2.2 to 5, with grains, steps of 8 bits, blunt tips,
+pixels that average, offsets of 1/f noise, a slow feedback, and surfaces stretched up to fivefold.
+Treated ones begin as one of these. Of a filter that is found, `restored` is C at the end of what is
+trusted, over C of the map before; `trusted` is that end over the Nyquist wave vector. Of missing
+points, `restored` is the RMS height over that of the whole map.
 
-Gaussians below 0.8 pixels change less than pixels do. `points` are numbers that stand for missing points: spread, in
-patches or along lines. `dust` are honest maps with particles, pits and plateaus.
+Gaussians below 0.8 pixels change less than pixels do. `points` are numbers that stand for missing
+points: spread, in patches or along lines. `dust` are honest maps with particles, pits and plateaus.
 """
 
 import argparse
@@ -41,10 +43,21 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """One row for each map that the table does not have."""
-    present = {(row["kind"], row["treatment"], int(row["set"])) for row in load("topography.treated")}
+    present = {
+        (row["kind"], row["treatment"], int(row["set"])) for row in load("topography.treated")
+    }
     kinds = list(HONEST)
-    asked = [(kind, treatment, number) for kind in kinds for treatment in UNTREATED for number in range(given.sets)]
-    asked += [(kinds[k % len(kinds)], treatment, k) for treatment in TREATMENTS for k in range(given.treated)]
+    asked = [
+        (kind, treatment, number)
+        for kind in kinds
+        for treatment in UNTREATED
+        for number in range(given.sets)
+    ]
+    asked += [
+        (kinds[k % len(kinds)], treatment, k)
+        for treatment in TREATMENTS
+        for k in range(given.treated)
+    ]
     asked += [(kinds[k % len(kinds)], "points", k) for k in range(given.treated)]
     for case in asked:
         if case not in present:
@@ -56,7 +69,13 @@ def row_of(kind: str, treatment: str, number: int) -> dict[str, Any]:
     index = [*UNTREATED, *TREATMENTS, "points"].index(treatment)
     rng = np.random.default_rng([78, list(HONEST).index(kind), index, number])
     honest, length_nm = made(kind, rng)
-    row: dict[str, Any] = {"kind": kind, "treatment": treatment, "set": number, "strength": "", "found": ""}
+    row: dict[str, Any] = {
+        "kind": kind,
+        "treatment": treatment,
+        "set": number,
+        "strength": "",
+        "found": "",
+    }
     row |= {"trusted": "", "restored": "", "missing": ""}
     if treatment == "points":
         return row | _found_points(honest, rng)
@@ -74,7 +93,10 @@ def row_of(kind: str, treatment: str, number: int) -> dict[str, Any]:
     if treated is None:
         return row
     row |= {"found": treated.kind, "trusted": float(treated.end / spectrum.nyquist)}
-    if treatment in TREATMENTS and treatment not in ("linear", "spline"):  # of these the map before has another size
+    if treatment in TREATMENTS and treatment not in (
+        "linear",
+        "spline",
+    ):  # of these the map before has another size
         before = hann_spectrum(clean(Scan(honest, (length_nm, length_nm), "before"), SETTINGS))
         after, _ = restored(spectrum, treated, cleaned.rms_nm)
         near = [np.abs(item.q / treated.end - 0.95) < 0.06 for item in (after, before)]
@@ -84,15 +106,22 @@ def row_of(kind: str, treatment: str, number: int) -> dict[str, Any]:
 
 
 def _found_points(honest: Array, rng: Rng) -> dict[str, Any]:
-    """Numbers that stand for missing points: how many pixels differ from the true ones, and the RMS height left."""
+    """Numbers that stand for missing points: how many pixels differ from the true ones, and the RMS
+    height left.
+    """
     lost = lost_points(honest.shape, rng)
     value = float(rng.choice(STAND_INS))
-    heights = honest + 4 * np.ptp(honest) if value == 0.0 else honest  # 0 stands for missing far from the surface only
+    heights = (
+        honest + 4 * np.ptp(honest) if value == 0.0 else honest
+    )  # 0 stands for missing far from the surface only
     found, numbers = without_stand_ins(np.where(lost, value, heights))
     side = float(len(honest))
     rms = [clean(Scan(item, (side, side), "map"), SETTINGS).rms_nm for item in (found, honest)]
     right = bool(np.array_equal(np.isnan(found), lost))
-    known = {"found": "missing" if right else "other", "missing": sum(item.count for item in numbers)}
+    known = {
+        "found": "missing" if right else "other",
+        "missing": sum(item.count for item in numbers),
+    }
     return known | {"strength": value, "restored": float(rms[0] / rms[1])}
 
 
@@ -117,7 +146,9 @@ def made(kind: str, rng: Rng) -> tuple[Array, float]:
     slope = float(rng.uniform(4.2, 5.0)) if kind == "steep" else float(rng.uniform(2.2, 4.6))
     knee = 2 * np.pi / length * float(np.exp(rng.uniform(np.log(0.5), np.log(20))))
     rms = length * float(np.exp(rng.uniform(np.log(5e-4), np.log(1e-2))))
-    truth = RoughSpectrum.from_rms(rms, knee, slope, np.pi * pixels / length * float(rng.uniform(1.5, 4)))
+    truth = RoughSpectrum.from_rms(
+        rms, knee, slope, np.pi * pixels / length * float(rng.uniform(1.5, 4))
+    )
     heights = HONEST[kind](truth, pixels, length, rng)
     if kind != "noiseless":
         noise = heights.std() * float(np.exp(rng.uniform(np.log(1e-4), np.log(0.05))))
@@ -137,27 +168,37 @@ def _stretched(truth: RoughSpectrum, pixels: int, length: float, rng: Rng) -> Ar
 
 
 def _grainy(truth: RoughSpectrum, pixels: int, length: float, rng: Rng) -> Array:
-    return truth.rms_nm * np.exp(rng.uniform(0.2, 0.5) * surface_patch(truth, pixels, length, rng) / truth.rms_nm)
+    return truth.rms_nm * np.exp(
+        rng.uniform(0.2, 0.5) * surface_patch(truth, pixels, length, rng) / truth.rms_nm
+    )
 
 
 def _with_tip(blunt: float) -> Callable[[RoughSpectrum, int, float, Rng], Array]:
     def seen(truth: RoughSpectrum, pixels: int, length: float, rng: Rng) -> Array:
         heights, step = surface_patch(truth, pixels, length, rng), length / pixels
         curvature = np.std(np.diff(heights, 2, axis=0)) / step**2
-        return dilate(heights, float(np.exp(rng.uniform(np.log(0.3), np.log(blunt))) / curvature), step)
+        return dilate(
+            heights, float(np.exp(rng.uniform(np.log(0.3), np.log(blunt))) / curvature), step
+        )
 
     return seen
 
 
 def _averaged(truth: RoughSpectrum, pixels: int, length: float, rng: Rng) -> Array:
-    return surface_patch(truth, 2 * pixels, length, rng).reshape(pixels, 2, pixels, 2).mean(axis=(1, 3))
+    return (
+        surface_patch(truth, 2 * pixels, length, rng)
+        .reshape(pixels, 2, pixels, 2)
+        .mean(axis=(1, 3))
+    )
 
 
 def _drifting(truth: RoughSpectrum, pixels: int, length: float, rng: Rng) -> Array:
     """1/f noise in the time of a scan."""
     heights = surface_patch(truth, pixels, length, rng)
     frequency = np.fft.rfftfreq(heights.size)[1:]
-    waves = (rng.standard_normal(len(frequency)) + 1j * rng.standard_normal(len(frequency))) / np.sqrt(frequency)
+    waves = (
+        rng.standard_normal(len(frequency)) + 1j * rng.standard_normal(len(frequency))
+    ) / np.sqrt(frequency)
     noise = np.fft.irfft(np.concatenate([[0.0], waves]), heights.size).reshape(heights.shape).T
     return heights + rng.uniform(0.02, 0.3) * heights.std() / noise.std() * noise
 
@@ -165,7 +206,9 @@ def _drifting(truth: RoughSpectrum, pixels: int, length: float, rng: Rng) -> Arr
 def _lagging(truth: RoughSpectrum, pixels: int, length: float, rng: Rng) -> Array:
     """A feedback that follows within 0.3 to 1.5 pixels."""
     heights, kept = surface_patch(truth, pixels, length, rng), np.exp(-1 / rng.uniform(0.3, 1.5))
-    return np.asarray(signal.lfilter([1 - kept], [1, -kept], heights, axis=0, zi=heights[:1] * kept)[0])
+    return np.asarray(
+        signal.lfilter([1 - kept], [1, -kept], heights, axis=0, zi=heights[:1] * kept)[0]
+    )
 
 
 HONEST: dict[str, Callable[[RoughSpectrum, int, float, Rng], Array]] = {
@@ -190,7 +233,9 @@ def dusty(heights: Array, rng: Rng) -> Array:
     changed = heights.copy()
     for _ in range(int(rng.integers(1, 30))):
         centre, wide = rng.uniform(0, count, 2), float(rng.uniform(2.0, 6.0))
-        bump = np.exp(-((x[:, None] - centre[0]) ** 2 + (x[None, :] - centre[1]) ** 2) / (2 * wide**2))
+        bump = np.exp(
+            -((x[:, None] - centre[0]) ** 2 + (x[None, :] - centre[1]) ** 2) / (2 * wide**2)
+        )
         changed += (-1 if form == 1 else 1) * float(rng.uniform(5, 40)) * scale * bump
     return changed
 

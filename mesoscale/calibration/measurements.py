@@ -24,7 +24,12 @@ UNITS = {
     "count": {"": 1.0},
 }
 """Units by quantity with their factor to the first one."""
-CURVE = {"separation": "length", "force": "force", "separation_error": "length", "force_error": "force"}
+CURVE = {
+    "separation": "length",
+    "force": "force",
+    "separation_error": "length",
+    "force_error": "force",
+}
 COLUMNS: dict[str, dict[str, str]] = {
     "closing_curves": CURVE,
     "opening_curves": CURVE,
@@ -76,25 +81,39 @@ def load_measurements(table: MeasurementTable, path: str | Path | None = None) -
 
     Raises
     ------
-    InputError : the file is missing, a column or its unit is missing or unknown, a value is no number, an error is not
+    InputError : the file is missing, a column or its unit is missing or unknown, a value is no
+        number, an error is not
         positive, columns look swapped, or a curve has fewer points than unknowns.
     """
     file = table.file
     header, table_rows = foreign_table(path or file, file)
-    rows = [[(value or "").strip() for value in row.values() if not isinstance(value, list)] for row in table_rows]
+    rows = [
+        [(value or "").strip() for value in row.values() if not isinstance(value, list)]
+        for row in table_rows
+    ]
     if not rows:
         raise InputError(f"{file}: has no rows; give a header and at least one measurement")
     places = _places(file, table.kind, header)
     columns = {
-        quantity: factor
-        * np.array([_number(file, line, header[place], row, place) for line, row in enumerate(rows, 1)])
+        quantity: (
+            factor
+            * np.array(
+                [_number(file, line, header[place], row, place) for line, row in enumerate(rows, 1)]
+            )
+        )
         for quantity, (place, factor) in places.items()
     }
     named = header.index("specimen") if "specimen" in header else None
     if named is None and table.kind in CURVES:
-        raise InputError(f"{file}: no column specimen; name the specimen of every point, one curve each")
-    specimens = tuple(f"{table.kind} {line}" if named is None else row[named] for line, row in enumerate(rows, 1))
-    loaded = Measurements(table.kind, columns, specimens, table.zero == "known", table.discrepancy, file, table.source)
+        raise InputError(
+            f"{file}: no column specimen; name the specimen of every point, one curve each"
+        )
+    specimens = tuple(
+        f"{table.kind} {line}" if named is None else row[named] for line, row in enumerate(rows, 1)
+    )
+    loaded = Measurements(
+        table.kind, columns, specimens, table.zero == "known", table.discrepancy, file, table.source
+    )
     _check(loaded)
     return loaded
 
@@ -103,9 +122,16 @@ def _places(file: str, kind: str, header: Sequence[str]) -> dict[str, tuple[int,
     """Column and factor of every quantity."""
     places = {}
     for quantity, measure in COLUMNS[kind].items():
-        names = {f"{quantity}_{unit}" if unit else quantity: factor for unit, factor in UNITS[measure].items()}
+        names = {
+            f"{quantity}_{unit}" if unit else quantity: factor
+            for unit, factor in UNITS[measure].items()
+        }
         matches = [(place, names[name]) for place, name in enumerate(header) if name in names]
-        near = [name for name in header if name.startswith(quantity) and not name.startswith(f"{quantity}_error")]
+        near = [
+            name
+            for name in header
+            if name.startswith(quantity) and not name.startswith(f"{quantity}_error")
+        ]
         if len(matches) > 1:
             raise InputError(f"{file}: column {quantity} stands there twice; leave one")
         if matches:
@@ -114,7 +140,9 @@ def _places(file: str, kind: str, header: Sequence[str]) -> dict[str, tuple[int,
             fault = "has no unit" if near[0] == quantity else "has an unknown unit"
             raise InputError(f"{file}: column {near[0]} {fault}; name it {' or '.join(names)}")
         elif quantity not in OPTIONAL:
-            raise InputError(f"{file}: no column {quantity} with its unit; name it {' or '.join(names)}")
+            raise InputError(
+                f"{file}: no column {quantity} with its unit; name it {' or '.join(names)}"
+            )
     if kind in CURVES and not any(name in places for name in OPTIONAL):
         raise InputError(f"{file}: no errors; give separation_error_nm or force_error_nN or both")
     return places
@@ -127,7 +155,10 @@ def _number(file: str, line: int, header: Sequence[str], row: Sequence[str], pla
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(f"{file}: row {line}, column {header[place]} = {text[:40]!r}: accepted is a finite number")
+        raise InputError(
+            f"{file}: row {line}, column {header[place]} = {text[:40]!r}: accepted is a finite"
+            " number"
+        )
     return value
 
 
@@ -144,20 +175,39 @@ def _check(data: Measurements) -> None:
             "both errors are zero",
         )
         for specimen, points in by_specimen(data).items():
-            _check_curve(f"{data.file}: curve {specimen}", columns["separation"][points], columns["force"][points])
+            _check_curve(
+                f"{data.file}: curve {specimen}",
+                columns["separation"][points],
+                columns["force"][points],
+            )
     elif data.kind == "sticking":
         stuck, switches = columns["stuck"], columns["switches"]
-        wrong = (switches < 1) | (stuck < 0) | (stuck > switches) | (stuck % 1 > 0) | (switches % 1 > 0)
-        _refuse(data, wrong, "accepted are whole numbers, stuck at most switches; are the columns swapped?", "stuck")
+        wrong = (
+            (switches < 1) | (stuck < 0) | (stuck > switches) | (stuck % 1 > 0) | (switches % 1 > 0)
+        )
+        _refuse(
+            data,
+            wrong,
+            "accepted are whole numbers, stuck at most switches; are the columns swapped?",
+            "stuck",
+        )
     else:
         value = next(iter(COLUMNS[data.kind]))
-        stuck = "; a switch that stuck belongs to a table of kind sticking" if data.kind == "release" else ""
+        stuck = (
+            "; a switch that stuck belongs to a table of kind sticking"
+            if data.kind == "release"
+            else ""
+        )
         _refuse(data, columns[value] <= 0, f"accepted is a positive number{stuck}", value)
         if (columns[f"{value}_error"] > columns[value]).all():
-            raise InputError(f"{data.file}: {value}_error exceeds {value} in every row; are the columns swapped?")
+            raise InputError(
+                f"{data.file}: {value}_error exceeds {value} in every row; are the columns swapped?"
+            )
 
 
-def _refuse(data: Measurements, wrong: NDArray[np.bool_], why: str, column: str | None = None) -> None:
+def _refuse(
+    data: Measurements, wrong: NDArray[np.bool_], why: str, column: str | None = None
+) -> None:
     """Refuse the first row that is wrong, with its value in a column."""
     if np.any(wrong):
         row = int(np.argmax(wrong))
@@ -167,13 +217,16 @@ def _refuse(data: Measurements, wrong: NDArray[np.bool_], why: str, column: str 
 
 def _check_curve(curve: str, separation: Array, force: Array) -> None:
     if len(separation) < 5:  # its law has four numbers, one more tells whether they fit
-        raise InputError(f"{curve} has {len(separation)} points; a curve has four unknowns, so at least 5 are needed")
+        raise InputError(
+            f"{curve} has {len(separation)} points; a curve has four unknowns, so at least 5 are"
+            " needed"
+        )
     if np.ptp(separation) == 0 or np.ptp(force) == 0:
         raise InputError(f"{curve}: separation or force does not change; give a curve")
     if np.corrcoef(separation, force)[0, 1] > 0:
         raise InputError(
-            f"{curve}: force rises with separation; count repulsion positive and separation away from the contact, and "
-            "look whether columns are swapped"
+            f"{curve}: force rises with separation; count repulsion positive and separation away"
+            " from the contact, and look whether columns are swapped"
         )
 
 

@@ -1,8 +1,8 @@
 """What a measurement can see of one contact cycle, as a row of numbers with smooth responses.
 
-A curve is given by its separation at the lowest of some net forces and by its steps from one force to the next. From
-one surface to another the steps scatter log-normally; an unknown zero of the instrument touches the first number alone.
-"""
+A curve is given by its separation at the lowest of some net forces and by its steps from one force
+to the next. From one surface to another the steps scatter log-normally; an unknown zero of the
+instrument touches the first number alone."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:  # each job of a run reads the names of observables, and these bring all of the contact
+if (
+    TYPE_CHECKING
+):  # each job of a run reads the names of observables, and these bring all of the contact
     from mesoscale.contact import Cycle
     from mesoscale.contact.cycle import Branch
     from mesoscale.settings import ContactSettings
@@ -37,12 +39,16 @@ NAMES = (*curve_names("closing"), *curve_names("opening"), *SCALARS.values())
 
 
 def enter_by_logarithm(names: Sequence[str]) -> NDArray[np.bool_]:
-    """Which observables scatter log-normally: all but the separations of curves, whose zero is no point of physics."""
+    """Which observables scatter log-normally: all but the separations of curves, whose zero is no
+    point of physics.
+    """
     return np.array([name not in ("closing_begin_nm", "opening_begin_nm") for name in names])
 
 
 def force_levels_nN(max_force_nN: float) -> Array:
-    """Net forces (nN) of the curves' observables, shape (LEVELS,); below the largest repulsion by attraction."""
+    """Net forces (nN) of the curves' observables, shape (LEVELS,); below the largest repulsion by
+    attraction.
+    """
     return max_force_nN * np.geomspace(0.02, 0.5, LEVELS)
 
 
@@ -58,7 +64,8 @@ def observe(cycle: "Cycle", max_force_nN: float) -> dict[str, float]:
 
 
 def separations_at(branch: "Branch", forces_nN: Array) -> Array:
-    """Separations (nm) at which the net force first reaches given ones, coming from afar; NaN where it never does.
+    """Separations (nm) at which the net force first reaches given ones, coming from afar; NaN where
+    it never does.
 
     Parameters
     ----------
@@ -91,10 +98,14 @@ class Cycles:
     y: Array
 
     def of(self, names: Sequence[str]) -> Array:
-        """Some observables, their logarithms where they enter by them, shape (m, len(names)); NaN where missing."""
+        """Some observables, their logarithms where they enter by them, shape (m, len(names)); NaN
+        where missing.
+        """
         y = self.y[:, [NAMES.index(name) for name in names]]
         by_logarithm = enter_by_logarithm(names)
-        return np.where(by_logarithm, np.log(np.where(~by_logarithm | (y > 0), np.abs(y), np.nan)), y)
+        return np.where(
+            by_logarithm, np.log(np.where(~by_logarithm | (y > 0), np.abs(y), np.nan)), y
+        )
 
     def __add__(self, other: "Cycles") -> "Cycles":
         """These and further ones."""
@@ -102,14 +113,20 @@ class Cycles:
 
 
 def observe_runs(
-    runs: Sequence["Run"], contact: "ContactSettings", progress: Callable[[float, str], None] | None = None
+    runs: Sequence["Run"],
+    contact: "ContactSettings",
+    progress: Callable[[float, str], None] | None = None,
 ) -> list[dict[str, float]]:
     """Compute cycles: one row each with seed, inputs and observables; NaN where a cycle failed."""
     from mesoscale.uncertainty.runs import compute_all
 
     rows = []
     for run, cycle in compute_all(runs, contact, progress):
-        seen = dict.fromkeys(NAMES, np.nan) if isinstance(cycle, str) else observe(cycle, contact.max_force_nN)
+        seen = (
+            dict.fromkeys(NAMES, np.nan)
+            if isinstance(cycle, str)
+            else observe(cycle, contact.max_force_nN)
+        )
         rows.append({"run": run.index, "seed": run.seed, **run.values, **seen})
     return rows
 
@@ -118,6 +135,8 @@ def cycles_of_rows(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> C
     """Cycles from rows of `observe_runs`, or the same as text, with inputs of these names."""
 
     def columns(chosen: Sequence[str]) -> Array:
-        return np.array([[float(row[name]) if row[name] != "" else np.nan for name in chosen] for row in rows])
+        return np.array(
+            [[float(row[name]) if row[name] != "" else np.nan for name in chosen] for row in rows]
+        )
 
     return Cycles(columns(names), columns(NAMES))

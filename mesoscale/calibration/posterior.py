@@ -1,4 +1,6 @@
-"""From measurements to the posterior of the inputs, with responses that are refined where it lies."""
+"""From measurements to the posterior of the inputs, with responses that are refined where it
+lies.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,9 +26,12 @@ Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 FIRST_SEED, FIRST_LOCAL_SEED = 1_500_000_000, 1_700_000_000
-"""Surfaces of the cycles over the prior, and where the posterior lies, differ from those of all other designs."""
+"""Surfaces of the cycles over the prior, and where the posterior lies, differ from those of all
+other designs.
+"""
 RESPONSE_ERROR = 0.5
-"""Error of the responses that is small enough, in standard deviations of the posterior prediction."""
+"""Error of the responses that is small enough, in standard deviations of the posterior prediction.
+"""
 
 
 @dataclass(frozen=True)
@@ -55,19 +60,25 @@ class Posterior:
         """Inputs (m, n) from points z (m, free) where their prior is standard normal."""
         every = np.zeros((len(z), len(self.prior.rows)))
         every[:, self.free] = z
-        return self.prior.transform(np.clip(ndtr(every), 1e-15, 1 - 1e-15))  # an unbounded prior stays finite
+        return self.prior.transform(
+            np.clip(ndtr(every), 1e-15, 1 - 1e-15)
+        )  # an unbounded prior stays finite
 
     def log_likelihood(self, x: Array) -> Array:
         """Logarithm of the likelihood at inputs x (m, n), shape (m,)."""
         return sum((part.log_likelihood(x) for part in self.parts), np.zeros(len(x)))
 
     def simulated(self, x: Array, rng: np.random.Generator) -> "Posterior":
-        """The posterior of data made up at inputs x (1, n), with the same errors as the measured ones."""
+        """The posterior of data made up at inputs x (1, n), with the same errors as the measured
+        ones.
+        """
         return Posterior(self.prior, tuple(part.simulated(x, rng) for part in self.parts))
 
     def draw(self, settings: Sampling | None = None, progress: Progress | None = None) -> Chain:
         """Samples."""
-        return sample(lambda z: self.log_likelihood(self.inputs(z)), len(self.free), settings, progress)
+        return sample(
+            lambda z: self.log_likelihood(self.inputs(z)), len(self.free), settings, progress
+        )
 
 
 @dataclass(frozen=True)
@@ -101,17 +112,28 @@ class Model:
         column = "e_star" if data.kind == "modulus" else data.kind
         if column == "sticking":
             release = self.voltages["release"]
-            return StickingData(data.columns["stuck"], data.columns["switches"], data.discrepancy, release)
+            return StickingData(
+                data.columns["stuck"], data.columns["switches"], data.discrepancy, release
+            )
         values, errors = data.columns[column], data.columns[f"{column}_error"]
         if column in ("release", "pull_in"):
             volts = self.voltages[column]
             return ValueData(
-                values, errors, lambda x: volts(x)[:, None], data.discrepancy, volts.shared_V, volts.each_V
+                values,
+                errors,
+                lambda x: volts(x)[:, None],
+                data.discrepancy,
+                volts.shared_V,
+                volts.each_V,
             )
 
         def model(x: Array) -> Array:
             inputs = {name: x[:, [k]] for k, name in enumerate(self.prior.names)}
-            return inputs["e_star"] if column == "e_star" else HardnessLaw.of(inputs).pressure(data.columns["area"])
+            return (
+                inputs["e_star"]
+                if column == "e_star"
+                else HardnessLaw.of(inputs).pressure(data.columns["area"])
+            )
 
         return ValueData(values, errors, model, data.discrepancy)
 
@@ -130,8 +152,8 @@ class Model:
             if shares.min() < 1e-9:  # six standard deviations of one number
                 name = part.specimens[int(shares.argmin())]
                 raise InputError(
-                    f"{data.file}: {data.kind} of {name}: the model gives nothing like it anywhere in the prior; look "
-                    "at units, columns and contact area, or widen the inputs"
+                    f"{data.file}: {data.kind} of {name}: the model gives nothing like it anywhere"
+                    " in the prior; look at units, columns and contact area, or widen the inputs"
                 )
             return
         model = part.model(self.prior.sample(2000, 1))
@@ -140,9 +162,9 @@ class Model:
         wrong = np.flatnonzero((part.values > high + reach) | (part.values < low - reach))
         if wrong.size:
             raise InputError(
-                f"{data.file}: row {wrong[0] + 1}: {data.kind} = {part.values[wrong[0]]:.4g}: the model gives "
-                f"{low.min():.3g} .. {high.max():.3g} anywhere in the prior; look at unit and columns, or widen the "
-                "inputs"
+                f"{data.file}: row {wrong[0] + 1}: {data.kind} = {part.values[wrong[0]]:.4g}: the"
+                f" model gives {low.min():.3g} .. {high.max():.3g} anywhere in the prior; look at"
+                " unit and columns, or widen the inputs"
             )
 
 
@@ -154,8 +176,8 @@ class Calibration:
     ----------
     tables, model : with the cycles of all rounds.
     x : samples of the inputs, shape (s, n).
-    error_share : largest error of the responses in standard deviations of the posterior prediction, by observable.
-    """
+    error_share : largest error of the responses in standard deviations of the posterior prediction,
+        by observable."""
 
     tables: tuple[Measurements, ...]
     model: Model
@@ -198,12 +220,21 @@ def calibrate(
         shares = _error_shares(posterior, chain)
         exact = max(shares.values(), default=0.0) <= RESPONSE_ERROR and (turn > 0 or not shares)
         if exact or not chain.converged or turn == rounds:
-            return Calibration(tuple(tables), model, posterior, chain, posterior.inputs(chain.z), shares)
+            return Calibration(
+                tuple(tables), model, posterior, chain, posterior.inputs(chain.z), shares
+            )
         picks, centre = rng.integers(len(chain.z), size=more), chain.z.mean(axis=0)
-        x = posterior.inputs(centre + 1.3 * (chain.z[picks] - centre))  # wider, so that its tails are known, too
+        x = posterior.inputs(
+            centre + 1.3 * (chain.z[picks] - centre)
+        )  # wider, so that its tails are known, too
         first = turn * more
         runs = [
-            Run(first + k, -1, FIRST_LOCAL_SEED + first + k, dict(zip(model.prior.names, row, strict=True)))
+            Run(
+                first + k,
+                -1,
+                FIRST_LOCAL_SEED + first + k,
+                dict(zip(model.prior.names, row, strict=True)),
+            )
             for k, row in enumerate(x.tolist())
         ]
         added = cycles_of_rows(observe_runs(runs, contact, progress), model.prior.names)

@@ -1,8 +1,9 @@
-"""Responses of the observables to the inputs, their scatter from surface to surface, and their own error.
+"""Responses of the observables to the inputs, their scatter from surface to surface, and their own
+error.
 
-All observables share one basis, so that what the finite number of cycles leaves open is one number per point, the
-leverage of least squares times the scatter (Draper and Smith, Applied Regression Analysis, 1998, section 1.4).
-"""
+All observables share one basis, so that what the finite number of cycles leaves open is one number
+per point, the leverage of least squares times the scatter (Draper and Smith, Applied Regression
+Analysis, 1998, section 1.4)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,8 +30,8 @@ class Prediction:
     ----------
     mean : averaged over random surfaces, shape (m, k).
     scatter : covariance of single surfaces, shape (m, k, k).
-    error : variance of the mean by the finite number of cycles, as a share of the scatter, shape (m,).
-    """
+    error : variance of the mean by the finite number of cycles, as a share of the scatter, shape
+        (m,)."""
 
     mean: Array
     scatter: Array
@@ -75,15 +76,21 @@ class Responses:
 
 
 def _units(names: Sequence[str], rms: Array) -> tuple[Array, Array]:
-    """What is added to a response, and by what it is multiplied, so that lengths count in RMS heights; (m, k) each."""
+    """What is added to a response, and by what it is multiplied, so that lengths count in RMS
+    heights; (m, k) each.
+    """
     length = np.array([name.endswith("_nm") for name in names])
     by_logarithm = enter_by_logarithm(names)
     rms = np.maximum(rms, 1e-300)[:, None]
-    return np.where(length & by_logarithm, np.log(rms), 0.0), np.where(length & ~by_logarithm, rms, 1.0)
+    return np.where(length & by_logarithm, np.log(rms), 0.0), np.where(
+        length & ~by_logarithm, rms, 1.0
+    )
 
 
 def _terms(varying: NDArray[np.bool_], most: int) -> NDArray[np.int_]:
-    """Terms of the inputs that vary: constant, linear, products of two, squares, cubes; at most so many of them."""
+    """Terms of the inputs that vary: constant, linear, products of two, squares, cubes; at most so
+    many of them.
+    """
     linear = np.eye(len(varying), dtype=int)[varying]
     products = [one + two for k, one in enumerate(linear) for two in linear[:k]]
     rows = [np.zeros(len(varying), int), *linear, *(2 * linear), *products, *(3 * linear)]
@@ -93,8 +100,9 @@ def _terms(varying: NDArray[np.bool_], most: int) -> NDArray[np.int_]:
 def fit_responses(names: Sequence[str], cycles: Cycles, table: InputTable) -> Responses:
     """Least-squares responses of some observables; cycles that lack one of them are left out.
 
-    A cycle may lack one observable and have others: smooth surfaces that never push with the largest measured force
-    have pull-off forces. So responses are fitted for those observables that are measured.
+    A cycle may lack one observable and have others: smooth surfaces that never push with the
+    largest measured force have pull-off forces. So responses are fitted for those observables that
+    are measured.
 
     Raises
     ------
@@ -109,8 +117,9 @@ def fit_responses(names: Sequence[str], cycles: Cycles, table: InputTable) -> Re
     if FEWEST_PER_TERM * len(degrees) > len(u):
         words = ", ".join(names) if len(names) < 4 else "the observables"
         raise InputError(
-            f"measurements.runs: {len(u)} of {len(cycles.x)} cycles give all of {words}; at least "
-            f"{FEWEST_PER_TERM * len(degrees)} are needed; raise it, or lower the lowest measured force"
+            f"measurements.runs: {len(u)} of {len(cycles.x)} cycles give all of {words}; at least"
+            f" {FEWEST_PER_TERM * len(degrees)} are needed; raise it, or lower the lowest measured"
+            " force"
         )
     basis = basis_matrix(u, degrees)
     inverse = np.asarray(np.linalg.pinv(basis.T @ basis, hermitian=True), float)
@@ -121,4 +130,6 @@ def fit_responses(names: Sequence[str], cycles: Cycles, table: InputTable) -> Re
     slopes = np.linalg.lstsq(linear, np.log(left_out**2 + 1e-12), rcond=None)[0][1:]
     alike = left_out * np.exp(-0.5 * u @ slopes)
     covariance = alike.T @ alike / len(alike) + 1e-12 * np.eye(len(names))
-    return Responses(tuple(names), ranges, rms_column, degrees, coefficients, inverse, slopes, covariance, len(u))
+    return Responses(
+        tuple(names), ranges, rms_column, degrees, coefficients, inverse, slopes, covariance, len(u)
+    )

@@ -1,9 +1,9 @@
 """Sampling of a posterior by independent ensembles of walkers, and whether they have converged.
 
-Ensemble sampler: emcee (Foreman-Mackey et al., PASP 125, 306, 2013, doi 10.1086/670067). Most moves take a share of the
-difference of two walkers, which follows ridges; the whole difference jumps between separate modes (differential
-evolution: ter Braak, Stat. Comput. 16, 239, 2006, doi 10.1007/s11222-006-8769-1).
-"""
+Ensemble sampler: emcee (Foreman-Mackey et al., PASP 125, 306, 2013, doi 10.1086/670067). Most moves
+take a share of the difference of two walkers, which follows ridges; the whole difference jumps
+between separate modes (differential evolution: ter Braak, Stat. Comput. 16, 239, 2006, doi
+10.1007/s11222-006-8769-1)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,10 +23,12 @@ class Sampling:
     Attributes
     ----------
     walkers : of each ensemble.
-    prior_draws : draws of the prior, from which the walkers start by their likelihood: every mode with its share.
+    prior_draws : draws of the prior, from which the walkers start by their likelihood: every mode
+        with its share.
     block : steps between two looks at convergence.
     max_steps : of each ensemble, after which sampling is given up.
-    largest_r_hat, fewest_effective : limits of Vehtari et al., Bayesian Analysis 16, 667, 2021, doi 10.1214/20-BA1221.
+    largest_r_hat, fewest_effective : limits of Vehtari et al., Bayesian Analysis 16, 667, 2021, doi
+        10.1214/20-BA1221.
     samples : draws that are kept.
     """
 
@@ -90,7 +92,9 @@ def sample(
     numbers = settings or Sampling()
     rng = np.random.default_rng(np.random.SeedSequence([numbers.seed, 0xCA]))
     pool = rng.standard_normal((numbers.prior_draws, dimensions))
-    weights = np.concatenate([log_likelihood(part) for part in np.array_split(pool, numbers.prior_draws // 500)])
+    weights = np.concatenate(
+        [log_likelihood(part) for part in np.array_split(pool, numbers.prior_draws // 500)]
+    )
     walkers = max(numbers.walkers, 4 * dimensions)
     samplers, states = [], []
     for ensemble in range(numbers.ensembles):
@@ -100,39 +104,58 @@ def sample(
             (emcee.moves.DEMove(gamma0=1), 0.2),
         ]
         moves = [*jumps, (emcee.moves.StretchMove(), 0.1)]
-        sampler = emcee.EnsembleSampler(walkers, dimensions, log_density, moves=moves, vectorize=True)
+        sampler = emcee.EnsembleSampler(
+            walkers, dimensions, log_density, moves=moves, vectorize=True
+        )
         sampler.random_state = np.random.RandomState([numbers.seed, ensemble]).get_state()
         samplers.append(sampler)
         start = pool[_starts(np.where(np.isfinite(weights), weights, -np.inf), walkers, rng)]
         states.append(start + 1e-2 * rng.standard_normal(start.shape))
     r_hat, effective, done = np.inf, 0.0, 0
-    while done < numbers.max_steps and not (r_hat < numbers.largest_r_hat and effective > numbers.fewest_effective):
-        states = [sampler.run_mcmc(state, numbers.block) for sampler, state in zip(samplers, states, strict=True)]
+    while done < numbers.max_steps and not (
+        r_hat < numbers.largest_r_hat and effective > numbers.fewest_effective
+    ):
+        states = [
+            sampler.run_mcmc(state, numbers.block)
+            for sampler, state in zip(samplers, states, strict=True)
+        ]
         done += numbers.block
         # the density beside the inputs: walkers that still fall onto a ridge do not show in those
         chains = [
-            np.dstack([sampler.get_chain(discard=done // 2), sampler.get_log_prob(discard=done // 2)])
+            np.dstack(
+                [sampler.get_chain(discard=done // 2), sampler.get_log_prob(discard=done // 2)]
+            )
             for sampler in samplers
         ]
         r_hat, effective = diagnose(np.stack(chains))
         if progress:
             share = done / numbers.max_steps
             progress(share, f"step {done}, R-hat {r_hat:.3f}, {effective:.0f} independent draws")
-    draws = np.concatenate([sampler.get_chain(discard=done // 2, flat=True) for sampler in samplers])
-    logs = np.concatenate([sampler.get_log_prob(discard=done // 2, flat=True) for sampler in samplers])
+    draws = np.concatenate(
+        [sampler.get_chain(discard=done // 2, flat=True) for sampler in samplers]
+    )
+    logs = np.concatenate(
+        [sampler.get_log_prob(discard=done // 2, flat=True) for sampler in samplers]
+    )
     # at random: an even stride would follow the same few walkers
     picks = rng.choice(len(draws), min(numbers.samples, len(draws)), replace=False)
     reasons = []
     if not r_hat < numbers.largest_r_hat:
         reasons.append(f"R-hat {r_hat:.3f}, above {numbers.largest_r_hat}")
     if not effective > numbers.fewest_effective:
-        reasons.append(f"{effective:.0f} independent draws, fewer than {numbers.fewest_effective:.0f}")
+        reasons.append(
+            f"{effective:.0f} independent draws, fewer than {numbers.fewest_effective:.0f}"
+        )
     log_likelihoods = (logs + 0.5 * (draws**2).sum(axis=1))[picks]
-    return Chain(draws[picks], log_likelihoods, r_hat, effective, done - done // 2, "; ".join(reasons))
+    return Chain(
+        draws[picks], log_likelihoods, r_hat, effective, done - done // 2, "; ".join(reasons)
+    )
 
 
 def _starts(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.int_]:
-    """Draws of the prior where walkers start, by a likelihood tempered until enough of them differ."""
+    """Draws of the prior where walkers start, by a likelihood tempered until enough of them
+    differ.
+    """
     temper = 1.0
     while True:
         weights = np.exp(temper * (log_weights - log_weights.max()))
@@ -146,9 +169,9 @@ def _starts(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray
 def diagnose(chains: Array) -> tuple[float, float]:
     """Largest R-hat and fewest independent draws over the inputs.
 
-    Walkers of an ensemble move by each other, so an ensemble is one chain: R-hat is that of the means of its halves
-    (nested R-hat: Margossian et al., arXiv 2110.13017). Ranks keep a few far draws from hiding
-    the others (Vehtari et al.).
+    Walkers of an ensemble move by each other, so an ensemble is one chain: R-hat is that of the
+    means of its halves (nested R-hat: Margossian et al., arXiv 2110.13017). Ranks keep a few far
+    draws from hiding the others (Vehtari et al.).
 
     Parameters
     ----------
@@ -157,12 +180,15 @@ def diagnose(chains: Array) -> tuple[float, float]:
     from emcee.autocorr import integrated_time
     from scipy.stats import rankdata  # slow to import
 
-    half, chains = chains.shape[1] // 2, rankdata(chains.reshape(-1, chains.shape[-1]), axis=0).reshape(chains.shape)
+    half, chains = (
+        chains.shape[1] // 2,
+        rankdata(chains.reshape(-1, chains.shape[-1]), axis=0).reshape(chains.shape),
+    )
     variance = chains.var(axis=(0, 1, 2))
     means = np.concatenate([chains[:, :half].mean(axis=(1, 2)), chains[:, half:].mean(axis=(1, 2))])
     r_hat = np.sqrt(1 + means.var(axis=0, ddof=1) / variance)
-    # the series whose autocorrelation counts is the ensemble's mean (Goodman and Weare, Comm. App. Math. Comp. Sci. 5,
-    # 65, 2010, doi 10.2140/camcos.2010.5.65)
+    # the series whose autocorrelation counts is the ensemble's mean (Goodman and Weare, Comm. App.
+    # Math. Comp. Sci. 5, 65, 2010, doi 10.2140/camcos.2010.5.65)
     series = chains.mean(axis=2)
     times = np.mean([integrated_time(one[:, None], tol=0, quiet=True) for one in series], axis=0)
     of_means = series.var(axis=(0, 1))

@@ -1,4 +1,6 @@
-"""What the measurements changed, and whether they agree: content of the result files of the calibration."""
+"""What the measurements changed, and whether they agree: content of the result files of the
+calibration.
+"""
 
 from importlib.metadata import version
 from typing import Any
@@ -6,7 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.calibration.observables import CURVES, NAMES, SCALARS, curve_names, enter_by_logarithm, force_levels_nN
+from mesoscale.calibration.observables import (
+    CURVES,
+    NAMES,
+    SCALARS,
+    curve_names,
+    enter_by_logarithm,
+    force_levels_nN,
+)
 from mesoscale.calibration.posterior import RESPONSE_ERROR, Calibration, Posterior
 from mesoscale.calibration.responses import fit_responses
 from mesoscale.calibration.sampling import Sampling
@@ -30,7 +39,11 @@ def summary_rows(result: Calibration) -> list[dict[str, Any]]:
         return []
     prior = result.model.prior.sample(len(result.x), 1)
     return [
-        {"parameter": row.name, "unit": row.unit, **_spread({"prior": prior[:, k], "posterior": result.x[:, k]})}
+        {
+            "parameter": row.name,
+            "unit": row.unit,
+            **_spread({"prior": prior[:, k], "posterior": result.x[:, k]}),
+        }
         for k, row in enumerate(result.model.prior.rows)
     ]
 
@@ -45,30 +58,51 @@ def sample_rows(result: Calibration) -> list[dict[str, float]]:
 
 
 def predictive_rows(result: Calibration) -> list[dict[str, Any]]:
-    """What the next surface and the next switch will show, before and after the measurements (5, 50, 95 %)."""
+    """What the next surface and the next switch will show, before and after the measurements (5,
+    50, 95 %).
+    """
     if not result.chain.converged:
         return []
     rng, model = np.random.default_rng(np.random.SeedSequence([0xCE])), result.model
-    states = {"prior": model.prior.sample(1000, 2), "posterior": result.x[rng.integers(len(result.x), size=1000)]}
+    states = {
+        "prior": model.prior.sample(1000, 2),
+        "posterior": result.x[rng.integers(len(result.x), size=1000)],
+    }
     responses = fit_responses(NAMES, model.cycles, model.prior)
     seen: dict[str, Array] = {}
     for state, x in states.items():
         prediction = responses(x)
         root = np.linalg.cholesky(prediction.scatter * (1 + prediction.error)[:, None, None])
-        f = prediction.mean + np.einsum("mjk,mk->mj", root, rng.standard_normal(prediction.mean.shape))
+        f = prediction.mean + np.einsum(
+            "mjk,mk->mj", root, rng.standard_normal(prediction.mean.shape)
+        )
         seen[state] = np.where(enter_by_logarithm(NAMES), np.exp(np.minimum(f, 700.0)), f)
     rows = []
     for branch in CURVES.values():
         first = NAMES.index(curve_names(branch)[0])
         for k, force in enumerate(force_levels_nN(model.max_force_nN)):
-            separation = {state: y[:, first] - y[:, first + 1 : first + 1 + k].sum(axis=1) for state, y in seen.items()}
-            rows.append({"quantity": f"{branch} separation", "unit": "nm", "force_nN": force, **_spread(separation)})
+            separation = {
+                state: y[:, first] - y[:, first + 1 : first + 1 + k].sum(axis=1)
+                for state, y in seen.items()
+            }
+            rows.append(
+                {
+                    "quantity": f"{branch} separation",
+                    "unit": "nm",
+                    "force_nN": force,
+                    **_spread(separation),
+                }
+            )
     for kind, name in SCALARS.items():
         values = {state: y[:, NAMES.index(name)] for state, y in seen.items()}
-        rows.append({"quantity": kind, "unit": name.rpartition("_")[2], "force_nN": "", **_spread(values)})
+        rows.append(
+            {"quantity": kind, "unit": name.rpartition("_")[2], "force_nN": "", **_spread(values)}
+        )
     for kind, volts in model.voltages.items():
         width = np.hypot(volts.shared_V, volts.each_V)
-        values = {state: volts(x) + width * rng.standard_normal(len(x)) for state, x in states.items()}
+        values = {
+            state: volts(x) + width * rng.standard_normal(len(x)) for state, x in states.items()
+        }
         rows.append({"quantity": kind, "unit": "V", "force_nN": "", **_spread(values)})
     return rows
 
@@ -86,18 +120,20 @@ def checks(result: Calibration) -> dict[str, dict[str, Any]]:
         verdict = f"agrees with {expectation}"
         if probability < 0.01:
             verdict = (
-                f"contradicts {expectation}: {'no' if probability == 0 else 'few'} made-up data sets are as unlikely; "
-                "an error that is too small, another contact area, a prior too narrow, or the model itself"
+                f"contradicts {expectation}: {'no' if probability == 0 else 'few'} made-up data"
+                " sets are as unlikely; an error that is too small, another contact area, a prior"
+                " too narrow, or the model itself"
             )
         agreement[data.kind] = {"probability": probability, "verdict": verdict}
     return agreement
 
 
 def predictive_probability(data: Posterior, x: Array, rng: np.random.Generator) -> float:
-    """Share of made-up data sets that are less likely than the measured ones, given samples x (m, n) of the inputs.
+    """Share of made-up data sets that are less likely than the measured ones, given samples x (m,
+    n) of the inputs.
 
-    Box, J. R. Statist. Soc. A 143, 383 (1980): the predictive density at the data is compared with those of its draws.
-    """
+    Box, J. R. Statist. Soc. A 143, 383 (1980): the predictive density at the data is compared with
+    those of its draws."""
     replicates = 200  # a probability is known to 0.015 at 0.05
     x = x[rng.integers(len(x), size=replicates)]
 
@@ -110,7 +146,8 @@ def predictive_probability(data: Posterior, x: Array, rng: np.random.Generator) 
 
 
 def posterior_json(result: Calibration, agreement: dict[str, dict[str, Any]]) -> dict[str, Any]:
-    """Content of posterior.json: the gate, the chain, the tables, and the inputs as the next stage takes them.
+    """Content of posterior.json: the gate, the chain, the tables, and the inputs as the next stage
+    takes them.
 
     Parameters
     ----------
@@ -157,8 +194,8 @@ def _remarks(result: Calibration, tables: dict[str, dict[str, Any]]) -> list[str
     if shares and max(shares.values()) > RESPONSE_ERROR:
         worst = max(shares, key=shares.__getitem__)
         remarks.append(
-            f"the responses' error is {shares[worst]:.2g} of the posterior's width ({worst}), above "
-            f"{RESPONSE_ERROR:g}; it is part of that width: raise measurements.runs to narrow it"
+            f"the responses' error is {shares[worst]:.2g} of the posterior's width ({worst}), above"
+            f" {RESPONSE_ERROR:g}; it is part of that width: raise measurements.runs to narrow it"
         )
     return remarks
 
@@ -172,7 +209,11 @@ def _inputs(result: Calibration) -> dict[str, Any]:
     inputs: dict[str, Any] = {}
     for k, name in enumerate(names):
         place = np.flatnonzero(free == k)
-        partners = {names[other]: float(ranks[place[0], j]) for j, other in enumerate(free) if place.size and other < k}
+        partners = {
+            names[other]: float(ranks[place[0], j])
+            for j, other in enumerate(free)
+            if place.size and other < k
+        }
         inputs[name] = {
             "distribution": "samples",
             "a": float(result.x[:, k].mean()),

@@ -1,10 +1,10 @@
 """Likelihood of what was measured on surfaces: curves, contact-begin separations, pull-off forces.
 
-Every specimen has observables f = response(inputs) + model error (one for all specimens) + its own scatter, all normal,
-and data with known normal errors, linearised where they lie: exp(-f A f / 2 + b f). So all but the inputs is integrated
-exactly (Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, appendix A). How points lie about their
-curve tells nothing of the inputs and is left out.
-"""
+Every specimen has observables f = response(inputs) + model error (one for all specimens) + its own
+scatter, all normal, and data with known normal errors, linearised where they lie: exp(-f A f / 2 +
+b f). So all but the inputs is integrated exactly (Rasmussen and Williams, Gaussian Processes for
+Machine Learning, 2006, appendix A). How points lie about their curve tells nothing of the inputs
+and is left out."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.calibration.measurements import Measurements, by_specimen
-from mesoscale.calibration.observables import CURVES, LEVELS, SCALARS, Cycles, curve_names, force_levels_nN
+from mesoscale.calibration.observables import (
+    CURVES,
+    LEVELS,
+    SCALARS,
+    Cycles,
+    curve_names,
+    force_levels_nN,
+)
 from mesoscale.calibration.responses import Prediction, Responses, fit_responses
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
@@ -55,9 +62,15 @@ class SurfaceData:
         precision, information = self.precision, self.information[..., None]
         off = information - precision @ mean  # (m, s, k, 1)
         spread = eye + precision @ scatter
-        pulled = np.linalg.solve(spread, np.concatenate([off, np.broadcast_to(precision, spread.shape)], axis=-1))
+        pulled = np.linalg.solve(
+            spread, np.concatenate([off, np.broadcast_to(precision, spread.shape)], axis=-1)
+        )
         pulled, known = pulled[..., :1], pulled[..., 1:].sum(axis=1)
-        result = _inner(mean, information + off) + _inner(off, scatter @ pulled) - np.linalg.slogdet(spread)[1]
+        result = (
+            _inner(mean, information + off)
+            + _inner(off, scatter @ pulled)
+            - np.linalg.slogdet(spread)[1]
+        )
         total = pulled.sum(axis=1)
         shared = eye + known @ common
         last = _inner(total, common @ np.linalg.solve(shared, total)) - np.linalg.slogdet(shared)[1]
@@ -65,12 +78,16 @@ class SurfaceData:
 
     @cached_property
     def _constant(self) -> float:
-        """What the logarithms have in common: that of data which lie on the response, whatever the inputs."""
+        """What the logarithms have in common: that of data which lie on the response, whatever the
+        inputs.
+        """
         inverse, _ = _pseudo_inverse(self.precision)
         return float(np.einsum("sj,sjk,sk->", self.information, inverse, self.information))
 
     def _common(self, prediction: Prediction) -> Array:
-        """Covariance that all specimens share: the model's own error and that of the responses, shape (m, k, k)."""
+        """Covariance that all specimens share: the model's own error and that of the responses,
+        shape (m, k, k).
+        """
         common = prediction.error[:, None, None] * prediction.scatter
         if self.model_error.any():
             to_own = np.linalg.inv(_separations(self.responses.names, prediction.mean)[1])
@@ -81,26 +98,37 @@ class SurfaceData:
         """Data of the same specimens with the same errors, drawn at inputs x (1, n)."""
         prediction, zero = self.responses(x), np.zeros(len(self.responses.names))
         shared = rng.multivariate_normal(zero, self._common(prediction)[0], method="svd")
-        single = rng.multivariate_normal(zero, prediction.scatter[0], len(self.specimens), method="svd")
-        noise = np.stack([rng.multivariate_normal(zero, precision, method="svd") for precision in self.precision])
+        single = rng.multivariate_normal(
+            zero, prediction.scatter[0], len(self.specimens), method="svd"
+        )
+        noise = np.stack(
+            [rng.multivariate_normal(zero, precision, method="svd") for precision in self.precision]
+        )
         f = prediction.mean[0] + shared + single
         return replace(self, information=np.einsum("sjk,sk->sj", self.precision, f) + noise)
 
     def misfits(self, mean: Array, covariance: Array) -> Array:
-        """Probability of a specimen as far as each is from observables of this mean (k,) and covariance (k, k)."""
+        """Probability of a specimen as far as each is from observables of this mean (k,) and
+        covariance (k, k).
+        """
         from scipy.stats import chi2  # slow to import
 
         off = self.information - self.precision @ mean
-        inverse, ranks = _pseudo_inverse(self.precision @ covariance @ self.precision + self.precision)
+        inverse, ranks = _pseudo_inverse(
+            self.precision @ covariance @ self.precision + self.precision
+        )
         return chi2.sf(np.einsum("sj,sjk,sk->s", off, inverse, off), ranks)
 
     def outliers(self, x: Array) -> list[str]:
         """Specimens that inputs x (m, n) of the posterior cannot explain, in words."""
         prediction = self.responses(x)
         covariances = prediction.scatter + self._common(prediction)
-        shares = np.mean([self.misfits(*at) for at in zip(prediction.mean, covariances, strict=True)], axis=0)
+        shares = np.mean(
+            [self.misfits(*at) for at in zip(prediction.mean, covariances, strict=True)], axis=0
+        )
         return [
-            f"specimen {name} lies far from the others (probability {share:.1g}); its data are used as they are"
+            f"specimen {name} lies far from the others (probability {share:.1g}); its data are used"
+            " as they are"
             for name, share in zip(self.specimens, shares, strict=True)
             if share < 0.01 / len(shares)
         ]
@@ -112,7 +140,9 @@ def _inner(one: Array, other: Array) -> Array:
 
 
 def _pseudo_inverse(matrices: Array) -> tuple[Array, Array]:
-    """Pseudo-inverses and ranks of covariances or precisions (s, k, k), whatever the units of their rows."""
+    """Pseudo-inverses and ranks of covariances or precisions (s, k, k), whatever the units of their
+    rows.
+    """
     diagonal = np.einsum("skk->sk", matrices)
     unit = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
     units, smallest = unit[:, :, None] * unit[:, None, :], 1e-9  # smaller eigenvalues are rounding
@@ -131,12 +161,15 @@ def surface_data(
 
     Raises
     ------
-    InputError : a curve keeps too few points in the range of forces of the responses; see `fit_responses`.
-    """
+    InputError : a curve keeps too few points in the range of forces of the responses; see
+        `fit_responses`."""
     tables = [table for table in tables if table.kind in KINDS]
     if not tables:
         return None
-    by_table = [curve_names(CURVES[table.kind]) if table.kind in CURVES else [SCALARS[table.kind]] for table in tables]
+    by_table = [
+        curve_names(CURVES[table.kind]) if table.kind in CURVES else [SCALARS[table.kind]]
+        for table in tables
+    ]
     names = [name for some in by_table for name in some]
     parts: dict[str, list[Part]] = {}
     model_error, left_out = np.zeros((len(names), len(names))), 0
@@ -152,13 +185,25 @@ def surface_data(
             free = np.full(len(values), float(table.kind in CURVES and not table.zero_known))
             parts.setdefault(specimen, []).append((columns, values, variances, free))
     expected = expected_over_prior(cycles, names)
-    terms = [_linearised(names, expected, *map(np.concatenate, zip(*part, strict=True))) for part in parts.values()]
+    terms = [
+        _linearised(names, expected, *map(np.concatenate, zip(*part, strict=True)))
+        for part in parts.values()
+    ]
     precision, information = (np.array(column) for column in zip(*terms, strict=True))
-    return SurfaceData(fit_responses(names, cycles, prior), tuple(parts), precision, information, model_error, left_out)
+    return SurfaceData(
+        fit_responses(names, cycles, prior),
+        tuple(parts),
+        precision,
+        information,
+        model_error,
+        left_out,
+    )
 
 
 def expected_over_prior(cycles: Cycles, names: Sequence[str]) -> tuple[Array, Array]:
-    """Mean and covariance of observables over cycles; data that do not determine a curve are linearised there."""
+    """Mean and covariance of observables over cycles; data that do not determine a curve are
+    linearised there.
+    """
     seen = cycles.of(names)
     mean = np.nanmean(seen, axis=0)
     centred = np.where(np.isnan(seen), 0.0, seen - mean)
@@ -166,7 +211,8 @@ def expected_over_prior(cycles: Cycles, names: Sequence[str]) -> tuple[Array, Ar
 
 
 def check_points(table: Measurements, max_force_nN: float) -> None:
-    """Refuse curves with too few points in the range of forces of the responses, and values that are hardly known.
+    """Refuse curves with too few points in the range of forces of the responses, and values that
+    are hardly known.
 
     Raises
     ------
@@ -180,14 +226,17 @@ def check_points(table: Measurements, max_force_nN: float) -> None:
 def _points(
     table: Measurements, specimen: str, rows: NDArray[np.int_], max_force_nN: float
 ) -> tuple[Array, Array, Array, int]:
-    """A specimen's data as sums of observables (p, k), values, variances (p,), and how many points are left out."""
+    """A specimen's data as sums of observables (p, k), values, variances (p,), and how many points
+    are left out.
+    """
     if table.kind in CURVES:
         return _curve(table, specimen, rows, max_force_nN)
     values, errors = table.columns[table.kind][rows], table.columns[f"{table.kind}_error"][rows]
     if (errors > 0.5 * values).any():
         raise InputError(
-            f"{table.file}: row {rows[np.argmax(errors / values)] + 1}: {table.kind}_error is more than half of "
-            f"{table.kind}; its logarithm is compared with the model, so leave the row out or measure it better"
+            f"{table.file}: row {rows[np.argmax(errors / values)] + 1}: {table.kind}_error is more"
+            f" than half of {table.kind}; its logarithm is compared with the model, so leave the"
+            " row out or measure it better"
         )
     return np.ones((len(rows), 1)), np.log(values), (errors / values) ** 2, 0
 
@@ -195,7 +244,9 @@ def _points(
 def _curve(
     table: Measurements, specimen: str, rows: NDArray[np.int_], max_force_nN: float
 ) -> tuple[Array, Array, Array, int]:
-    """As `_points`, of a curve; a force below three of its errors is left out, as its logarithm would be biased."""
+    """As `_points`, of a curve; a force below three of its errors is left out, as its logarithm
+    would be biased.
+    """
     levels = force_levels_nN(max_force_nN)
     force, separation = table.columns["force"][rows], table.columns["separation"][rows]
     force_error = table.columns.get("force_error", np.zeros(len(table)))[rows]
@@ -203,13 +254,18 @@ def _curve(
     usable = (force >= levels[0]) & (force <= levels[-1]) & (force > 3.0 * force_error)
     if usable.sum() < 4:
         raise InputError(
-            f"{table.file}: curve {specimen} has {int(usable.sum())} points with a net force of {levels[0]:.4g} .. "
-            f"{levels[-1]:.4g} nN that is beyond three of its errors; at least 4 are needed: measure there, or set "
-            "contact.max_force_nN to the largest measured force"
+            f"{table.file}: curve {specimen} has {int(usable.sum())} points with a net force of"
+            f" {levels[0]:.4g} .. {levels[-1]:.4g} nN that is beyond three of its errors; at least"
+            " 4 are needed: measure there, or set contact.max_force_nN to the largest measured"
+            " force"
         )
     log_force = np.log(force[usable])
-    columns = np.stack([np.interp(log_force, np.log(levels), row) for row in np.eye(LEVELS)], axis=1)
-    bend = np.polynomial.Polynomial.fit(log_force, separation[usable], min(2, int(usable.sum()) - 2))
+    columns = np.stack(
+        [np.interp(log_force, np.log(levels), row) for row in np.eye(LEVELS)], axis=1
+    )
+    bend = np.polynomial.Polynomial.fit(
+        log_force, separation[usable], min(2, int(usable.sum()) - 2)
+    )
     slope = bend.deriv()(log_force) / force[usable]
     variances = own_error[usable] ** 2 + (slope * force_error[usable]) ** 2
     floor = np.median(variances) * 1e-4 + 1e-12  # where a fitted slope crosses zero
@@ -217,7 +273,9 @@ def _curve(
 
 
 def _separations(names: Sequence[str], f: Array) -> tuple[Array, Array]:
-    """Observables f (..., k) with each curve as separations at its forces, and their derivatives (..., k, k)."""
+    """Observables f (..., k) with each curve as separations at its forces, and their derivatives
+    (..., k, k).
+    """
     values, slopes = f.copy(), np.broadcast_to(np.eye(len(names)), (*f.shape, len(names))).copy()
     for branch in CURVES.values():
         begin = curve_names(branch)[0]
@@ -233,7 +291,12 @@ def _separations(names: Sequence[str], f: Array) -> tuple[Array, Array]:
 
 
 def _linearised(
-    names: Sequence[str], expected: tuple[Array, Array], columns: Array, values: Array, variances: Array, free: Array
+    names: Sequence[str],
+    expected: tuple[Array, Array],
+    columns: Array,
+    values: Array,
+    variances: Array,
+    free: Array,
 ) -> tuple[Array, Array]:
     """A and b of the data of one specimen, linear in its observables where data and prior put them.
 
@@ -258,11 +321,15 @@ def _linearised(
         f = f + step / max(1.0, np.abs(step / np.sqrt(np.diag(covariance))).max())
     physical, slopes = _separations(names, f)
     linear = columns @ slopes
-    return linear.T @ weights @ linear, linear.T @ weights @ (values - columns @ physical + linear @ f)
+    return linear.T @ weights @ linear, linear.T @ weights @ (
+        values - columns @ physical + linear @ f
+    )
 
 
 def _model_error(table: Measurements, size: int) -> Array:
-    """Covariance of the model's own error in what a table sees; over a decade of force it stays correlated."""
+    """Covariance of the model's own error in what a table sees; over a decade of force it stays
+    correlated.
+    """
     if table.kind == "contact_begin":  # stated in nm, the observable is its logarithm
         return np.full((1, 1), (table.discrepancy / np.median(table.columns["contact_begin"])) ** 2)
     decades = np.log10(force_levels_nN(1.0))[:size]

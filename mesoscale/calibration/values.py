@@ -1,4 +1,6 @@
-"""Likelihood of values that the inputs alone decide: hardness points, elastic moduli, and voltages of switches."""
+"""Likelihood of values that the inputs alone decide: hardness points, elastic moduli, and voltages
+of switches.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -31,12 +33,18 @@ class ValueData:
     def log_likelihood(self, x: Array) -> Array:
         """Logarithm of the likelihood at inputs x (m, n), shape (m,)."""
         model = self.model(x)
-        return normal_with_common(self.values - model, self.errors**2 + self.single**2, self._common(model))
+        return normal_with_common(
+            self.values - model, self.errors**2 + self.single**2, self._common(model)
+        )
 
     def simulated(self, x: Array, rng: np.random.Generator) -> "ValueData":
         """Data with the same errors, drawn at inputs x (1, n)."""
         model, noise = self.model(x), rng.standard_normal(self.values.shape)
-        drawn = model + self._common(model) * rng.standard_normal() + np.hypot(self.errors, self.single) * noise
+        drawn = (
+            model
+            + self._common(model) * rng.standard_normal()
+            + np.hypot(self.errors, self.single) * noise
+        )
         return replace(self, values=drawn[0])
 
     def _common(self, model: Array) -> Array:
@@ -44,10 +52,14 @@ class ValueData:
 
 
 def normal_with_common(residuals: Array, variances: Array, common: Array) -> Array:
-    """Logarithm of a normal density with covariance diag(variances) + common common^T, over the last axis."""
+    """Logarithm of a normal density with covariance diag(variances) + common common^T, over the
+    last axis.
+    """
     variances = np.broadcast_to(variances, residuals.shape)
     common = np.broadcast_to(common, residuals.shape)
     separate = (residuals**2 / variances).sum(axis=-1)
     cross = (residuals * common / variances).sum(axis=-1)
     gain = 1 + (common**2 / variances).sum(axis=-1)
-    return -0.5 * (separate - cross**2 / gain + np.log(gain) + np.log(2 * np.pi * variances).sum(axis=-1))
+    return -0.5 * (
+        separate - cross**2 / gain + np.log(gain) + np.log(2 * np.pi * variances).sum(axis=-1)
+    )

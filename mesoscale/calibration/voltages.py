@@ -1,10 +1,10 @@
-"""Measured voltages of switches, compared with the switches on pads that were pressed over the prior.
+"""Measured voltages of switches, compared with the switches on pads that were pressed over the
+prior.
 
-Each voltage is a regression over these switches, in the inputs and in all else that they differ by. What the inputs do
-is the response; the rest is scatter, shared by all measured switches (D0, what devices have in common, how places of
-the film differ, what the regression misses) or of each. A switch that sticks has a release below
-zero, and nothing else is known of it.
-"""
+Each voltage is a regression over these switches, in the inputs and in all else that they differ by.
+What the inputs do is the response; the rest is scatter, shared by all measured switches (D0, what
+devices have in common, how places of the film differ, what the regression misses) or of each. A
+switch that sticks has a release below zero, and nothing else is known of it."""
 
 from dataclasses import dataclass, replace
 
@@ -29,8 +29,8 @@ class Voltage:
     Attributes
     ----------
     response : to the inputs, averaged over all else (V; below zero: it sticks).
-    shared_V, each_V : standard deviations about it, of all switches together and from one to the next.
-    """
+    shared_V, each_V : standard deviations about it, of all switches together and from one to the
+        next."""
 
     response: Surrogate
     shared_V: float
@@ -52,13 +52,16 @@ def fit_voltages(model: PadModel, prior: InputTable) -> dict[str, Voltage]:
     others = [k for k in design.varying if design.names[k] not in prior.names]
     of_device = np.array([design.varies[k] == "each" for k in others], bool)
     inputs = np.array([[point.point.values[name] for name in prior.names] for point in solved])
-    drawn = np.hstack([inputs.reshape(len(solved), -1), design.probability[model.solved][:, others]])
+    drawn = np.hstack(
+        [inputs.reshape(len(solved), -1), design.probability[model.solved][:, others]]
+    )
     ranges = np.vstack([prior.ranges(), np.tile([0.0, 1.0], (len(others), 1))])
     x, release = np.clip(drawn, *ranges.T), model.states("release_V")
     if (release > 0).sum() < 2 * len(ranges):
         raise InputError(
-            f"pad.points: {(release > 0).sum()} of {len(model.points)} switches over the prior let go, and "
-            f"{2 * len(ranges)} are needed to compare measured voltages with: raise it, or narrow the inputs"
+            f"pad.points: {(release > 0).sum()} of {len(model.points)} switches over the prior let"
+            f" go, and {2 * len(ranges)} are needed to compare measured voltages with: raise it, or"
+            " narrow the inputs"
         )
     return {
         "pull_in": _regressed(x, model.states("pull_in_V"), ranges, of_device),
@@ -67,7 +70,9 @@ def fit_voltages(model: PadModel, prior: InputTable) -> dict[str, Voltage]:
 
 
 def _regressed(x: Array, volts: Array, ranges: Array, of_device: NDArray[np.bool_]) -> Voltage:
-    """Regression in inputs and, behind them, in the probabilities of all else, of which some are of each device."""
+    """Regression in inputs and, behind them, in the probabilities of all else, of which some are of
+    each device.
+    """
     stuck = volts == 0.0
     if stuck.any():
         fit, missed_V = censored_chaos(x, volts, stuck, ranges)
@@ -79,7 +84,9 @@ def _regressed(x: Array, volts: Array, ranges: Array, of_device: NDArray[np.bool
     variance = fit.coefficients**2 / np.prod(2 * fit.degrees + 1, axis=1)
     of_each = (of_others[:, of_device] > 0).any(axis=1)
     of_inputs = ~(of_others > 0).any(axis=1)
-    response = Surrogate(ranges[:inputs], fit.degrees[of_inputs][:, :inputs], fit.coefficients[of_inputs])
+    response = Surrogate(
+        ranges[:inputs], fit.degrees[of_inputs][:, :inputs], fit.coefficients[of_inputs]
+    )
     shared_V = np.sqrt(variance[~of_each & ~of_inputs].sum() + missed_V**2)
     return Voltage(response, float(shared_V), float(np.sqrt(variance[of_each].sum())))
 
@@ -101,9 +108,14 @@ class StickingData:
 
     def simulated(self, x: Array, rng: np.random.Generator) -> "StickingData":
         """Data drawn at inputs x (1, n)."""
-        return replace(self, stuck=rng.binomial(self.switches.astype(int), ndtr(-self._margin(x))).astype(float))
+        return replace(
+            self,
+            stuck=rng.binomial(self.switches.astype(int), ndtr(-self._margin(x))).astype(float),
+        )
 
     def _margin(self, x: Array) -> Array:
         """Release in standard deviations above sticking."""
         release, volts = self.release(x), self.release
-        return release / np.sqrt((self.discrepancy * release) ** 2 + volts.shared_V**2 + volts.each_V**2 + 1e-6)
+        return release / np.sqrt(
+            (self.discrepancy * release) ** 2 + volts.shared_V**2 + volts.each_V**2 + 1e-6
+        )

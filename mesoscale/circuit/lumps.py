@@ -1,4 +1,5 @@
-"""The electrode as few lumps: pairs of places, mirrored at mid-span, with the stiffness of the beam between them.
+"""The electrode as few lumps: pairs of places, mirrored at mid-span, with the stiffness of the beam
+between them.
 
 For each lump, s its separation, A its area, b the width of the electrode, mass per area rho t,
 
@@ -7,14 +8,13 @@ For each lump, s its separation, A its area, b the width of the electrode, mass 
     n'  = -(P - P0) P s^3 / (P0 mu b^2),    P = P0 n / s,    mu = viscosity / (1 + 9.638 Kn^1.159)
     Q   = V eps0 sum A [1 / e + fringe / b ln(pi b / e)],    e = s + t / eps_r
 
-with u = s - rest, z = z0 + u the height over the anchors, z0 that at rest, z.D z / 2 the elongation of the beam, and S
-its stretching stiffness, EA / L where anchors are rigid.
-The gas of a long strip: small slow motion feels the incompressible film, mu b^3 / s^3 per length, and fast motion the
-spring P0 A / s of trapped gas, the two limits of Blech, J. Lubr. Technol. 105 (1983) 615. Viscosity in narrow gaps is
-that of Veijola et al., Sens. Actuators A 48 (1995) 239, Kn the mean free path over s. A fringe of 2 / pi is that of a
-thin strip over a plane (Palmer, Trans. AIEE 56 (1937) 363). Simulators integrate these equations
-(`mesoscale.circuit.spice`).
-"""
+with u = s - rest, z = z0 + u the height over the anchors, z0 that at rest, z.D z / 2 the elongation
+of the beam, and S its stretching stiffness, EA / L where anchors are rigid. The gas of a long
+strip: small slow motion feels the incompressible film, mu b^3 / s^3 per length, and fast motion the
+spring P0 A / s of trapped gas, the two limits of Blech, J. Lubr. Technol. 105 (1983) 615. Viscosity
+in narrow gaps is that of Veijola et al., Sens. Actuators A 48 (1995) 239, Kn the mean free path
+over s. A fringe of 2 / pi is that of a thin strip over a plane (Palmer, Trans. AIEE 56 (1937) 363).
+Simulators integrate these equations (`mesoscale.circuit.spice`)."""
 
 from dataclasses import dataclass
 
@@ -37,9 +37,12 @@ class Lumps:
 
     Attributes
     ----------
-    rest_nm, area_m2 : separation at rest and area of the lumps, from the ends to mid-span, shape (n,).
-    stiffness_N_m : K, forces that hold the lumps at small displacements, but for what they stretch, shape (n, n).
-    drawn_m : D, twice the elongation of the beam (m) by the squares of heights (m), in 1/m, shape (n, n).
+    rest_nm, area_m2 : separation at rest and area of the lumps, from the ends to mid-span, shape
+        (n,).
+    stiffness_N_m : K, forces that hold the lumps at small displacements, but for what they stretch,
+        shape (n, n).
+    drawn_m : D, twice the elongation of the beam (m) by the squares of heights (m), in 1/m, shape
+        (n, n).
     height_nm : z0, height at rest over the anchors, shape (n,).
     stretching_N_m : S.
     width_m, dielectric_nm : of the electrode; thickness of the dielectric over its permittivity.
@@ -76,7 +79,10 @@ def lumps_of(settings: DeviceSettings, count: int) -> Lumps:
     InputError : see `lumped_beam`.
     """
     beam = lumped_beam(settings.model_copy(update={"tilt_nm": 0.0}), count)
-    area, heights_m = 2.0 * beam.width_m * beam.weights_m[:count, 0], beam.rest_nodal[1 : count + 1, 0]
+    area, heights_m = (
+        2.0 * beam.width_m * beam.weights_m[:count, 0],
+        beam.rest_nodal[1 : count + 1, 0],
+    )
     stiffness, drawn = _paired_stiffness(beam)
     mass = 1e3 * settings.density_g_cm3 * 1e-6 * settings.thickness_um
     at_rest = stiffness + beam.stretching_N_m * np.outer(drawn @ heights_m, drawn @ heights_m)
@@ -98,7 +104,8 @@ def lumps_of(settings: DeviceSettings, count: int) -> Lumps:
 
 
 def _paired_stiffness(beam: Beam) -> tuple[Array, Array]:
-    """Stiffness and D of a lumped beam against equal displacements of its mirrored places, shape (n, n) each.
+    """Stiffness and D of a lumped beam against equal displacements of its mirrored places, shape
+    (n, n) each.
 
     Slopes follow the displacements as they do at rest, without what stretches the beam.
     """
@@ -116,11 +123,11 @@ def _paired_stiffness(beam: Beam) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class LumpErrors:
-    """How many lumps an electrode needs, their errors beside the finite elements, and what these say.
+    """How many lumps an electrode needs, their errors beside the finite elements, and what these
+    say.
 
-    An error of 1 is that of a release which only one of both has. `reference` is the larger of the changes of pull-in
-    and release from half as many finite elements.
-    """
+    An error of 1 is that of a release which only one of both has. `reference` is the larger of the
+    changes of pull-in and release from half as many finite elements."""
 
     lumps: int
     pull_in: float
@@ -146,7 +153,9 @@ def choose_lumps(settings: DeviceSettings, law: PadLaw) -> LumpErrors:
         errors = _errors(solve_bent(lumped_beam(symmetric, count), symmetric, law), exact)
         if max(errors[:2]) <= CIRCUIT.release_error and errors[2] <= CIRCUIT.capacitance_error:
             break
-    return LumpErrors(count, *errors, exact.pull_in_V, exact.release_V, max(_errors(half, exact)[:2]))
+    return LumpErrors(
+        count, *errors, exact.pull_in_V, exact.release_V, max(_errors(half, exact)[:2])
+    )
 
 
 def _errors(made: BeamStates, exact: BeamStates) -> tuple[float, float, float]:

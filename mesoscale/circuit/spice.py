@@ -1,12 +1,14 @@
-"""The switch as a SPICE netlist, which ngspice runs as it is: its electrode, lumps (`mesoscale.circuit.lumps`) and pad.
+"""The switch as a SPICE netlist, which ngspice runs as it is: its electrode, lumps
+(`mesoscale.circuit.lumps`) and pad.
 
-A netlist holds the stiffness of the electrode, and one instance of `rough_lump` for each pair of lumps, which has the
-subcircuit `rough_pad`. `mesoscale.circuit.verilog` has the same lump as a module, which is compiled once.
+A netlist holds the stiffness of the electrode, and one instance of `rough_lump` for each pair of
+lumps, which has the subcircuit `rough_pad`. `mesoscale.circuit.verilog` has the same lump as a
+module, which is compiled once.
 
-Terminals are `top` and `bottom` of the two electrodes, and `middle`: by how much mid-span has come down (1 V = 1 nm).
-Inside, voltages are nm, nm/us, Pa and fC. All are zero for the open switch at rest, where simulators begin. What
-follows from others is a current into 1 Ohm: voltage sources would double the equations.
-"""
+Terminals are `top` and `bottom` of the two electrodes, and `middle`: by how much mid-span has come
+down (1 V = 1 nm). Inside, voltages are nm, nm/us, Pa and fC. All are zero for the open switch at
+rest, where simulators begin. What follows from others is a current into 1 Ohm: voltage sources
+would double the equations."""
 
 import numpy as np
 
@@ -18,11 +20,13 @@ from mesoscale.device.plate import VACUUM_PERMITTIVITY
 from mesoscale.pad.memory import PadLaw
 
 LUMP = "top bottom moved drawn charge"
-"""Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge (fC), a
-current into 1 Ohm."""
+"""Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge
+(fC), a current into 1 Ohm."""
 
 
-def spice_switch(lumps: Lumps, errors: LumpErrors, law: PadLaw, cells: int, pull_in_V: float) -> str:
+def spice_switch(
+    lumps: Lumps, errors: LumpErrors, law: PadLaw, cells: int, pull_in_V: float
+) -> str:
     """SPICE netlist (ngspice) of the subcircuits `rough_switch`, `rough_lump` and `rough_pad`."""
     force, slope = CIRCUIT.force_A, CIRCUIT.slope_per_V
     springs = force * lumps.stiffness_N_m * NM / lumps.area_m2[:, None]
@@ -30,7 +34,9 @@ def spice_switch(lumps: Lumps, errors: LumpErrors, law: PadLaw, cells: int, pull
     sloped = force * lumps.stretching_N_m * NM * slope / lumps.area_m2
     body = []
     for k in range(lumps.count):
-        held = [f"G{k}_{j} speed{k} 0 bent{j} 0 {spring:.12g}" for j, spring in enumerate(springs[k])]
+        held = [
+            f"G{k}_{j} speed{k} 0 bent{j} 0 {spring:.12g}" for j, spring in enumerate(springs[k])
+        ]
         held += [f"Gslope{k}_{j} 0 slope{k} bent{j} 0 {of:.12g}" for j, of in enumerate(drawn[k])]
         body.append(f"""Xlump{k} top bottom moved{k} drawn{k} charge rough_lump
 +   rest={lumps.rest_nm[k]:.9g} area={lumps.area_m2[k]:.9g}
@@ -49,7 +55,10 @@ Rslope{k} slope{k} 0 1
 Bstretch{k} speed{k} 0 I = {sloped[k]:.12g} * V(longer) * V(slope{k})
 Blonger{k} 0 longer I = {0.5 * slope:g} * (V(bent{k}) + {-heights[k]:.9g}) * V(slope{k})""")
     # longer: by how much (nm) the beam is longer than at rest; slopes are those of its elongation
-    longer = ["Rlonger longer 0 1", f"Ilonger longer 0 {0.5 * slope * heights @ drawn @ heights:.12g}"]
+    longer = [
+        "Rlonger longer 0 1",
+        f"Ilonger longer 0 {0.5 * slope * heights @ drawn @ heights:.12g}",
+    ]
     width, dielectric = lumps.width_m, lumps.dielectric_nm
     electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
     film = f"max({{rest}} - V(moved), {CIRCUIT.least_film_nm:g})"
@@ -97,10 +106,13 @@ Bdrawn 0 drawn I = {0.5 * VACUUM_PERMITTIVITY} * V(top,bottom)^2 * (1 + {{fringe
 
 
 def spice_pad(law: PadLaw, cells: int) -> str:
-    """SPICE subcircuit `rough_pad` (ngspice): node s 1 V = 1 nm, node force 1 V = 1 nN, positive = pushed away."""
+    """SPICE subcircuit `rough_pad` (ngspice): node s 1 V = 1 nm, node force 1 V = 1 nN, positive =
+    pushed away.
+    """
     tables = tables_of(law, cubic=False)
     depths = tables.depth_nm
-    # closing counts from a little farther out than the pad repels: a lump that begins to count is a corner for ngspice
+    # closing counts from a little farther out than the pad repels: a lump that begins to count is a
+    # corner for ngspice
     repels = law.separation_nm[law.closing[0] > 0.0]
     start = CIRCUIT.begins * float(repels.max(initial=depths[-1] + CIRCUIT.fade_nm))
     deepest, far = f"{start:g} - V(near)", [piece.y[-1] for piece in tables.closing]
@@ -112,9 +124,14 @@ def spice_pad(law: PadLaw, cells: int) -> str:
     sums = []
     for way, closed in enumerate((_pwl(deepest, push, CIRCUIT.reach_nm), _pwl(deepest, pull))):
         rises = (_pwl("V(risen)", pieces[way]) for pieces in tables.opening)
-        terms = [f"({weight} > 0 ? {weight}*{rise} : 0)" for weight, rise in zip(weights, rises, strict=True)]
+        terms = [
+            f"({weight} > 0 ? {weight}*{rise} : 0)"
+            for weight, rise in zip(weights, rises, strict=True)
+        ]
         sums.append("\n+   + ".join([closed, *terms]))
-    most = [piece.y.max() + CIRCUIT.most_folds for piece in tables.closing]  # wild steps of a simulator stay finite
+    most = [
+        piece.y.max() + CIRCUIT.most_folds for piece in tables.closing
+    ]  # wild steps of a simulator stay finite
     return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
 * {note(tables, cells)}
 * nodes     s      mean separation less rest, 1 V = 1 nm
@@ -149,10 +166,16 @@ Bforce 0 force I = {{area}} * (exp(min(V(push) + {far[0]:.7g}, {most[0]:.4g})) -
 
 
 def _pwl(of: str, piece: Piece, below: float = 0.0) -> str:
-    """Straight pieces of ngspice, the ends held, four nodes a line; `below` the first node, the slope of the first."""
+    """Straight pieces of ngspice, the ends held, four nodes a line; `below` the first node, the
+    slope of the first.
+    """
     x, y = piece.x, piece.y
     held = [(x[0] - 1e3, y[0]), *zip(x, y, strict=True), (x[-1] + 1e3, y[-1])]
     if below:
         held[0] = x[0] - below, y[0] - below * (y[1] - y[0]) / (x[1] - x[0])
     nodes = [f"{x:.7g},{y:.7g}" for x, y in held]
-    return f"pwl({of}" + "".join((",\n+   " if k % 4 == 0 else ", ") + node for k, node in enumerate(nodes)) + ")"
+    return (
+        f"pwl({of}"
+        + "".join((",\n+   " if k % 4 == 0 else ", ") + node for k, node in enumerate(nodes))
+        + ")"
+    )

@@ -1,8 +1,9 @@
-"""What a device engineer simulates: the central switch, its corners, draws of its spread, and their slow loops.
+"""What a device engineer simulates: the central switch, its corners, draws of its spread, and their
+slow loops.
 
-Corners lie some standard deviations out, in the direction of inputs, D0 and properties that moves the release (sticky,
-loose) or the pull-in (fast, slow) most: the slope of a plane through the switches of all points.
-"""
+Corners lie some standard deviations out, in the direction of inputs, D0 and properties that moves
+the release (sticky, loose) or the pull-in (fast, slow) most: the slope of a plane through the
+switches of all points."""
 
 from contextlib import suppress
 from dataclasses import dataclass
@@ -59,14 +60,20 @@ def central_switch(settings: DeviceSettings, law: PadLaw) -> tuple[CircuitSwitch
     InputError : a plate on a spring, which has no corners; see `solve_beam`.
     """
     if not settings.bends:
-        raise InputError("device.spring_N_per_m: circuits are made of bending electrodes; set it to null")
+        raise InputError(
+            "device.spring_N_per_m: circuits are made of bending electrodes; set it to null"
+        )
     errors, law = with_pad(lambda pad: choose_lumps(settings, pad), law)
     row = {"switch": "central", "pull_in_V": errors.pull_in_V, "release_V": errors.release_V}
     return CircuitSwitch(row, settings.model_copy(update={"tilt_nm": 0.0}), law), errors
 
 
 def spread_switches(
-    model: PadModel, table: InputTable, contact: ContactSettings, cutoffs_nm: tuple[float, float], lumps: int
+    model: PadModel,
+    table: InputTable,
+    contact: ContactSettings,
+    cutoffs_nm: tuple[float, float],
+    lumps: int,
 ) -> list[CircuitSwitch]:
     """Corners of the switch, whose pads are pressed for them, and its first solved points.
 
@@ -76,7 +83,9 @@ def spread_switches(
     """
     solved, design, settings = model.solved, model.design, model.central.point.device
     if len(solved) < max(SWITCH.solved * len(model.points), 2):
-        raise InputError(f"device: only {len(solved)} of {len(model.points)} points of the switch can be solved")
+        raise InputError(
+            f"device: only {len(solved)} of {len(model.points)} points of the switch can be solved"
+        )
     z, corners = ndtri(design.probability[solved]), []
     plane = np.column_stack([np.ones(len(z)), z])
     for number, (name, (state, sign)) in enumerate(CORNERS.items()):
@@ -99,7 +108,9 @@ def spread_switches(
     return [*corners, *drawn]
 
 
-def _by_lumps(name: str, point: Point, pad: PadLaw, lumps: int, deviations: float = 0.0) -> CircuitSwitch:
+def _by_lumps(
+    name: str, point: Point, pad: PadLaw, lumps: int, deviations: float = 0.0
+) -> CircuitSwitch:
     """The switch of a point by so many lumps.
 
     Raises
@@ -115,7 +126,9 @@ def _by_lumps(name: str, point: Point, pad: PadLaw, lumps: int, deviations: floa
 
 
 def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, float]]:
-    """Rows of device/loop.csv: capacitance against voltage, up and down, central and of 90 % of the draws."""
+    """Rows of device/loop.csv: capacitance against voltage, up and down, central and of 90 % of the
+    draws.
+    """
     top = CIRCUIT.loop_top * max(switch.row["pull_in_V"] for switch in (central, *drawn))
     volts = np.linspace(0.0, top, CIRCUIT.loop_voltages)
     curves = [_loop_fF(central, volts)]
@@ -123,7 +136,9 @@ def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, 
         with suppress(InputError):  # a beam that finds no balance on any mesh
             curves.append(_loop_fF(switch, volts))
     if len(curves) <= SWITCH.solved * len(drawn):
-        raise InputError(f"device: the slow loop can be solved for only {len(curves) - 1} of {len(drawn)} draws")
+        raise InputError(
+            f"device: the slow loop can be solved for only {len(curves) - 1} of {len(drawn)} draws"
+        )
     low, high = np.quantile(np.stack(curves[1:]), (0.05, 0.95), axis=0)
     return [
         {
@@ -139,11 +154,15 @@ def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, 
 
 
 def _loop_fF(switch: CircuitSwitch, volts: Array) -> Array:
-    """The loop of one switch, shape (2, volts), by the first mesh on which the beam finds all its balances."""
+    """The loop of one switch, shape (2, volts), by the first mesh on which the beam finds all its
+    balances.
+    """
     for elements in CIRCUIT.loop_elements:
         beam = beam_of(switch.settings, elements)
         try:
-            solved = with_pad(lambda law, of=beam: loop_fF(of, switch.settings, law, volts), switch.law)[0]
+            solved = with_pad(
+                lambda law, of=beam: loop_fF(of, switch.settings, law, volts), switch.law
+            )[0]
         except InputError:  # between straight pieces of the pad's curves, steps may cycle
             if elements == CIRCUIT.loop_elements[-1]:
                 raise

@@ -1,12 +1,13 @@
 """The curves of a pad as tables for circuit simulators, with the deepest closing as a state.
 
-The state is `closed` = start - (smallest separation so far) >= 0. It follows start - s upward with the time constant
-`follow` and stays where it is while the pad opens, but for a leak that a simulator needs to find its first balance.
+The state is `closed` = start - (smallest separation so far) >= 0. It follows start - s upward with
+the time constant `follow` and stays where it is while the pad opens, but for a leak that a
+simulator needs to find its first balance.
 
-Closing gives the logarithms of push and pull at the deepest separation. An opening from there adds how both change with
-the rise above it, interpolated between the depths that were computed. Verilog-A gets monotone cubic pieces (Fritsch and
-Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300), so that force and slope are continuous; SPICE gets straight ones.
-"""
+Closing gives the logarithms of push and pull at the deepest separation. An opening from there adds
+how both change with the rise above it, interpolated between the depths that were computed.
+Verilog-A gets monotone cubic pieces (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300),
+so that force and slope are continuous; SPICE gets straight ones."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -77,12 +78,22 @@ def tables_of(law: PadLaw, cubic: bool, looser: float = 1.0) -> Tables:
         def missed(made: Array) -> Array:
             return abs(np.exp(made[0]) - faint - flats * np.exp(made[1]) - net)
 
-        allowed = np.minimum(CIRCUIT.of_well * well, CIRCUIT.of_pull * pull) + CIRCUIT.of_net * abs(net) + floor
+        allowed = (
+            np.minimum(CIRCUIT.of_well * well, CIRCUIT.of_pull * pull)
+            + CIRCUIT.of_net * abs(net)
+            + floor
+        )
         at, made = _nodes(x, values, lambda made: missed(made) / (looser * allowed), nodes, cubic)
         near = abs(net) < CIRCUIT.near_wells * well
         of_well, of_net = missed(made) / well, missed(made) / np.maximum(abs(net), faint)
-        first, second = (Piece(x[at], row[at] - shift) for row, shift in zip(values, start, strict=True))
-        return (first, second), float(of_well.max(initial=0.0, where=near)), float(of_net.max(initial=0.0, where=~near))
+        first, second = (
+            Piece(x[at], row[at] - shift) for row, shift in zip(values, start, strict=True)
+        )
+        return (
+            (first, second),
+            float(of_well.max(initial=0.0, where=near)),
+            float(of_net.max(initial=0.0, where=~near)),
+        )
 
     at_depths = [int(abs(s - depth).argmin()) for depth in law.depth_nm]
     closing, _, of_closing = fitted(
@@ -96,17 +107,25 @@ def tables_of(law: PadLaw, cubic: bool, looser: float = 1.0) -> Tables:
         opening.append(pieces)
         errors.append(missed)
     of_well, of_net = np.max(errors, axis=0)
-    return Tables(closing, law.depth_nm, opening, faint, floor, float(of_well), max(float(of_net), of_closing))
+    return Tables(
+        closing, law.depth_nm, opening, faint, floor, float(of_well), max(float(of_net), of_closing)
+    )
 
 
 def _nodes(
     x: Array, values: Array, error: Callable[[Array], Array], nodes: Sequence[int], cubic: bool
 ) -> tuple[list[int], Array]:
-    """Nodes, added where pieces miss the values most until `error` is below 1; and what the pieces give at x."""
+    """Nodes, added where pieces miss the values most until `error` is below 1; and what the pieces
+    give at x.
+    """
     chosen = {0, x.size // 2, x.size - 1, *nodes}
     while True:
         at = sorted(chosen)
-        made = PchipInterpolator(x[at], values[:, at], axis=1)(x) if cubic else rows_at(x, x[at], values[:, at])
+        made = (
+            PchipInterpolator(x[at], values[:, at], axis=1)(x)
+            if cubic
+            else rows_at(x, x[at], values[:, at])
+        )
         missed = error(made)
         missed[at] = 0.0
         if missed.max() <= 1.0:
@@ -124,8 +143,12 @@ def law_of_tables(tables: Tables, law: PadLaw, cubic: bool) -> PadLaw:
         return np.stack([np.interp(at_nm, *pair) for pair in pairs])
 
     def pressures(logarithms: Array, at_nm: Array) -> Array:
-        pull = (law.flats.pull_GPa(at_nm) + tables.floor_GPa) * np.exp(logarithms[1]) - tables.floor_GPa
-        return np.stack([np.maximum(np.exp(logarithms[0]) - tables.faint_GPa, 0.0), -np.maximum(pull, 0.0)])
+        pull = (law.flats.pull_GPa(at_nm) + tables.floor_GPa) * np.exp(
+            logarithms[1]
+        ) - tables.floor_GPa
+        return np.stack(
+            [np.maximum(np.exp(logarithms[0]) - tables.faint_GPa, 0.0), -np.maximum(pull, 0.0)]
+        )
 
     s = law.separation_nm
     closing = pressures(curves(tables.closing, s), s)
@@ -140,6 +163,7 @@ def law_of_tables(tables: Tables, law: PadLaw, cubic: bool) -> PadLaw:
 def note(tables: Tables, cells: int) -> str:
     """One line on what the tables were made of, and how near they are to the curves."""
     return (
-        f"from {cells} cells, closed to {tables.depth_nm[0]:.4g} .. {tables.depth_nm[-1]:.4g} nm; beside the curves at "
-        f"most {tables.of_well:.1%} of the well near it, {tables.of_net:.1%} of the net pressure beyond"
+        f"from {cells} cells, closed to {tables.depth_nm[0]:.4g} .. {tables.depth_nm[-1]:.4g} nm;"
+        f" beside the curves at most {tables.of_well:.1%} of the well near it, {tables.of_net:.1%}"
+        " of the net pressure beyond"
     )

@@ -53,8 +53,13 @@ endmodule
 
 
 def verilog_pressure(tables: Tables) -> str:
-    """Verilog-A functions of the net pressure (GPa) by separation and deepest closing (nm), and of the flats."""
-    functions = [_function("closing_push", tables.closing[0]), _function("closing_pull", tables.closing[1])]
+    """Verilog-A functions of the net pressure (GPa) by separation and deepest closing (nm), and of
+    the flats.
+    """
+    functions = [
+        _function("closing_push", tables.closing[0]),
+        _function("closing_pull", tables.closing[1]),
+    ]
     for k, (push, pull) in enumerate(tables.opening):
         functions += [_function(f"repel{k}", push), _function(f"attract{k}", pull)]
     depths, last = tables.depth_nm, tables.depth_nm.size - 1
@@ -66,13 +71,11 @@ def verilog_pressure(tables: Tables) -> str:
             end"""
         for k in range(last)
     ]
-    between.append(
-        f"""begin
+    between.append(f"""begin
                 share = max(1.0 - (deepest - {depths[last]:.7g}) / {CIRCUIT.fade_nm:.1f}, 0.0);
                 push = push + share * repel{last}(risen);
                 pull = pull + share * attract{last}(risen);
-            end"""
-    )
+            end""")
     return f"""
 {"".join(functions)}
     analog function real pressure;
@@ -91,15 +94,19 @@ def verilog_pressure(tables: Tables) -> str:
 
 
 def _function(name: str, piece: Piece) -> str:
-    """A Verilog-A function of the cubic pieces through nodes; beyond the ends it goes on straight, then level.
+    """A Verilog-A function of the cubic pieces through nodes; beyond the ends it goes on straight,
+    then level.
 
-    Branches choose the piece, which stands once: compilers write functions out wherever they are called.
-    """
+    Branches choose the piece, which stands once: compilers write functions out wherever they are
+    called."""
     cubic = PchipInterpolator(piece.x, piece.y)
     before = [piece.x[0], piece.y[0], float(cubic.derivative()(piece.x[0])), 0.0, 0.0]
     after = [piece.x[-1], piece.y[-1], 0.0, 0.0, 0.0]
     rows = [before, *np.vstack([piece.x[:-1], cubic.c[::-1]]).T, after]
-    chosen = [" ".join(f"{of} = {value:.9g};" for of, value in zip(("x0", *"abcd"), row, strict=True)) for row in rows]
+    chosen = [
+        " ".join(f"{of} = {value:.9g};" for of, value in zip(("x0", *"abcd"), row, strict=True))
+        for row in rows
+    ]
     ends = [f"if (x < {x:.9g}) begin {row} end" for x, row in zip(piece.x, chosen, strict=False)]
     body = "\n            else ".join([*ends, f"begin {chosen[-1]} end"])
     return f"""

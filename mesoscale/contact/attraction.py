@@ -1,13 +1,15 @@
-"""Van der Waals attraction of a rough surface and a plane (section 2.1, eq. 1), and that of liquid in the gap.
+"""Van der Waals attraction of a rough surface and a plane (section 2.1, eq. 1), and that of liquid
+in the gap.
 
-Sum over the sites of 1/s^3. The distance s of the walls is g + D0 (offset) or max(g, D0) (clamped, the paper's),
-with the gap g = h + separation. Sites far from contact are summed through a histogram of their heights that keeps the
-first five moments of each bin; sites near contact, and all sites that plastic flow has moved, are summed one by one.
+Sum over the sites of 1/s^3. The distance s of the walls is g + D0 (offset) or max(g, D0) (clamped,
+the paper's), with the gap g = h + separation. Sites far from contact are summed through a histogram
+of their heights that keeps the first five moments of each bin; sites near contact, and all sites
+that plastic flow has moved, are summed one by one.
 
-Retardation: flats lose the energy A_H / (12 pi s^2) / (1 + c s), with c = 5.32 over the wavelength (Gregory 1981,
-doi:10.1016/0021-9797(81)90018-7; its integral by Derjaguin is Gregory's sphere and plate). So 1/s^3 becomes
-(1 + 3/2 c s) / (1 + c s)^2 / s^3, which is 1/s^3 - (c/2) (1/s^2 - 1/(s + 1/c)^2).
-"""
+Retardation: flats lose the energy A_H / (12 pi s^2) / (1 + c s), with c = 5.32 over the wavelength
+(Gregory 1981, doi:10.1016/0021-9797(81)90018-7; its integral by Derjaguin is Gregory's sphere and
+plate). So 1/s^3 becomes (1 + 3/2 c s) / (1 + c s)^2 / s^3, which is 1/s^3 - (c/2) (1/s^2 - 1/(s +
+1/c)^2)."""
 
 import math
 
@@ -22,8 +24,9 @@ from mesoscale.settings import ContactSettings
 MOMENTS = 5
 NEAR_BINS = 100  # a site is near while its gap is below this many bin widths
 GREGORY = 5.32  # of c; see above
-# Sites that touch cover more than the contact does, by this part of a site for each edge between a touching site and
-# one that does not touch (Yastrebov, Anciaux and Molinari 2017, doi:10.1016/j.jmps.2017.07.016).
+# Sites that touch cover more than the contact does, by this part of a site for each edge between a
+# touching site and one that does not touch (Yastrebov, Anciaux and Molinari 2017,
+# doi:10.1016/j.jmps.2017.07.016).
 EXCESS = (math.pi - 1.0 + math.log(2.0)) / 24.0
 
 
@@ -47,12 +50,18 @@ class Attraction:
     touching : whether sites in contact attract.
     menisci : liquid in the gaps, where humid air condenses.
     filled : the liquid of the last force.
-    kept : volume of the liquid that an opening keeps, over the area of a site, nm; None: in equilibrium.
+    kept : volume of the liquid that an opening keeps, over the area of a site, nm; None: in
+        equilibrium.
     near_nm : gap below which sites of an undeformed surface are summed one by one, nm.
     """
 
     def __init__(
-        self, heights: np.ndarray, site_area: float, hamaker: float, settings: ContactSettings, numerics: Numerics
+        self,
+        heights: np.ndarray,
+        site_area: float,
+        hamaker: float,
+        settings: ContactSettings,
+        numerics: Numerics,
     ):
         """Take all heights (N^2,) in nm and the area of a site in nm^2."""
         self.cutoff = settings.gap_cutoff_nm
@@ -66,7 +75,9 @@ class Attraction:
         self.site_area = site_area
         self.strength = hamaker * site_area / (6.0 * np.pi)
         self.lowest = float(heights.min())
-        self.bin_width = max(float(heights.max()) - self.lowest, 1e-6 * self.cutoff) / numerics.gap_bins
+        self.bin_width = (
+            max(float(heights.max()) - self.lowest, 1e-6 * self.cutoff) / numerics.gap_bins
+        )
         self.near_nm = max(NEAR_BINS * self.bin_width, 2.0 * self.cutoff)
         self.moments = np.zeros((numerics.gap_bins, MOMENTS))
         self.taken_out = 0  # of the changed sites
@@ -81,7 +92,9 @@ class Attraction:
         """Have the histogram hold the unchanged sites only."""
         count = int(changes.used[0])
         if count > self.taken_out:
-            take_out(changes.original, self.taken_out, count, self.lowest, self.bin_width, self.moments)
+            take_out(
+                changes.original, self.taken_out, count, self.lowest, self.bin_width, self.moments
+            )
             self.taken_out, self.before = count, None
 
     @property
@@ -102,12 +115,18 @@ class Attraction:
         return float(self.before[far - 1] / self.before[-1]) if far else 0.0
 
     def far_edge(self, near: float, separation: float) -> tuple[int, float]:
-        """First bin all of whose sites are at least a gap (nm) away, and the height (nm) at which it begins."""
+        """First bin all of whose sites are at least a gap (nm) away, and the height (nm) at which
+        it begins.
+        """
         far = first_far_bin(near, separation, self.lowest, self.bin_width, len(self.moments))
         return far, self.lowest + far * self.bin_width
 
-    def deformed(self, gap: np.ndarray, weight: np.ndarray, separation: float = 0.0, far: int | None = None) -> float:
-        """Force (nN, negative) on sites with given gaps (nm) and weights, and on those in the bins from `far` on."""
+    def deformed(
+        self, gap: np.ndarray, weight: np.ndarray, separation: float = 0.0, far: int | None = None
+    ) -> float:
+        """Force (nN, negative) on sites with given gaps (nm) and weights, and on those in the bins
+        from `far` on.
+        """
         total = inverse_cubes_of(gap, weight, self.least, self.offset, self.rate)
         if far is not None:
             total += far_inverse_cubes(
@@ -115,7 +134,9 @@ class Attraction:
             )
         return -self.strength * total + self.liquid(gap, weight, separation, far)
 
-    def liquid(self, gap: np.ndarray, weight: np.ndarray, separation: float = 0.0, far: int | None = None) -> float:
+    def liquid(
+        self, gap: np.ndarray, weight: np.ndarray, separation: float = 0.0, far: int | None = None
+    ) -> float:
         """What liquid adds to the force (nN); see `deformed` for the sites."""
         if self.menisci is None:
             return 0.0
@@ -141,7 +162,9 @@ class Attraction:
         place: np.ndarray,
         pressure: np.ndarray,
     ) -> float:
-        """Force (nN, negative) on all sites with their displacements (nm), (N^2,), around those under pressure."""
+        """Force (nN, negative) on all sites with their displacements (nm), (N^2,), around those
+        under pressure.
+        """
         walls, touching = (self.least, self.offset, self.rate), self.touching
         force = -self.strength * inverse_cubes_around(
             heights, separation, displacement, sites, place, pressure, touching, *walls
@@ -160,8 +183,13 @@ class Attraction:
         changes: Changes,
         changed: np.ndarray,
     ) -> float:
-        """Force (nN, negative) on a surface that nothing deforms; see `inverse_cubes` for the order of its sites."""
-        walls, bins = (self.least, self.offset, self.touching), (self.lowest, self.bin_width, self.moments)
+        """Force (nN, negative) on a surface that nothing deforms; see `inverse_cubes` for the order
+        of its sites.
+        """
+        walls, bins = (
+            (self.least, self.offset, self.touching),
+            (self.lowest, self.bin_width, self.moments),
+        )
         flowed = (changed, changes.sites, changes.used[0])
         return -self.strength * inverse_cubes(
             heights, separation, *walls, order, order_heights, *flowed, *bins, self.rate
@@ -172,10 +200,9 @@ class Attraction:
 def attracting(sites, place, pressure, pixels, touching):
     """How many sites' areas attract with the gap of each of some sites.
 
-    Without `touching` sites under pressure do not, but for the strip along their edges where there is no contact: it
-    counts with the gap of the site beyond the edge. `place` holds the position of each site of the cell in the list
-    that `pressure` belongs to, or -1.
-    """
+    Without `touching` sites under pressure do not, but for the strip along their edges where there
+    is no contact: it counts with the gap of the site beyond the edge. `place` holds the position of
+    each site of the cell in the list that `pressure` belongs to, or -1."""
     weight = np.ones(sites.size)
     if touching:
         return weight
@@ -196,7 +223,10 @@ def _beside(site, pixels):
     """The four neighbours of a site in its periodic cell."""
     col, size = site % pixels, pixels * pixels
     up, down = site - pixels, site + pixels
-    left, right = site - 1 if col else site + pixels - 1, site + 1 if col < pixels - 1 else site - pixels + 1
+    left, right = (
+        site - 1 if col else site + pixels - 1,
+        site + 1 if col < pixels - 1 else site - pixels + 1,
+    )
     return up if up >= 0 else up + size, down if down < size else down - size, left, right
 
 
@@ -279,7 +309,10 @@ def far_inverse_cubes(separation, far, lowest, width, moments, rate):
             )
         )
         if rate > 0.0:
-            near, beyond = _inverse_squares(u, moments[b]), _inverse_squares(1.0 / (gap + 1.0 / rate), moments[b])
+            near, beyond = (
+                _inverse_squares(u, moments[b]),
+                _inverse_squares(1.0 / (gap + 1.0 / rate), moments[b]),
+            )
             rest -= 0.5 * rate * (near - beyond)
     return rest
 
@@ -292,7 +325,11 @@ def _inverse_squares(u, moments):
         * u
         * (
             moments[0]
-            + u * (-2.0 * moments[1] + u * (3.0 * moments[2] + u * (-4.0 * moments[3] + u * 5.0 * moments[4])))
+            + u
+            * (
+                -2.0 * moments[1]
+                + u * (3.0 * moments[2] + u * (-4.0 * moments[3] + u * 5.0 * moments[4]))
+            )
         )
     )
 
@@ -309,7 +346,8 @@ def inverse_cubes_of(gap, weight, least, offset, rate):
 
 @njit(cache=True)
 def fill(gap, weight, separation, far, lowest, width, moments, reach, least, offset, rate):
-    """Sites with gaps below `reach`, those in the bins from `far` on too, their volume, and the sum of their 1/s^3.
+    """Sites with gaps below `reach`, those in the bins from `far` on too, their volume, and the sum
+    of their 1/s^3.
 
     The bin in which liquid ends is filled in part.
     """
@@ -334,12 +372,15 @@ def fill(gap, weight, separation, far, lowest, width, moments, reach, least, off
 
 @njit(cache=True)
 def hold(gap, weight, separation, far, lowest, width, moments, volume, reach, least, offset, rate):
-    """The same of the sites that a volume of liquid fills from the narrowest gap on, with the gap up to which.
+    """The same of the sites that a volume of liquid fills from the narrowest gap on, with the gap
+    up to which.
 
     Where it fills all sites, this gap is `reach`.
     """
     bins = moments.shape[0]
-    start = lowest + separation  # gap at which the first bin begins; sites with less are in this bin, too
+    start = (
+        lowest + separation
+    )  # gap at which the first bin begins; sites with less are in this bin, too
     sums = np.zeros((bins, 3))
     for k in range(gap.size):
         b = min(max(int((gap[k] - start) / width), 0), bins - 1)
@@ -365,8 +406,12 @@ def hold(gap, weight, separation, far, lowest, width, moments, volume, reach, le
 
 
 @njit(cache=True, fastmath={"contract", "reassoc", "nsz"}, error_model="numpy")  # in parallel lanes
-def inverse_cubes_around(heights, separation, displacement, sites, place, pressure, touching, least, offset, rate):
-    """Sum of 1/s^3 over all sites of a cell, with the weights of `attracting` around `sites`, which have pressures."""
+def inverse_cubes_around(
+    heights, separation, displacement, sites, place, pressure, touching, least, offset, rate
+):
+    """Sum of 1/s^3 over all sites of a cell, with the weights of `attracting` around `sites`, which
+    have pressures.
+    """
     pixels = int(np.sqrt(heights.size) + 0.5)
     total = 0.0
     for k in range(heights.size):
@@ -377,7 +422,9 @@ def inverse_cubes_around(heights, separation, displacement, sites, place, pressu
         if not pressure[k] > 0.0:
             continue
         site = sites[k]
-        total -= inverse_cube(max(heights[site] + separation + displacement[site], least) + offset, rate)
+        total -= inverse_cube(
+            max(heights[site] + separation + displacement[site], least) + offset, rate
+        )
         for beside in _beside(site, pixels):
             if place[beside] < 0 or not pressure[place[beside]] > 0.0:
                 gap = heights[beside] + separation + displacement[beside]
@@ -402,12 +449,15 @@ def inverse_cubes(
     moments,
     rate,
 ):
-    """Sum over the sites of 1/s^3, s = max(g, least) + offset; ``touching``: whether sites with g < 0 count.
+    """Sum over the sites of 1/s^3, s = max(g, least) + offset; ``touching``: whether sites with g <
+    0 count.
 
     ``order`` holds at least all sites of the near bins, by rising original height.
     """
     bins = moments.shape[0]
-    far = first_far_bin(max(NEAR_BINS * width, 2.0 * (least + offset)), separation, lowest, width, bins)
+    far = first_far_bin(
+        max(NEAR_BINS * width, 2.0 * (least + offset)), separation, lowest, width, bins
+    )
     near = 0.0
     for place in range(order.size):
         if min(int((order_heights[place] - lowest) / width), bins - 1) >= far:

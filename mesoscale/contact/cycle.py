@@ -19,7 +19,8 @@ SMALLEST_FORCE_NN, LARGEST_FORCE_NN = 1e-9, 1e12
 
 @dataclass(frozen=True, repr=False)
 class Branch:
-    """One branch of a force-separation curve; arrays of one length, in the order they were traversed.
+    """One branch of a force-separation curve; arrays of one length, in the order they were
+    traversed.
 
     Attributes
     ----------
@@ -83,8 +84,9 @@ class Cycle:
     def __repr__(self) -> str:
         why = ": full contact" if self.flags.get("full_contact") else ""
         return (
-            f"Cycle up to {self.closing.repulsive_nN[-1]:.4g} nN: first touches at {self.first_contact_nm:.4g} nm, "
-            f"last at {self.last_contact_nm:.4g} nm{'' if self.converged else f'; NOT CONVERGED{why}'}"
+            f"Cycle up to {self.closing.repulsive_nN[-1]:.4g} nN: first touches at"
+            f" {self.first_contact_nm:.4g} nm, last at {self.last_contact_nm:.4g}"
+            f" nm{'' if self.converged else f'; NOT CONVERGED{why}'}"
         )
 
     @property
@@ -102,8 +104,8 @@ def check_hardness(inputs: ContactInputs, settings: ContactSettings) -> None:
     """
     if settings.model != "elastic" and inputs.hardness.pressure(settings.length_nm**2) <= 0.0:
         raise InputError(
-            f"h_macro = {inputs.h_macro:g} GPa: the surface would carry nothing; give its hardness, or take "
-            "model: elastic (asp.press: h_macro=None)"
+            f"h_macro = {inputs.h_macro:g} GPa: the surface would carry nothing; give its hardness,"
+            " or take model: elastic (asp.press: h_macro=None)"
         )
 
 
@@ -132,8 +134,9 @@ def run_cycle(
     seed
         Noise of the surface: the same seed gives the same noise whatever the inputs and the grid.
     max_force_nN
-        Repulsive force at which closing ends; default `settings.max_force_nN`. A plastic contact ends closing at
-        0.8 H(L^2) L^2 if this is less, where the whole cell is one contact, and is not converged.
+        Repulsive force at which closing ends; default `settings.max_force_nN`. A plastic contact
+        ends closing at 0.8 H(L^2) L^2 if this is less, where the whole cell is one contact, and is
+        not converged.
     heights
         (N, N) surface in nm to use instead of a random one, for instance `Cycle.heights` of an
         earlier cycle; it is not changed. Without `length_nm` its grid must be `settings.pixels`.
@@ -142,19 +145,20 @@ def run_cycle(
     keep_surface
         Return the surface as it is after the cycle.
     hold
-        What happens between closing and opening (`mesoscale.contact.history`): takes the contact and its
-        last row, returns the rows that follow at the end of the closing branch.
+        What happens between closing and opening (`mesoscale.contact.history`): takes the contact
+        and its last row, returns the rows that follow at the end of the closing branch.
     numerics
         How finely the contact is computed; the default is what every scene uses.
     contact_at
-        Which of `heights` touch the flat first. Measured heights touch at their highest; those of `random_surface`,
-        `contacting_heights` and `Cycle.heights` at their lowest.
+        Which of `heights` touch the flat first. Measured heights touch at their highest; those of
+        `random_surface`, `contacting_heights` and `Cycle.heights` at their lowest.
 
     Raises
     ------
     InputError
-        For a surface beyond memory, heights without `contact_at` or that are not a square of real, finite numbers in
-        nm on the stated side, a force that is not positive, or a seed that is no whole number.
+        For a surface beyond memory, heights without `contact_at` or that are not a square of real,
+        finite numbers in nm on the stated side, a force that is not positive, or a seed that is no
+        whole number.
     """
     plastic = settings.model == "plastic"
     check_seed(seed)
@@ -183,15 +187,23 @@ def run_cycle(
     repeated, unconverged = closing.repeated, closing.unconverged
     if not contact.REVERSIBLE:
         path = reopen(contact, numerics.force_steps, last)
-        opening, repeated, unconverged = path.rows, repeated + path.repeated, unconverged + path.unconverged
-        departure = [row for gap in _gaps(contact) for row in contact.way(path.rows[-1].separation + gap)]
+        opening, repeated, unconverged = (
+            path.rows,
+            repeated + path.repeated,
+            unconverged + path.unconverged,
+        )
+        departure = [
+            row for gap in _gaps(contact) for row in contact.way(path.rows[-1].separation + gap)
+        ]
         unconverged += contact.unsettled
         remarks["jump_loss_aJ"] = float(contact.lost)
     elif (changed > 0 or contact.keeps_liquid) and last.force > 0:
         contact.hold_liquid(last.separation)
         contact.adopt_changes()
         departure = [contact.away(contact.touching_separation + gap) for gap in _gaps(contact)]
-        path = trace(contact, numerics.force_steps, False, last.force, stop_separation=last.separation)
+        path = trace(
+            contact, numerics.force_steps, False, last.force, stop_separation=last.separation
+        )
         # the last row of the way down is the state in which closing ended
         opening = [last._replace(sweeps=0), *path.rows[-2::-1]]
     else:  # nothing flowed: the way back is the way there
@@ -201,7 +213,8 @@ def run_cycle(
         closing=_branch(contact, [*approach, *closing.rows]),
         opening=_branch(contact, [*opening, *departure]),
         first_contact_nm=first_contact + contact.offset,
-        last_contact_nm=(opening[-1].separation if last.force > 0 else first_contact) + contact.offset,
+        last_contact_nm=(opening[-1].separation if last.force > 0 else first_contact)
+        + contact.offset,
         flags={
             "force_reached": reached,
             "force_miss": abs(last.force - force) / force,
@@ -222,9 +235,14 @@ def run_cycle(
 
 
 def contact_on(
-    surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
+    surface: np.ndarray,
+    inputs: ContactInputs,
+    settings: ContactSettings,
+    numerics: Numerics = NUMERICS,
 ) -> Contact:
-    """Contact on (N, N) heights in nm by the engine of `settings.mechanics`; the others are not even compiled."""
+    """Contact on (N, N) heights in nm by the engine of `settings.mechanics`; the others are not
+    even compiled.
+    """
     if settings.mechanics == "adhesive":
         from mesoscale.contact.coupled.adhesive import AdhesiveContact
 
@@ -245,9 +263,13 @@ def _largest_drop(forces: list[float]) -> float:
 
 
 def _gaps(contact: Contact) -> np.ndarray:
-    """Distances from contact (nm), rising, at which the attraction of what does not touch is computed."""
+    """Distances from contact (nm), rising, at which the attraction of what does not touch is
+    computed.
+    """
     reach = contact.adhesion.reach_nm if contact.adhesion else 0.0
-    return np.geomspace(max(4.0 * contact.rms, 10.0, 1.5 * reach), max(0.01 * contact.rms, 0.01), 20)[::-1]
+    return np.geomspace(
+        max(4.0 * contact.rms, 10.0, 1.5 * reach), max(0.01 * contact.rms, 0.01), 20
+    )[::-1]
 
 
 def _branch(contact: Contact, rows: list[Row]) -> Branch:

@@ -1,8 +1,8 @@
 """Closing and opening of one surface by separation, with the opening after every closing asked for.
 
-Surfaces that share one flat have one separation and not one force, so a pad is closed by displacement. Opening
-depends on how deep the surface was pressed before: that is the memory of the contact.
-"""
+Surfaces that share one flat have one separation and not one force, so a pad is closed by
+displacement. Opening depends on how deep the surface was pressed before: that is the memory of the
+contact."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,8 @@ class Displacement:
     ----------
     first_contact_nm : separation at which the surface first touches on closing (nm).
     closing : repulsive and attractive force (nN, attraction negative) while closing, shape (2, n).
-    opening : the same while opening from each depth, shape (k, 2, n); NaN at separations below the depth.
+    opening : the same while opening from each depth, shape (k, 2, n); NaN at separations below the
+        depth.
     settled : whether flow came to rest at every separation.
     """
 
@@ -42,7 +43,8 @@ class Displacement:
 
 
 class Closing:
-    """A rough surface that is brought to one separation after another, and may be opened in between.
+    """A rough surface that is brought to one separation after another, and may be opened in
+    between.
 
     An opening is elastic and changes nothing: closing goes on from the surface as flow has left it.
 
@@ -53,7 +55,11 @@ class Closing:
     """
 
     def __init__(
-        self, inputs: ContactInputs, settings: ContactSettings, heights: Array, numerics: Numerics = NUMERICS
+        self,
+        inputs: ContactInputs,
+        settings: ContactSettings,
+        heights: Array,
+        numerics: Numerics = NUMERICS,
     ) -> None:
         """Take (N, N) heights in nm, with contact at their minima; flow changes them in place."""
         self._contact = contact_on(heights, inputs, settings, numerics)
@@ -65,7 +71,8 @@ class Closing:
         self.settled = True
 
     def close_to(self, separation_nm: float, attraction: bool = True) -> float:
-        """Bring the flat down to a separation from the mean plane before contact; the repulsive force (nN).
+        """Bring the flat down to a separation from the mean plane before contact; the repulsive
+        force (nN).
 
         Parameters
         ----------
@@ -82,11 +89,15 @@ class Closing:
 
     @property
     def closing(self) -> Array:
-        """Repulsive and attractive force (nN, attraction negative) at all separations so far, shape (2, n)."""
+        """Repulsive and attractive force (nN, attraction negative) at all separations so far, shape
+        (2, n).
+        """
         return np.array(self._forces).T
 
     def opening(self) -> Array:
-        """The same on the way back from here to the first separation, in the order of closing, shape (2, n)."""
+        """The same on the way back from here to the first separation, in the order of closing,
+        shape (2, n).
+        """
         forces = self.closing
         self._has_flowed |= self._contact.changed_sites > 0 or not self._contact.REVERSIBLE
         self._has_flowed |= self._contact.keeps_liquid
@@ -109,7 +120,8 @@ def close_by_separation(
     Parameters
     ----------
     heights : (N, N) surface in nm; contact is at its minima. Flow changes it in place.
-    separations_nm : separations of the flat from the mean plane of the surface before contact, falling, shape (n,).
+    separations_nm : separations of the flat from the mean plane of the surface before contact,
+        falling, shape (n,).
     depths : positions in `separations_nm` from which the surface is opened, rising, shape (k,).
 
     Raises

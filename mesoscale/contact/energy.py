@@ -1,4 +1,6 @@
-"""Numbers of a cycle: work of closing and opening, what is dissipated, pull-off and stiffness of the opening."""
+"""Numbers of a cycle: work of closing and opening, what is dissipated, pull-off and stiffness of
+the opening.
+"""
 
 import numpy as np
 
@@ -8,10 +10,9 @@ from mesoscale.contact.cycle import Branch, Cycle
 def work(branch: Branch, net: bool = False) -> tuple[float, float]:
     """Work of the flat along a branch and its uncertainty, both nN nm (1e-18 J).
 
-    The work is against the repulsion, or that of the net force, as spent on closing and regained on opening.
-    Trapezoids; the uncertainty is a third of what leaving out every second point changes, as for any rule of second
-    order (Richardson).
-    """
+    The work is against the repulsion, or that of the net force, as spent on closing and regained on
+    opening. Trapezoids; the uncertainty is a third of what leaving out every second point changes,
+    as for any rule of second order (Richardson)."""
     h, force = branch.separation_nm, branch.net_nN if net else branch.repulsive_nN
     coarse = np.append(np.arange(0, len(h) - 1, 2), len(h) - 1)
     fine = float(np.trapezoid(force, h))
@@ -22,10 +23,13 @@ def work(branch: Branch, net: bool = False) -> tuple[float, float]:
 def dissipated_energy(cycle: Cycle) -> tuple[float, float]:
     """Work lost between closing and opening, and its uncertainty, nN nm (1e-18 J).
 
-    Against the repulsion; where attraction deforms the contact and has an energy (`mechanics: adhesive`), of both.
-    """
+    Against the repulsion; where attraction deforms the contact and has an energy (`mechanics:
+    adhesive`), of both."""
     net = "jump_loss_aJ" in cycle.flags
-    (spent, error_spent), (regained, error_regained) = work(cycle.closing, net), work(cycle.opening, net)
+    (spent, error_spent), (regained, error_regained) = (
+        work(cycle.closing, net),
+        work(cycle.opening, net),
+    )
     return spent - regained, error_spent + error_regained
 
 

@@ -1,10 +1,11 @@
-"""Many cycles of one surface, each held at its largest force: shakedown and creep (docs/history.md).
+"""Many cycles of one surface, each held at its largest force: shakedown and creep
+(docs/history.md).
 
-An asperity at its hardness H whose indentation is kept relaxes by Norton's law, dp/dt = -(H/t0) (p/H)^(m + 1),
-so that p = H (1 + m t/t0)^(-1/m). Every asperity is held to this envelope, or to the logarithmic one
-H / (1 + c ln(1 + t/t0)): the hardness of eq. 4 falls with the time under load, the asperities flow, and the flat
-sinks until it carries its force again. Closing and opening are fast: they meet the full hardness.
-"""
+An asperity at its hardness H whose indentation is kept relaxes by Norton's law, dp/dt = -(H/t0)
+(p/H)^(m + 1), so that p = H (1 + m t/t0)^(-1/m). Every asperity is held to this envelope, or to the
+logarithmic one H / (1 + c ln(1 + t/t0)): the hardness of eq. 4 falls with the time under load, the
+asperities flow, and the flat sinks until it carries its force again. Closing and opening are fast:
+they meet the full hardness."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -53,7 +54,8 @@ def follow(
     settings: HistorySettings,
     seed: int,
 ) -> Iterator[HeldCycle]:
-    """Close and open one surface again and again; each cycle starts from the surface that the last one left.
+    """Close and open one surface again and again; each cycle starts from the surface that the last
+    one left.
 
     Raises
     ------
@@ -80,17 +82,20 @@ def follow(
 def check(contact: ContactSettings, settings: HistorySettings) -> None:
     """Refuse what leads to no history (InputError)."""
     if settings.cycles == 0:
-        raise InputError("history.cycles = 0: no cycle is asked for; give a number of cycles in the scene")
+        raise InputError(
+            "history.cycles = 0: no cycle is asked for; give a number of cycles in the scene"
+        )
     if contact.model != "plastic":
         raise InputError(
-            f"contact.model = {contact.model} with history.cycles = {settings.cycles}: only plastic contacts have "
-            "a history; choose contact.model: plastic"
+            f"contact.model = {contact.model} with history.cycles = {settings.cycles}: only plastic"
+            " contacts have a history; choose contact.model: plastic"
         )
 
 
 @dataclass
 class Hold:
-    """Keeps the force of a contact while its hardness falls; what `run_cycle` calls between the branches.
+    """Keeps the force of a contact while its hardness falls; what `run_cycle` calls between the
+    branches.
 
     Attributes
     ----------
@@ -129,7 +134,17 @@ class Hold:
             trial = contact.move_to(target, True)
             if trial.force > force * (1.0 + contact.FORCE_TOLERANCE):
                 contact.back()
-                solve_force(contact, separation, target, moved.force, trial.force, force, True, smallest, accept)
+                solve_force(
+                    contact,
+                    separation,
+                    target,
+                    moved.force,
+                    trial.force,
+                    force,
+                    True,
+                    smallest,
+                    accept,
+                )
                 break
             accept(target, trial)
             step *= 2.0

@@ -1,10 +1,10 @@
 """Liquid that condenses from humid air between two walls, and how it pulls (docs/humid_air.md).
 
-In equilibrium with the vapour a meniscus has Kelvin's radius r_K = -gamma V_m / (R T ln RH). Liquid fills every gap
-below d_c = r_K (cos theta1 + cos theta2) + 2 t_w, where each wall has an adsorbed film t_w, and Laplace's pressure
-p_c = gamma / r_K pulls the walls together there (Israelachvili, Intermolecular and Surface Forces, 2011, ch. 17).
-Where the walls part faster than the liquid evaporates, its volume stays, d_c grows and p_c falls.
-"""
+In equilibrium with the vapour a meniscus has Kelvin's radius r_K = -gamma V_m / (R T ln RH). Liquid
+fills every gap below d_c = r_K (cos theta1 + cos theta2) + 2 t_w, where each wall has an adsorbed
+film t_w, and Laplace's pressure p_c = gamma / r_K pulls the walls together there (Israelachvili,
+Intermolecular and Surface Forces, 2011, ch. 17). Where the walls part faster than the liquid
+evaporates, its volume stays, d_c grows and p_c falls."""
 
 import math
 from typing import NamedTuple
@@ -27,8 +27,8 @@ class Menisci(NamedTuple):
     films_nm : adsorbed films of both walls together.
     tension : gamma (cos theta1 + cos theta2), nN/nm.
     dispersion : Hamaker constant across the liquid over that across air.
-    keeps_volume : whether an opening keeps the volume of the liquid; else it stays in equilibrium with the vapour.
-    """
+    keeps_volume : whether an opening keeps the volume of the liquid; else it stays in equilibrium
+        with the vapour."""
 
     pull_GPa: float
     reach_nm: float
@@ -38,8 +38,12 @@ class Menisci(NamedTuple):
     keeps_volume: bool
 
     def pull_at(self, reach_nm: float) -> float:
-        """p_c (GPa) of liquid that reaches up to a gap; walls that come closer press liquid out, so p_c is the most."""
-        return self.tension / max(reach_nm - self.films_nm, self.tension / self.pull_GPa)  # radius times the cosines
+        """p_c (GPa) of liquid that reaches up to a gap; walls that come closer press liquid out, so
+        p_c is the most.
+        """
+        return self.tension / max(
+            reach_nm - self.films_nm, self.tension / self.pull_GPa
+        )  # radius times the cosines
 
 
 class Liquid(NamedTuple):
@@ -58,7 +62,9 @@ class Liquid(NamedTuple):
 
 
 def menisci_of(air: AirSettings | None) -> Menisci | None:
-    """The menisci in air; None where nothing condenses, or liquid would be thinner than one of its molecules."""
+    """The menisci in air; None where nothing condenses, or liquid would be thinner than one of its
+    molecules.
+    """
     if air is None or air.humidity == 0.0:
         return None
     tension = 1e-3 * surface_tension_mN_m(air)
@@ -72,7 +78,9 @@ def menisci_of(air: AirSettings | None) -> Menisci | None:
     reach = wetting * tension / pull + films
     if reach < 1e7 * math.cbrt(volume / PER_MOL):  # 0.31 nm of water
         return None
-    return Menisci(pull, reach, films, wetting * tension, air.hamaker_share, air.opening == "volume")
+    return Menisci(
+        pull, reach, films, wetting * tension, air.hamaker_share, air.opening == "volume"
+    )
 
 
 def reach_nm(air: AirSettings | None) -> float:
@@ -82,7 +90,9 @@ def reach_nm(air: AirSettings | None) -> float:
 
 
 def surface_tension_mN_m(air: AirSettings) -> float:
-    """Surface tension of the liquid; water's by IAPWS R1-76(2014), 0 beyond its critical temperature."""
+    """Surface tension of the liquid; water's by IAPWS R1-76(2014), 0 beyond its critical
+    temperature.
+    """
     if air.surface_tension_mN_m is not None:
         return air.surface_tension_mN_m
     tau = max(1.0 - (air.temperature_C + ZERO_C_K) / WATER_CRITICAL_K, 0.0)
@@ -90,7 +100,9 @@ def surface_tension_mN_m(air: AirSettings) -> float:
 
 
 def water_vapour_kPa(temperature_C: float) -> float:
-    """Pressure of saturated water vapour (Wagner and Pruss 2002, doi:10.1063/1.1461829, eq. 2.5)."""
+    """Pressure of saturated water vapour (Wagner and Pruss 2002, doi:10.1063/1.1461829, eq.
+    2.5).
+    """
     kelvin = min(temperature_C + ZERO_C_K, WATER_CRITICAL_K)
     tau = 1.0 - kelvin / WATER_CRITICAL_K
     factors = (-7.85951783, 1.84408259, -11.7866497, 22.6807411, -15.9618719, 1.80122502)

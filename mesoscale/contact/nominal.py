@@ -20,7 +20,9 @@ def nominal_cycles(
     Named by model for figure 4 (`NOMINAL_FORCE_NN`), and ``load_<F>`` for figure 11
     (`NOMINAL_LOADS_NN`, with the model of the settings). One surface for all.
     """
-    plan = [(model, settings.model_copy(update={"model": model}), NOMINAL_FORCE_NN) for model in MODELS]
+    plan = [
+        (model, settings.model_copy(update={"model": model}), NOMINAL_FORCE_NN) for model in MODELS
+    ]
     plan += [(f"load_{force:.12g}", settings, force) for force in NOMINAL_LOADS_NN]
     for done, (name, chosen, force) in enumerate(plan):
         yield name, chosen, force, run_cycle(inputs, chosen, NOMINAL_SEED, force)

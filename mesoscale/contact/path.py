@@ -37,14 +37,15 @@ def trace(
     stop_separation: float = -np.inf,
     start: Row | None = None,
 ) -> Path:
-    """Bring the flat down from first contact, or from the row `start`, in steps that follow the force.
+    """Bring the flat down from first contact, or from the row `start`, in steps that follow the
+    force.
 
     Steps aim at force increments of a ``steps``-th of the final force, and at 30 % of the force
     reached so far in the foot of the curve; a step that misses by more than a factor of two is
     undone and repeated smaller. The last step is solved for the requested force (the force can jump
-    when asperities merge: then the closer side of the jump is taken). A step in which flow is stuck is
-    undone and repeated smaller, too; the path ends where it is stuck within 1 % of the roughness.
-    """
+    when asperities merge: then the closer side of the jump is taken). A step in which flow is stuck
+    is undone and repeated smaller, too; the path ends where it is stuck within 1 % of the
+    roughness."""
     path = Path()
     final = stop_force
     path.rows += contact.way(contact.touching_separation) if start is None else [start]
@@ -79,7 +80,9 @@ def trace(
             continue
         if moved.force > final * (1.0 + contact.FORCE_TOLERANCE):
             contact.back()
-            solve_force(contact, separation, target, force, moved.force, final, with_flow, smallest, accept)
+            solve_force(
+                contact, separation, target, force, moved.force, final, with_flow, smallest, accept
+            )
             break
         rise = moved.force - force
         wanted = min(final / steps, max(0.3 * force, 0.02 * final / steps))
@@ -99,10 +102,11 @@ def trace(
 
 
 def reopen(contact: Contact, steps: int, last: Row) -> Path:
-    """Lift the flat from the end of closing until nothing touches any more, in steps that follow both forces.
+    """Lift the flat from the end of closing until nothing touches any more, in steps that follow
+    both forces.
 
-    For contacts that come back another way than they went. Where a force jumps, the step is as small as a path allows.
-    """
+    For contacts that come back another way than they went. Where a force jumps, the step is as
+    small as a path allows."""
     path = Path([last._replace(sweeps=0)])
     scale = max(contact.rms, 1e-3 * contact.spacing)
     smallest = contact.SMALLEST_STEP * scale
@@ -140,10 +144,10 @@ def solve_force(
 ) -> None:
     """Bring the flat down to where the force is the wanted one.
 
-    Regula falsi (Illinois) between ``start``, the last separation, and ``beyond``, where the force is too large.
-    Trials below the wanted force are steps of the path and handed to ``accept``; those above it are undone. Where
-    the force jumps over the wanted one, the closer side is taken, unless flow is stuck there.
-    """
+    Regula falsi (Illinois) between ``start``, the last separation, and ``beyond``, where the force
+    is too large. Trials below the wanted force are steps of the path and handed to ``accept``;
+    those above it are undone. Where the force jumps over the wanted one, the closer side is taken,
+    unless flow is stuck there."""
     high, low = start, beyond  # force below, above the wanted one
     short, excess = wanted - start_force, beyond_force - wanted
     weight_high = weight_low = 1.0
@@ -156,7 +160,9 @@ def solve_force(
             share = short * weight_high / (short * weight_high + excess * weight_low)
         middle = high + share * (low - high)
         moved = contact.move_to(middle, with_flow)
-        reached = abs(moved.force - wanted) <= 0.5 * contact.FORCE_TOLERANCE * wanted and not moved.stuck
+        reached = (
+            abs(moved.force - wanted) <= 0.5 * contact.FORCE_TOLERANCE * wanted and not moved.stuck
+        )
         if reached or (moved.force < wanted and not moved.stuck):
             accept(middle, moved)
             high, short = middle, wanted - moved.force

@@ -37,8 +37,8 @@ class State(NamedTuple):
     force : repulsive force, nN.
     bounds : asperities whose radius is bounded.
     load : largest force of an asperity over its yield force.
-    stuck : whether flow has no end: nowhere left to flow to, or (return mapping) the sweeps ran out.
-    """
+    stuck : whether flow has no end: nowhere left to flow to, or (return mapping) the sweeps ran
+        out."""
 
     force: float
     sites: int
@@ -66,20 +66,29 @@ class Contact(ABC):
     """
 
     FORCE_TOLERANCE = 1e-6
-    # of H(L^2) L^2, what the cell carries as one contact: beyond, more than three quarters of it touch, asperities
-    # that merge carry less than apart, and cycles gain energy (seen at 0.9 on 64^2 sites, not at 0.8)
+    # of H(L^2) L^2, what the cell carries as one contact: beyond, more than three quarters of it
+    # touch, asperities that merge carry less than apart, and cycles gain energy (seen at 0.9 on
+    # 64^2 sites, not at 0.8)
     BEARING_SHARE = 0.8
 
-    # whether opening without flow goes the way of closing, but for the flow; then it is computed as a closing
+    # whether opening without flow goes the way of closing, but for the flow; then it is computed as
+    # a closing
     REVERSIBLE = True
     # of a path, over the roughness
     SMALLEST_STEP = 1e-7
 
-    # whether the last steps of a path aim at its end: a step beyond may fall back below the largest force where a
-    # cluster that grows softens, and be taken for one that fell short; the paper's paths go beyond
+    # whether the last steps of a path aim at its end: a step beyond may fall back below the largest
+    # force where a cluster that grows softens, and be taken for one that fell short; the paper's
+    # paths go beyond
     AIMS_AT_END = False
 
-    def __init__(self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics):
+    def __init__(
+        self,
+        surface: np.ndarray,
+        inputs: ContactInputs,
+        settings: ContactSettings,
+        numerics: Numerics,
+    ):
         """Take (N, N) heights in nm."""
         self.n = surface.shape[0]
         self.heights = surface.reshape(-1)
@@ -89,7 +98,9 @@ class Contact(ABC):
         self.offset = float(self.heights.mean())
         self.lowest = float(self.heights.min())
         self.highest = float(self.heights.max())
-        self.rms = math.sqrt(max(float(self.heights @ self.heights) / self.heights.size - self.offset**2, 0.0))
+        self.rms = math.sqrt(
+            max(float(self.heights @ self.heights) / self.heights.size - self.offset**2, 0.0)
+        )
         self.capped = settings.model == "nonlinear"
         self.flows = settings.model == "plastic"
         self.hardness = self.fresh_hardness = inputs.hardness
@@ -134,7 +145,9 @@ class Contact(ABC):
         return self.adhesion.filled.sites / self.heights.size if self.adhesion else 0.0
 
     def hold_liquid(self, separation: float | None) -> None:
-        """Keep the liquid of the current separation from now on, where an opening does; None: no longer."""
+        """Keep the liquid of the current separation from now on, where an opening does; None: no
+        longer.
+        """
         if self.adhesion and self.keeps_liquid:
             self.adhesion.kept = None
             if separation is not None:
@@ -155,10 +168,11 @@ class Contact(ABC):
         return [self.away(separation)]
 
     def opened(self, separations: np.ndarray) -> np.ndarray:
-        """Repulsion and attraction (nN) on the way back over separations of a closing, without further flow.
+        """Repulsion and attraction (nN) on the way back over separations of a closing, without
+        further flow.
 
-        The last separation is the present one, at which the contact is afterwards, too. Shape (2, n).
-        """
+        The last separation is the present one, at which the contact is afterwards, too. Shape (2,
+        n)."""
         self.hold_liquid(separations[-1])
         self.adopt_changes()
         touching = self.touching_separation
@@ -177,7 +191,9 @@ class Contact(ABC):
 
     @property
     def capacity(self) -> float:
-        """Largest force (nN) for which a plastic contact still consists of asperities; see `BEARING_SHARE`."""
+        """Largest force (nN) for which a plastic contact still consists of asperities; see
+        `BEARING_SHARE`.
+        """
         area = self.length**2
         return self.BEARING_SHARE * self.hardness.pressure(area) * area if self.flows else math.inf
 
@@ -229,7 +245,9 @@ class Contact(ABC):
             upper = max(height, max(start, self.lowest) + band)
             if upper >= self.highest:
                 upper = np.inf
-            sites = np.flatnonzero((self.heights >= self.sorted_to) & (self.heights < upper)).astype(np.int32)
+            sites = np.flatnonzero(
+                (self.heights >= self.sorted_to) & (self.heights < upper)
+            ).astype(np.int32)
             sites = sites[self.changed[sites] == 0]
             values = self.heights[sites]
             rank = np.argsort(values)

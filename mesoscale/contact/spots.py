@@ -1,4 +1,6 @@
-"""Where a flat that comes down meets a surface: which sites it has reached at each of a few separations."""
+"""Where a flat that comes down meets a surface: which sites it has reached at each of a few
+separations.
+"""
 
 from dataclasses import dataclass
 
@@ -22,8 +24,10 @@ class Spots:
 
     Attributes
     ----------
-    towards_flat_nm : heights about the mean plane, positive towards the flat, of every n-th site, shape (m, m).
-    separation_nm, repulsive_nN, asperities : of the flat at each step, from first contact on, shape (k,).
+    towards_flat_nm : heights about the mean plane, positive towards the flat, of every n-th site,
+        shape (m, m).
+    separation_nm, repulsive_nN, asperities : of the flat at each step, from first contact on, shape
+        (k,).
     cut_share : share of the cell's area that the flat has reached, shape (k,).
     step : first step at which any site of a pixel is reached, -1 for never, shape (m, m).
     """
@@ -37,10 +41,11 @@ class Spots:
 
 
 def spots_under(inputs: ContactInputs, settings: ContactSettings, cycle: Cycle) -> Spots:
-    """Sites of the nominal surface, as it was before contact, that the flat reaches on the closing of `cycle`.
+    """Sites of the nominal surface, as it was before contact, that the flat reaches on the closing
+    of `cycle`.
 
-    The surface is cut as it was: flow and elastic displacement, which the force does hold, do not change the picture.
-    """
+    The surface is cut as it was: flow and elastic displacement, which the force does hold, do not
+    change the picture."""
     surface = random_surface(inputs, settings, NOMINAL_SEED)
     height = surface.mean() - surface  # contact is at the minima of the heights
     closing = cycle.closing

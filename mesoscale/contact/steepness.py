@@ -1,4 +1,6 @@
-"""Hardness at the slope that a contact's own tops have: steep asperities are harder than blunt ones."""
+"""Hardness at the slope that a contact's own tops have: steep asperities are harder than blunt
+ones.
+"""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -15,20 +17,26 @@ from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import NOMINAL_SEED
 
 
-def at_slope(table: InputTable, entries: Mapping[str, Mapping[str, Any]], contact: ContactSettings) -> InputTable:
+def at_slope(
+    table: InputTable, entries: Mapping[str, Mapping[str, Any]], contact: ContactSettings
+) -> InputTable:
     """The inputs with those of the hardness stage at the RMS slope of the surface at medians.
 
-    On a surface of normal heights, all heights have the same slope: that of the tops is that of the surface.
+    On a surface of normal heights, all heights have the same slope: that of the tops is that of the
+    surface.
 
     Parameters
     ----------
-    entries : inputs of the hardness stage, by name; `steepness` has `rms_slope` and, at each, a `factor`.
+    entries : inputs of the hardness stage, by name; `steepness` has `rms_slope` and, at each, a
+        `factor`.
 
     Raises
     ------
     InputError : a slope that no run had.
     """
-    steep = {row.name: entries[row.name]["steepness"] for row in table.rows if _is_steep(row, entries)}
+    steep = {
+        row.name: entries[row.name]["steepness"] for row in table.rows if _is_steep(row, entries)
+    }
     if not steep:
         return table
     inputs, settings = contact_of(table.medians(), contact)
@@ -39,8 +47,9 @@ def at_slope(table: InputTable, entries: Mapping[str, Mapping[str, Any]], contac
             slopes = known["rms_slope"]
             if not slopes[0] <= slope <= slopes[-1]:
                 raise InputError(
-                    f"{row.source}: the surface has an RMS slope of {slope:.2g}, but hardness was computed from "
-                    f"{slopes[0]:.2g} to {slopes[-1]:.2g}; set inputs.{row.name}.origin to literature with values"
+                    f"{row.source}: the surface has an RMS slope of {slope:.2g}, but hardness was"
+                    f" computed from {slopes[0]:.2g} to {slopes[-1]:.2g}; set"
+                    f" inputs.{row.name}.origin to literature with values"
                 )
             factor = float(np.interp(np.log(slope), np.log(slopes), known["factor"]))
             source = f"{row.source}, times {factor:.2f} at RMS slope {slope:.2f}"

@@ -14,13 +14,16 @@ from mesoscale.settings import ContactSettings
 ContactAt = Literal["highest", "lowest"]
 """Which of given heights touch the flat first."""
 CUT_OUT = 10.0
-"""Longest roll-off over the cell: a cell without plateau is a part of a film; a longer one acts on no wave at all."""
+"""Longest roll-off over the cell: a cell without plateau is a part of a film; a longer one acts on
+no wave at all.
+"""
 
 
 def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) -> np.ndarray:
     """Heights (pixels, pixels) in nm by the inputs' q0, hurst and rms and by `settings.surface`.
 
-    Contact is at the minima of the heights, so a surface of positive skewness (tall peaks) has deep minima here.
+    Contact is at the minima of the heights, so a surface of positive skewness (tall peaks) has deep
+    minima here.
 
     Raises
     ------
@@ -28,9 +31,16 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
     """
     from mesoscale.topography.synthesis import synthesize, synthesize_spectrum
 
-    pixels, length, q1, wanted = settings.pixels, settings.length_nm, settings.q1_per_nm, settings.surface
+    pixels, length, q1, wanted = (
+        settings.pixels,
+        settings.length_nm,
+        settings.q1_per_nm,
+        settings.surface,
+    )
     if q1 is not None:
-        check_number("q1", q1, 0.0, settings.nyquist_per_nm * (1.0 + 1e-9), "1/nm (what the grid resolves)")
+        check_number(
+            "q1", q1, 0.0, settings.nyquist_per_nm * (1.0 + 1e-9), "1/nm (what the grid resolves)"
+        )
     if wanted.heights:
         from mesoscale.topography.height_synthesis import synthesize_heights
 
@@ -38,32 +48,60 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
         return -synthesize_heights(pixels, length, psd, wanted.heights, inputs.rms, seed, q1)
     if wanted.spectrum is None:
         _check_roll_off(inputs.q0, settings)
-        return synthesize(pixels, length, inputs.q0, inputs.hurst, inputs.rms, seed, settings.reading.convention, q1)
-    return synthesize_spectrum(pixels, length, surface_spectrum(inputs, settings), inputs.rms, seed, q1)
+        return synthesize(
+            pixels,
+            length,
+            inputs.q0,
+            inputs.hurst,
+            inputs.rms,
+            seed,
+            settings.reading.convention,
+            q1,
+        )
+    return synthesize_spectrum(
+        pixels, length, surface_spectrum(inputs, settings), inputs.rms, seed, q1
+    )
 
 
 def _check_roll_off(q0: float, settings: ContactSettings) -> None:
-    """Refuse a roll-off far beyond the waves of the cell, on which it does not act: it is in another unit."""
+    """Refuse a roll-off far beyond the waves of the cell, on which it does not act: it is in
+    another unit.
+    """
     longest = 2.0 * math.pi / settings.length_nm
     shortest = settings.nyquist_per_nm
     if not longest / CUT_OUT <= q0 <= shortest * (1.0 + 1e-9):
         raise InputError(
-            f"q0 = {q0:.4g} 1/nm: a cell of {settings.length_nm:g} nm and {settings.pixels} pixels has waves of "
-            f"{longest:.4g} .. {shortest:.4g} 1/nm; accepted are {longest / CUT_OUT:.4g} .. {shortest:.4g} 1/nm"
+            f"q0 = {q0:.4g} 1/nm: a cell of {settings.length_nm:g} nm and {settings.pixels} pixels"
+            f" has waves of {longest:.4g} .. {shortest:.4g} 1/nm; accepted are"
+            f" {longest / CUT_OUT:.4g} .. {shortest:.4g} 1/nm"
         )
 
 
-def surface_spectrum(inputs: ContactInputs, settings: ContactSettings) -> Callable[[np.ndarray], np.ndarray]:
-    """Two-dimensional spectrum, nm^4 of wave vectors in 1/nm, from which `random_surface` draws its surfaces."""
-    from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable, slope_from_hurst
+def surface_spectrum(
+    inputs: ContactInputs, settings: ContactSettings
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Two-dimensional spectrum, nm^4 of wave vectors in 1/nm, from which `random_surface` draws its
+    surfaces.
+    """
+    from mesoscale.topography.roughness_spectrum import (
+        RoughSpectrum,
+        SpectrumTable,
+        slope_from_hurst,
+    )
 
-    wanted, cutoff, convention = settings.surface, shortest_wave(settings), settings.reading.convention
+    wanted, cutoff, convention = (
+        settings.surface,
+        shortest_wave(settings),
+        settings.reading.convention,
+    )
     slope = slope_from_hurst(inputs.hurst, convention)
     if wanted.spectrum is None:
         return RoughSpectrum.from_rms(inputs.rms, inputs.q0, slope, cutoff).psd
     table = SpectrumTable(wanted.spectrum.q, wanted.spectrum.psd)
     if wanted.spectrum.q0 is not None and wanted.spectrum.hurst is not None:
-        there = _form(table.q, wanted.spectrum.q0, slope_from_hurst(wanted.spectrum.hurst, convention))
+        there = _form(
+            table.q, wanted.spectrum.q0, slope_from_hurst(wanted.spectrum.hurst, convention)
+        )
         here = _form(table.q, inputs.q0, slope)
         table = SpectrumTable(table.q, table.values * here / there)
     return table.scaled(inputs.rms, cutoff).psd
@@ -80,7 +118,8 @@ def shortest_wave(settings: ContactSettings) -> float:
 
 
 def shared_wave(settings: ContactSettings) -> float:
-    """Largest wave vector that finer grids show alike, 1/nm: as `shortest_wave`, but for waves of just two pixels.
+    """Largest wave vector that finer grids show alike, 1/nm: as `shortest_wave`, but for waves of
+    just two pixels.
 
     Of these a grid holds no phase, so that they are others on a finer grid.
     """
@@ -88,25 +127,33 @@ def shared_wave(settings: ContactSettings) -> float:
 
 
 def given_surface(
-    heights: np.ndarray | None, length_nm: float | None, contact_at: ContactAt | None, settings: ContactSettings
+    heights: np.ndarray | None,
+    length_nm: float | None,
+    contact_at: ContactAt | None,
+    settings: ContactSettings,
 ) -> tuple[np.ndarray | None, ContactSettings]:
-    """The heights that a caller gives, checked, contact at the lowest, and the settings with their grid and side.
+    """The heights that a caller gives, checked, contact at the lowest, and the settings with their
+    grid and side.
 
     Raises
     ------
-    InputError : heights that are no surface in nm, or whose side of contact is not stated; a side without heights; a
+    InputError : heights that are no surface in nm, or whose side of contact is not stated; a side
+        without heights; a
         grid other than the settings' where no side is given.
     """
     if heights is None:
         if length_nm is not None:
-            raise InputError("length_nm is the side of heights; give both, or settings.length_nm alone")
+            raise InputError(
+                "length_nm is the side of heights; give both, or settings.length_nm alone"
+            )
         return None, settings
     surface = checked_heights(heights, settings.length_nm if length_nm is None else length_nm)
     check_periodic(surface)
     if contact_at not in get_args(ContactAt):
         raise InputError(
-            f"contact_at = {contact_at}: say where heights touch the flat: highest, as an instrument measures them; "
-            "lowest, as random_surface, contacting_heights and Cycle.heights give them"
+            f"contact_at = {contact_at}: say where heights touch the flat: highest, as an"
+            " instrument measures them; lowest, as random_surface, contacting_heights and"
+            " Cycle.heights give them"
         )
     if contact_at == "highest":
         surface = -surface

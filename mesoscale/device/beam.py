@@ -1,14 +1,14 @@
-"""A clamped or cantilever beam over a dielectric: bending, tension, stretching and local loads, by Hermite elements.
+"""A clamped or cantilever beam over a dielectric: bending, tension, stretching and local loads, by
+Hermite elements.
 
-The separation s(x) of beam and dielectric is s = rest + u, with z0 its shape at rest and z = z0 + u. In balance, for
-every virtual deflection v,
+The separation s(x) of beam and dielectric is s = rest + u, with z0 its shape at rest and z = z0 +
+u. In balance, for every virtual deflection v,
 
     int EI u'' v'' + N0 u' v' + (N - N0) z' v' dx = int b [p(s) - q(s)] v dx
     N = N0 + EA / (2 L) int (z'^2 - z0'^2) dx
 
-with p the contact pressure (positive: apart) and q the electrostatic pull. N is one number for the whole beam.
-Nodal values are exact for uniform loads without tension.
-"""
+with p the contact pressure (positive: apart) and q the electrostatic pull. N is one number for the
+whole beam. Nodal values are exact for uniform loads without tension."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -24,9 +24,13 @@ from mesoscale.settings import DeviceSettings
 
 Array = NDArray[np.float64]
 STOPPER_PER_NM = 660.0
-"""Stiffness of a stopper, of the pull of the spring: that of the default gives way by 0.1 nm under 1 MPa."""
+"""Stiffness of a stopper, of the pull of the spring: that of the default gives way by 0.1 nm under
+1 MPa.
+"""
 Load = Callable[[Array], tuple[Array, Array]]
-"""Pressure (Pa, positive: apart) and its derivative (Pa/m) at separations (m), all of shape (elements, points)."""
+"""Pressure (Pa, positive: apart) and its derivative (Pa/m) at separations (m), all of shape
+(elements, points).
+"""
 
 
 @dataclass(frozen=True)
@@ -40,7 +44,8 @@ class Beam:
     tension_N : axial force at rest.
     stretching_N_m : growth of the axial force with the length of the bent beam; 0 of a cantilever.
     cantilever : whether the last end is free.
-    rest_nodal : height of the shape at rest over its ends (m) and slope at the nodes, shape (nodes, 2).
+    rest_nodal : height of the shape at rest over its ends (m) and slope at the nodes, shape (nodes,
+        2).
     rest_m : separation at rest at the integration points, shape (elements, points).
     sizes_m : lengths of the elements, shape (elements,).
     within : places of the integration points in their elements, from 0 to 1, shape (points,).
@@ -82,14 +87,18 @@ class Beam:
     @property
     def at_m(self) -> Array:
         """Positions of the integration points along the beam, shape (elements, points)."""
-        return (np.cumsum(self.sizes_m) - self.sizes_m)[:, None] + self.sizes_m[:, None] * self.within
+        return (np.cumsum(self.sizes_m) - self.sizes_m)[:, None] + self.sizes_m[
+            :, None
+        ] * self.within
 
     @cached_property
     def mechanics(self) -> tuple[Array, Array, Array, Array, Array, float, float, Array, int]:
-        """Hermite's shapes, elements against bending and unit tension, weights times width, these times products of
-        two shapes, and what `newton_step` takes after them."""
+        """Hermite's shapes, elements against bending and unit tension, weights times width, these
+        times products of two shapes, and what `newton_step` takes after them."""
         shapes = np.array([_shapes(size, self.within) for size in self.sizes_m])
-        bending, pulled = (np.array(parts) for parts in zip(*map(_stiffness, self.sizes_m.tolist()), strict=True))
+        bending, pulled = (
+            np.array(parts) for parts in zip(*map(_stiffness, self.sizes_m.tolist()), strict=True)
+        )
         unknowns = 2 * self.elements - (0 if self.cantilever else 2)
         weights = self.width_m * self.weights_m
         return (
@@ -106,17 +115,25 @@ class Beam:
 
     @property
     def places(self) -> tuple[Array, Array, float, float, float]:
-        """What is over electrode and pad, and the stiffness of stoppers (GPa/nm), for the kernels."""
-        return self.wired, self.lands, self.dimple_nm, self.stopper_nm, STOPPER_PER_NM * self.spring_Pa / GPA
+        """What is over electrode and pad, and the stiffness of stoppers (GPa/nm), for the
+        kernels.
+        """
+        return (
+            self.wired,
+            self.lands,
+            self.dimple_nm,
+            self.stopper_nm,
+            STOPPER_PER_NM * self.spring_Pa / GPA,
+        )
 
     @property
     def spring_Pa(self) -> float:
-        """Uniform pressure that brings the beam down by its separation at rest, in parts that add up.
+        """Uniform pressure that brings the beam down by its separation at rest, in parts that add
+        up.
 
-        Bending 384 EI s / b L^4 (cantilever 8 EI s / b L^4), and 8 N s / b L^2 of the axial force N, that at rest and
-        that of a parabola of sag s, which is 8 s^2 / 3 L longer. Compression counts as no force: a beam about to buckle
-        is not without a scale.
-        """
+        Bending 384 EI s / b L^4 (cantilever 8 EI s / b L^4), and 8 N s / b L^2 of the axial force
+        N, that at rest and that of a parabola of sag s, which is 8 s^2 / 3 L longer. Compression
+        counts as no force: a beam about to buckle is not without a scale."""
         sag, length = float(self.rest_m.max()), self.length_m
         stretched_N = self.stretching_N_m * 8.0 * sag**2 / (3.0 * length)
         axial_N = max(self.tension_N, 0.0) + stretched_N
@@ -124,11 +141,16 @@ class Beam:
         return (bent + 8.0 * axial_N) * sag / (self.width_m * length**2)
 
     def deflection_m(self, nodal: Array) -> Array:
-        """Deflection at the integration points from nodal values (nodes, 2), shape (elements, points)."""
+        """Deflection at the integration points from nodal values (nodes, 2), shape (elements,
+        points).
+        """
         return deflect(nodal, self.mechanics[0])
 
-    def step(self, nodal: Array, load: Load, inertia: float = 0.0, other: Array | None = None) -> tuple[Array, Array]:
-        """One Newton step towards balance, and the answer to another load on top, both of shape (nodes, 2).
+    def step(
+        self, nodal: Array, load: Load, inertia: float = 0.0, other: Array | None = None
+    ) -> tuple[Array, Array]:
+        """One Newton step towards balance, and the answer to another load on top, both of shape
+        (nodes, 2).
 
         Parameters
         ----------
@@ -157,19 +179,23 @@ def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
 
 
 def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
-    """The same beam loaded at 2 `lumps` places only: one integration point at the end of each element but the last.
+    """The same beam loaded at 2 `lumps` places only: one integration point at the end of each
+    element but the last.
 
-    The places are those of Gauss in parts of the beam. Within `SWITCH.landing` of mid-span, which opens last, the
-    density of parts is 1 / (x + middle) + 2 / landing at a share x of half the beam; what remains is one part. Their
-    stiffness is exact where there is no tension.
+    The places are those of Gauss in parts of the beam. Within `SWITCH.landing` of mid-span, which
+    opens last, the density of parts is 1 / (x + middle) + 2 / landing at a share x of half the
+    beam; what remains is one part. Their stiffness is exact where there is no tension.
 
     Raises
     ------
-    InputError : see `beam_of`; the number of lumps is not even, or less than 4; the beam is no clamped one, or has
+    InputError : see `beam_of`; the number of lumps is not even, or less than 4; the beam is no
+        clamped one, or has
         parts without electrode or pad.
     """
     if lumps < 4 or lumps % 2:
-        raise InputError(f"a bending electrode needs an even number of lumps, at least 4, not {lumps}")
+        raise InputError(
+            f"a bending electrode needs an even number of lumps, at least 4, not {lumps}"
+        )
     if settings.without_lumps:
         raise InputError(settings.without_lumps)
     half, share = settings.length_um * 1e-6 / 2.0, np.linspace(0.0, SWITCH.landing, 10001)
@@ -180,26 +206,50 @@ def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
     at = (ends[:-1, None] + 0.5 * parts * (gauss + 1.0)).ravel()
     places = np.concatenate([[0.0], at, 2.0 * half - at[::-1], [2.0 * half]])
     carried = (0.5 * parts * weights).ravel()
-    return _beam(settings, np.diff(places), np.ones(1), np.concatenate([carried, carried[::-1], [0.0]])[:, None])
+    return _beam(
+        settings,
+        np.diff(places),
+        np.ones(1),
+        np.concatenate([carried, carried[::-1], [0.0]])[:, None],
+    )
 
 
 def _beam(settings: DeviceSettings, sizes: Array, within: Array, weights: Array) -> Beam:
     """The beam of the settings on these elements."""
     if touching := settings.touching_at_rest:
         raise InputError(touching)
-    width, thickness, length = (1e-6 * of for of in (settings.width_um, settings.thickness_um, settings.length_um))
+    width, thickness, length = (
+        1e-6 * of for of in (settings.width_um, settings.thickness_um, settings.length_um)
+    )
     section, cantilever = width * thickness, settings.ends == "cantilever"
     ends = np.concatenate([[0.0], np.cumsum(sizes)])
     flat = Beam(
         width,
         1e9 * settings.bending_GPa * section * thickness**2 / 12.0,
-        0.0 if cantilever else 1e6 * settings.residual_stress_MPa * (1.0 - settings.poisson_ratio) * section,
+        (
+            0.0
+            if cantilever
+            else 1e6 * settings.residual_stress_MPa * (1.0 - settings.poisson_ratio) * section
+        ),
         # edges of the beam are free, so that it stretches with E, however wide it is
-        0.0
-        if cantilever
-        else 1.0 / (length / (1e9 * settings.youngs_modulus_GPa * section) + 1e-6 * settings.anchor_um_per_N),
+        (
+            0.0
+            if cantilever
+            else 1.0
+            / (
+                length / (1e9 * settings.youngs_modulus_GPa * section)
+                + 1e-6 * settings.anchor_um_per_N
+            )
+        ),
         cantilever,
-        NM * np.stack([settings.shape_at_rest_nm(ends / length), settings.slope_at_rest_nm(ends / length) / length], 1),
+        NM
+        * np.stack(
+            [
+                settings.shape_at_rest_nm(ends / length),
+                settings.slope_at_rest_nm(ends / length) / length,
+            ],
+            1,
+        ),
         np.zeros(weights.shape),
         sizes,
         within,
@@ -210,7 +260,10 @@ def _beam(settings: DeviceSettings, sizes: Array, within: Array, weights: Array)
         settings.stopper_nm,
     )
     share = flat.at_m / length
-    masks = [((a <= share) & (share <= b)).astype(float) for a, b in (settings.electrode, settings.contact)]
+    masks = [
+        ((a <= share) & (share <= b)).astype(float)
+        for a, b in (settings.electrode, settings.contact)
+    ]
     stated = replace(
         flat,
         rest_m=settings.gap_um * 1e-6 + NM * settings.shape_at_rest_nm(share),
@@ -229,11 +282,14 @@ def euler_MPa(settings: DeviceSettings) -> float:
 def rests_as_stated(settings: DeviceSettings) -> bool:
     """Whether neither heat nor buckling moves the beam away from its stated shape."""
     axial = settings.residual_stress_MPa * (1.0 - settings.poisson_ratio)
-    return settings.ends == "cantilever" or (settings.heating_MPa == 0.0 and axial > -euler_MPa(settings))
+    return settings.ends == "cantilever" or (
+        settings.heating_MPa == 0.0 and axial > -euler_MPa(settings)
+    )
 
 
 def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
-    """The beam where it comes to rest: heat moves it, and a compression beyond Euler's buckles it to its side.
+    """The beam where it comes to rest: heat moves it, and a compression beyond Euler's buckles it
+    to its side.
 
     The shape that is stated balances the stated stress; it need not be stable.
 
@@ -248,13 +304,24 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
     _, bending, pulled, _, _, _, stretching, rest, unknowns = stated.mechanics
     freedoms = slice(2, 2 + unknowns)
     bends, pulls = (assembled(parts)[freedoms, freedoms] for parts in (bending, pulled))
-    z0, share = rest.ravel()[freedoms], np.concatenate([[0.0], np.cumsum(stated.sizes_m)]) / stated.length_m
+    z0, share = (
+        rest.ravel()[freedoms],
+        np.concatenate([[0.0], np.cumsum(stated.sizes_m)]) / stated.length_m,
+    )
     beyond = -(stated.tension_N + heat) - euler_MPa(settings) * newton_MPa
     u = np.zeros(unknowns)
     if beyond > 0.0:  # on the side of the height that a flat beam would have
-        height = 2.0 / np.pi * stated.length_m * np.sqrt(beyond / (stated.stretching_N_m * stated.length_m))
+        height = (
+            2.0
+            / np.pi
+            * stated.length_m
+            * np.sqrt(beyond / (stated.stretching_N_m * stated.length_m))
+        )
         mode = np.stack(
-            [0.5 * (1.0 - np.cos(2.0 * np.pi * share)), np.pi / stated.length_m * np.sin(2 * np.pi * share)]
+            [
+                0.5 * (1.0 - np.cos(2.0 * np.pi * share)),
+                np.pi / stated.length_m * np.sin(2 * np.pi * share),
+            ]
         )
         u = (1.0 if settings.buckled == "up" else -1.0) * height * mode.T.ravel()[freedoms] - z0
     moved_nm = np.inf
@@ -262,7 +329,9 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
         gradient = pulls @ (z0 + u)
         more = heat + stretching * (0.5 * u @ pulls @ u + z0 @ pulls @ u)
         left = bends @ u + stated.tension_N * (pulls @ u) + more * gradient
-        stiffness = bends + (stated.tension_N + more) * pulls + stretching * np.outer(gradient, gradient)
+        stiffness = (
+            bends + (stated.tension_N + more) * pulls + stretching * np.outer(gradient, gradient)
+        )
         change = -np.linalg.solve(stiffness, left)
         u = u + change
         before_nm = moved_nm
@@ -273,8 +342,9 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
             break
     else:
         raise InputError(
-            f"device.residual_stress_MPa = {settings.residual_stress_MPa:.4g}: the beam does not come to rest at "
-            f"{settings.temperature_C:.4g} C; state its bow_nm at rest, or a stress that does not buckle it"
+            f"device.residual_stress_MPa = {settings.residual_stress_MPa:.4g}: the beam does not"
+            f" come to rest at {settings.temperature_C:.4g} C; state its bow_nm at rest, or a"
+            " stress that does not buckle it"
         )
     moved = np.zeros((stated.elements + 1, 2))
     moved.ravel()[freedoms] = u
@@ -287,9 +357,9 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
     lowest = rested.rest_m / NM - np.where(rested.lands > 0, rested.dimple_nm, rested.stopper_nm)
     if lowest.min() <= 0.0:
         raise InputError(
-            f"device.residual_stress_MPa = {settings.residual_stress_MPa:.4g} at temperature_C = "
-            f"{settings.temperature_C:.4g}: the beam stands on the dielectric at rest; lower the compression, take "
-            "buckled: up, or raise gap_um"
+            f"device.residual_stress_MPa = {settings.residual_stress_MPa:.4g} at temperature_C ="
+            f" {settings.temperature_C:.4g}: the beam stands on the dielectric at rest; lower the"
+            " compression, take buckled: up, or raise gap_um"
         )
     return rested
 
@@ -304,7 +374,12 @@ def assembled(parts: Array) -> Array:
 
 def _shapes(size: float, x: Array) -> Array:
     """Hermite's shapes on an element of this size at places from 0 to 1, shape (4, points)."""
-    shapes = [1 - 3 * x**2 + 2 * x**3, size * (x - 2 * x**2 + x**3), 3 * x**2 - 2 * x**3, size * (x**3 - x**2)]
+    shapes = [
+        1 - 3 * x**2 + 2 * x**3,
+        size * (x - 2 * x**2 + x**3),
+        3 * x**2 - 2 * x**3,
+        size * (x**3 - x**2),
+    ]
     return np.stack(shapes)
 
 

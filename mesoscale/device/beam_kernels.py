@@ -7,10 +7,12 @@ from mesoscale.device.plate import GPA, NM
 from mesoscale.pad.local import pad_pressure
 
 CLOSING_NM, OPENING_NM = 1.0, 0.25
-"""Largest step of a place in contact. Where a pad of few cells tears off, longer steps overshoot: with 0.5 and 1 nm
-that of `ci` (16 cells) lets go 0.9 and 1.8 % too early."""
+"""Largest step of a place in contact. Where a pad of few cells tears off, longer steps overshoot:
+with 0.5 and 1 nm that of `ci` (16 cells) lets go 0.9 and 1.8 % too early."""
 SETTLED, BEYOND, FREE, UNSETTLED = range(4)
-"""How a motion ends: in balance, below the computed closing, off the pad, or not within the allowed steps."""
+"""How a motion ends: in balance, below the computed closing, off the pad, or not within the allowed
+steps.
+"""
 
 
 @njit(cache=True)
@@ -21,12 +23,15 @@ def least_gap_nm(dielectric_nm):
 
 @njit(cache=True)
 def add_loads(separation_nm, pressure, slope, electric, places):
-    """Take the electrostatic pull off where the electrode is, and put stoppers where the pad is not.
+    """Take the electrostatic pull off where the electrode is, and put stoppers where the pad is
+    not.
 
     Parameters
     ----------
-    pressure, slope : of the pad (GPa, GPa/nm) at the separation of what lands on it; changed in place.
-    electric : dielectric over its permittivity (nm), square of the voltage, vacuum permittivity, fringe over width
+    pressure, slope : of the pad (GPa, GPa/nm) at the separation of what lands on it; changed in
+        place.
+    electric : dielectric over its permittivity (nm), square of the voltage, vacuum permittivity,
+        fringe over width
         (1/nm).
     places : see `mesoscale.device.beam.Beam.places`.
     """
@@ -53,11 +58,13 @@ def determinant(a, b, c, d, e, f, g, h, i):
 
 @njit(cache=True)
 def solve_beam_matrix(blocks, coupling, right, stretching):
-    """Solve for the nodes of a beam, whose stretching adds `stretching` times a column times itself; in place.
+    """Solve for the nodes of a beam, whose stretching adds `stretching` times a column times
+    itself; in place.
 
-    Nodes are eliminated one after the other, the last one together with the axial force: there the matrix may be
-    singular, as it is where a beam buckles or snaps (W. Govaerts, Numerical Methods for Bifurcations of Dynamical
-    Equilibria, SIAM 2000, section 3). Parts of the beam are singular to the last digits by chance alone.
+    Nodes are eliminated one after the other, the last one together with the axial force: there the
+    matrix may be singular, as it is where a beam buckles or snaps (W. Govaerts, Numerical Methods
+    for Bifurcations of Dynamical Equilibria, SIAM 2000, section 3). Parts of the beam are singular
+    to the last digits by chance alone.
 
     Parameters
     ----------
@@ -73,7 +80,12 @@ def solve_beam_matrix(blocks, coupling, right, stretching):
         scale = 1.0 / (a * d - b * b)
         p, q, r, t = coupling[k, 0, 0], coupling[k, 0, 1], coupling[k, 1, 0], coupling[k, 1, 1]
         # inverse of the node's block times that to the next
-        u, v, w, x = scale * (d * p - b * r), scale * (d * q - b * t), scale * (a * r - b * p), scale * (a * t - b * q)
+        u, v, w, x = (
+            scale * (d * p - b * r),
+            scale * (d * q - b * t),
+            scale * (a * r - b * p),
+            scale * (a * t - b * q),
+        )
         blocks[k + 1, 0, 0] -= p * u + r * w
         blocks[k + 1, 1, 0] -= q * u + t * w
         blocks[k + 1, 1, 1] -= q * v + t * x
@@ -99,8 +111,12 @@ def solve_beam_matrix(blocks, coupling, right, stretching):
         force = determinant(a, b, f, b, d, g, m, n, h) / whole
         for k in range(nodes - 2, -1, -1):
             f, g = right[k + 1, side]
-            right[k, side, 0] -= right[k, sides, 0] * force + coupling[k, 0, 0] * f + coupling[k, 0, 1] * g
-            right[k, side, 1] -= right[k, sides, 1] * force + coupling[k, 1, 0] * f + coupling[k, 1, 1] * g
+            right[k, side, 0] -= (
+                right[k, sides, 0] * force + coupling[k, 0, 0] * f + coupling[k, 0, 1] * g
+            )
+            right[k, side, 1] -= (
+                right[k, sides, 1] * force + coupling[k, 1, 0] * f + coupling[k, 1, 1] * g
+            )
 
 
 @njit(cache=True)
@@ -111,7 +127,11 @@ def elongation(nodal, pulled, rest):
         for i in range(4):
             for j in range(4):
                 more = nodal[e + j // 2, j % 2]
-                longer += pulled[e, i, j] * more * (0.5 * nodal[e + i // 2, i % 2] + rest[e + i // 2, i % 2])
+                longer += (
+                    pulled[e, i, j]
+                    * more
+                    * (0.5 * nodal[e + i // 2, i % 2] + rest[e + i // 2, i % 2])
+                )
     return longer
 
 
@@ -132,15 +152,20 @@ def newton_step(
     rest,
     unknowns,
 ):
-    """One Newton step towards balance, and the answer to another load, of the free nodes; shape (nodes, 2) each.
+    """One Newton step towards balance, and the answer to another load, of the free nodes; shape
+    (nodes, 2) each.
 
-    The work of the unbalanced forces on the step comes third. It is negative where the step is one to a balance that
-    is not stable. Stretching adds a product of one vector with itself to the matrix, which then is no band any more: so
-    the growth of the axial force is one unknown more.
+    The work of the unbalanced forces on the step comes third. It is negative where the step is one
+    to a balance that is not stable. Stretching adds a product of one vector with itself to the
+    matrix, which then is no band any more: so the growth of the axial force is one unknown more.
     """
     elements, points = pressure_Pa.shape
     nodes = unknowns // 2
-    blocks, coupling, right = np.zeros((nodes, 2, 2)), np.zeros((nodes, 2, 2)), np.zeros((nodes, 3, 2))
+    blocks, coupling, right = (
+        np.zeros((nodes, 2, 2)),
+        np.zeros((nodes, 2, 2)),
+        np.zeros((nodes, 3, 2)),
+    )
     more = stretching * elongation(nodal, pulled, rest)
     for e in range(elements):
         for i in range(4):
@@ -156,7 +181,9 @@ def newton_step(
             for j in range(4):
                 moved, at_rest = nodal[e + j // 2, j % 2], rest[e + j // 2, j % 2]
                 drawn = pulled[e, i, j]
-                pushed -= bends[e, i, j] * moved + drawn * (tension * moved + more * (moved + at_rest))
+                pushed -= bends[e, i, j] * moved + drawn * (
+                    tension * moved + more * (moved + at_rest)
+                )
                 right[node, 2, turned] += drawn * (moved + at_rest)
                 if j > i or e + j // 2 < 1:
                     continue
@@ -192,22 +219,38 @@ def deflect(nodal, shape):
 
 
 @njit(cache=True, nogil=True)  # switches are solved side by side
-def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, spring_Pa, contact_nm, off_nm, free_nm, most_nm):
-    """Let a beam move to balance at one voltage, every place remembering how deep it came; both changed in place.
+def creep(
+    nodal,
+    deepest_nm,
+    rest_m,
+    beam,
+    places,
+    pad,
+    electric,
+    spring_Pa,
+    contact_nm,
+    off_nm,
+    free_nm,
+    most_nm,
+):
+    """Let a beam move to balance at one voltage, every place remembering how deep it came; both
+    changed in place.
 
-    The beam is held back by an added stiffness that grows where steps are too large: an overdamped motion.
+    The beam is held back by an added stiffness that grows where steps are too large: an overdamped
+    motion.
 
     Parameters
     ----------
     beam, places, pad, electric : what `newton_step`, `add_loads` and `pad_pressure` take last.
-    spring_Pa : pull of the spring, the scale of all pressures; see `mesoscale.device.beam.Beam.spring_Pa`.
+    spring_Pa : pull of the spring, the scale of all pressures; see
+        `mesoscale.device.beam.Beam.spring_Pa`.
     contact_nm : separation at which a place is about to land.
     off_nm : in balance above it, no place is in contact.
     free_nm : a rising beam is off the pad where no place is below this separation.
     most_nm : largest step of a place in contact.
     """
-    # stiffnesses (Pa/m) that hold the beam back: where it begins and after a turn, the least, and that of a step which
-    # is gone whatever it does: 1e9, 1e6 and 1e25 of the default switch
+    # stiffnesses (Pa/m) that hold the beam back: where it begins and after a turn, the least, and
+    # that of a step which is gone whatever it does: 1e9, 1e6 and 1e25 of the default switch
     begun, weakest, strongest = 6.6e4 * spring_Pa, 66.0 * spring_Pa, 6.6e20 * spring_Pa
     inertia, least, turns, lowest = begun, 0.0, 0, np.inf
     last = np.zeros(nodal.shape[0])
@@ -218,7 +261,9 @@ def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, spring_Pa, con
     for _ in range(60000):
         pad_pressure(s - dimple_nm, deepest_nm, pressure, slope, *pad)
         add_loads(s, pressure, slope, electric, places)
-        change, _, work = newton_step(nodal, pressure * GPA, slope * (GPA / NM), nothing, inertia, *beam)
+        change, _, work = newton_step(
+            nodal, pressure * GPA, slope * (GPA / NM), nothing, inertia, *beam
+        )
         moved = deflect(change, beam[0]) / NM
         excess, most = 0.0, 0.0
         for e in range(s.shape[0]):
@@ -245,13 +290,14 @@ def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, spring_Pa, con
             return FREE
         back = (change[:, 0] * last).sum() < 0.0
         last = change[:, 0].copy()
-        # the curves are of straight pieces, between which plain steps may cycle: hold back more after each turn, and
-        # forget it the later the more turns there were: after ten half as fast
+        # the curves are of straight pieces, between which plain steps may cycle: hold back more
+        # after each turn, and forget it the later the more turns there were: after ten half as fast
         turns += back
         least = max(10.0 * least, begun) if back else least * (1.0 - 3.0 / (10 + turns))
         if excess < 0.5 or back:
             inertia = max(0.3 * inertia, least)
-        # a thousandth of the length over which a pad's pressure changes (nm), 1 Pa of the default switch
+        # a thousandth of the length over which a pad's pressure changes (nm), 1 Pa of the default
+        # switch
         if most < 1e-3 and most * NM * inertia < 6.6e-5 * spring_Pa:
             return SETTLED if lowest < off_nm else FREE
     return UNSETTLED

@@ -1,10 +1,9 @@
 """A switch whose electrode bends: where it lands, how hard, and when it lets go.
 
-The beam of `mesoscale.device.beam` meets the pad place by place, and every place remembers its own deepest closing.
-The landed area is a result. The way down is followed by the place that comes down farthest, past pull-in to contact.
-From just beyond pull-in the beam creeps to the balance at the hold voltage, as it snaps. Then the voltage is lowered
-until no place is in contact.
-"""
+The beam of `mesoscale.device.beam` meets the pad place by place, and every place remembers its own
+deepest closing. The landed area is a result. The way down is followed by the place that comes down
+farthest, past pull-in to contact. From just beyond pull-in the beam creeps to the balance at the
+hold voltage, as it snaps. Then the voltage is lowered until no place is in contact."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -98,11 +97,14 @@ def solve_bent(
     share = moving.landed_share()
     if not closed or share == 0:
         raise InputError(
-            f"device: at {hold:.4g} V the beam does not land on the pad (pull-in is at {pull_in:.4g} V); raise "
-            "hold_voltage_V or dimple_nm, or lower stopper_nm, gap_um, bow_nm or tilt_nm"
+            f"device: at {hold:.4g} V the beam does not land on the pad (pull-in is at"
+            f" {pull_in:.4g} V); raise hold_voltage_V or dimple_nm, or lower stopper_nm, gap_um,"
+            " bow_nm or tilt_nm"
         )
     capacitance = moving.capacitance_F()
-    return BeamStates(pull_in, hold, moving.open(hold, opening_nm, tolerance), share, capacitance * 1e15)
+    return BeamStates(
+        pull_in, hold, moving.open(hold, opening_nm, tolerance), share, capacitance * 1e15
+    )
 
 
 def free_pull_in_V(settings: DeviceSettings, elements: int = 64) -> float:
@@ -116,7 +118,8 @@ def free_pull_in_V(settings: DeviceSettings, elements: int = 64) -> float:
 
 
 def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> tuple[Array, Array]:
-    """Capacitance (fF) while the voltage rises, and on its way back, at voltages from 0 to one that closes the beam.
+    """Capacitance (fF) while the voltage rises, and on its way back, at voltages from 0 to one that
+    closes the beam.
 
     Raises
     ------
@@ -128,7 +131,10 @@ def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> 
     for voltage in volts:
         if voltage < pull_in:
             for _ in range(SWITCH.free_steps):
-                free.nodal = free.nodal + free.beam.step(free.nodal, lambda s, at=voltage**2: free.load(s, at))[0]
+                free.nodal = (
+                    free.nodal
+                    + free.beam.step(free.nodal, lambda s, at=voltage**2: free.load(s, at))[0]
+                )
             up.append(free.capacitance_F())
         else:
             moving.creep(float(voltage))
@@ -140,8 +146,11 @@ def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> 
     return 1e15 * np.array(up), 1e15 * np.array(down[::-1])
 
 
-def closed_beam(settings: DeviceSettings, law: PadLaw, elements: int) -> Callable[[float, float], bool]:
-    """Whether the beam is still closed at a voltage with so many times the attraction, as a function of both.
+def closed_beam(
+    settings: DeviceSettings, law: PadLaw, elements: int
+) -> Callable[[float, float], bool]:
+    """Whether the beam is still closed at a voltage with so many times the attraction, as a
+    function of both.
 
     The beam is closed with its hold voltage, at least with that of its pull-in.
 
@@ -192,8 +201,9 @@ class _Moving:
         touching = law.closing[0] > self.landed_GPa
         if not touching.any():
             raise NotComputed(
-                f"device: the pad carries {law.closing[0].max() * 1e3:.3g} MPa at {law.separation_nm[0]:.4g} nm, where "
-                "its curves end; raise pad.cells, whose first ones say how far they are closed"
+                f"device: the pad carries {law.closing[0].max() * 1e3:.3g} MPa at"
+                f" {law.separation_nm[0]:.4g} nm, where its curves end; raise pad.cells, whose"
+                " first ones say how far they are closed"
             )
         # the curve is of straight pieces: it repels up to the first separation at which it does not
         last = int(np.flatnonzero(law.closing[0] > 0)[-1])
@@ -232,7 +242,10 @@ class _Moving:
 
     def pressure_GPa(self) -> Array:
         """Net pressure of the pad, 0 beside it."""
-        return self.beam.lands * self.local(self.separation_nm() - self.beam.dimple_nm, self.deepest)[0]
+        return (
+            self.beam.lands
+            * self.local(self.separation_nm() - self.beam.dimple_nm, self.deepest)[0]
+        )
 
     def landed_share(self) -> float:
         """Share of the contact part that is pushed."""
@@ -241,19 +254,32 @@ class _Moving:
 
     def capacitance_F(self) -> float:
         """Of the beam as a row of plates, with the field at the sides."""
-        gaps = np.maximum(self.separation_nm() + self.dielectric_nm, least_gap_nm(self.dielectric_nm)) * NM
+        gaps = (
+            np.maximum(self.separation_nm() + self.dielectric_nm, least_gap_nm(self.dielectric_nm))
+            * NM
+        )
         width = self.beam.width_m
         sides = self.edge_per_nm / NM * np.log(np.pi * width / gaps)
-        return float(VACUUM_PERMITTIVITY * width * (self.beam.wired * self.beam.weights_m * (1.0 / gaps + sides)).sum())
+        return float(
+            VACUUM_PERMITTIVITY
+            * width
+            * (self.beam.wired * self.beam.weights_m * (1.0 / gaps + sides)).sum()
+        )
 
     def beside_GPa(self) -> float:
         """Largest pressure on stoppers beside the pad."""
         _, lands, _, stopper_nm, stopper_GPa_nm = self.beam.places
-        return float((stopper_GPa_nm * (1.0 - lands) * np.maximum(stopper_nm - self.separation_nm(), 0.0)).max())
+        return float(
+            (
+                stopper_GPa_nm * (1.0 - lands) * np.maximum(stopper_nm - self.separation_nm(), 0.0)
+            ).max()
+        )
 
     def over_nm(self) -> Array:
         """Local separations over what the beam touches first: the pad, or stoppers beside it."""
-        touched = np.where(self.beam.lands > 0, self.beam.dimple_nm + self.touch_nm, self.beam.stopper_nm)
+        touched = np.where(
+            self.beam.lands > 0, self.beam.dimple_nm + self.touch_nm, self.beam.stopper_nm
+        )
         return self.separation_nm() - touched
 
     def leading(self) -> int:
@@ -262,19 +288,23 @@ class _Moving:
         return int(np.argmin(per_V2[:, 0]))
 
     def snap_V(self) -> float:
-        """Pull-in, the largest voltage on the way down; the beam is left just beyond, from where it snaps.
+        """Pull-in, the largest voltage on the way down; the beam is left just beyond, from where it
+        snaps.
 
-        A beam whose electrode stays far enough touches before it would snap. Its pull-in is the voltage at touch.
+        A beam whose electrode stays far enough touches before it would snap. Its pull-in is the
+        voltage at touch.
 
         Raises
         ------
         InputError : the beam rests in its pad.
         """
         if (over := float(self.over_nm().min())) <= 0.0:
-            enough = 3.5e-3 * (self.flat_nm - over)  # a beam that only stretches snaps as low as at 1 / 3.3 of its gap
+            enough = 3.5e-3 * (
+                self.flat_nm - over
+            )  # a beam that only stretches snaps as low as at 1 / 3.3 of its gap
             raise InputError(
-                f"device: the beam rests within reach of its pad; raise gap_um to {enough:.3g}, or bow_nm, or lower "
-                "tilt_nm, dimple_nm or stopper_nm"
+                f"device: the beam rests within reach of its pad; raise gap_um to {enough:.3g}, or"
+                " bow_nm, or lower tilt_nm, dimple_nm or stopper_nm"
             )
         at = self.leading()
         way = float(self.over_nm()[max(at - 1, 0) : at + 1].mean())
@@ -292,18 +322,23 @@ class _Moving:
                 if abs(more) < 1e-9 * abs(squared) and abs(wanted) < 1e-6 * NM:
                     break
             touches = self.over_nm().min() < 0.0 and abs(squared) < MOST_V**2
-            # not to the last digit, as where it buckles, is enough; else it must touch or be beyond the snap
+            # not to the last digit, as where it buckles, is enough; else it must touch or be beyond
+            # the snap
             settled = abs(more) < 1e-3 * abs(squared) and abs(wanted) < 1e-2 * NM
             if not (settled or touches):
                 if np.argmax(kept) == len(kept) - 1:
-                    raise InputError(f"device: no voltage brings the beam down by {target:.4g} nm; {BESIDE}")
+                    raise InputError(
+                        f"device: no voltage brings the beam down by {target:.4g} nm; {BESIDE}"
+                    )
                 break
             kept.append(squared)
             states.append(self.nodal)
             if touches:
                 break
         if max(kept) > MOST_V**2:
-            raise InputError(f"device: more than {MOST_V:g} V are needed to pull the beam down; {BESIDE}")
+            raise InputError(
+                f"device: more than {MOST_V:g} V are needed to pull the beam down; {BESIDE}"
+            )
         top = int(np.argmax(kept))
         if top == len(kept) - 1:
             self.nodal = states[-2]
@@ -340,32 +375,38 @@ class _Moving:
         law = self.local.law
         if ended == BEYOND:
             raise NotComputed(
-                f"device.hold_voltage_V = {voltage:.4g}: the beam presses the pad below "
-                f"{law.separation_nm[0]:.4g} nm ({law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa), where its "
-                "curves end"
+                f"device.hold_voltage_V = {voltage:.4g}: the beam presses the pad below"
+                f" {law.separation_nm[0]:.4g} nm ({law.closing_GPa(law.separation_nm[0]) * 1e3:.3g}"
+                " MPa), where its curves end"
             )
         if ended == UNSETTLED and (beside_GPa := self.beside_GPa()) > 0.0:
             raise InputError(
-                f"device: at {voltage:.4g} V the electrode lands beside the contact part and presses {beside_GPa:.3g} "
-                f"GPa on what stands there; raise stopper_nm or dimple_nm, lower hold_voltage_V, or {BESIDE}"
+                f"device: at {voltage:.4g} V the electrode lands beside the contact part and"
+                f" presses {beside_GPa:.3g} GPa on what stands there; raise stopper_nm or"
+                f" dimple_nm, lower hold_voltage_V, or {BESIDE}"
             )
         if ended == UNSETTLED:
-            raise InputError(f"device: the beam finds no balance at {voltage:.4g} V; this is a fault of the solver")
+            raise InputError(
+                f"device: the beam finds no balance at {voltage:.4g} V; this is a fault of the"
+                " solver"
+            )
         return ended == SETTLED
 
     def open(self, hold_V: float, opening_nm: float, tolerance: float) -> float:
         """Lower the voltage until the beam lets go; the release voltage (0: stuck).
 
-        The voltage is halved in the longer steps of closing until it opens. These may tear off a little more than they
-        should, so the way from the last voltage but one is gone again in short steps.
-        """
+        The voltage is halved in the longer steps of closing until it opens. These may tear off a
+        little more than they should, so the way from the last voltage but one is gone again in
+        short steps."""
 
         def lower(voltage: float) -> float:
             """Half, or none where it holds at little."""
             return 0.5 * voltage if voltage > SWITCH.little * hold_V else 0.0
 
         # an opening is elastic, so the state at a lower voltage is reached from any higher one
-        closed: list[tuple[float, Array, Array]] = [(hold_V, self.nodal.copy(), self.deepest.copy())]
+        closed: list[tuple[float, Array, Array]] = [
+            (hold_V, self.nodal.copy(), self.deepest.copy())
+        ]
         while (voltage := lower(closed[-1][0])) < closed[-1][0] and self.creep(voltage, CLOSING_NM):
             closed.append((voltage, self.nodal.copy(), self.deepest.copy()))
         high, *held = closed[-2:][0]

@@ -24,7 +24,9 @@ SETTLE = {"common": "measure it", "each": "control it from device to device"}
 class Effect(Settings):
     """An effect that the answer leaves out, or that is a condition of it (config/effects.yaml)."""
 
-    how: Literal["computed", "literature", "condition", "unknown"] = key(..., "how its volts are known")
+    how: Literal["computed", "literature", "condition", "unknown"] = key(
+        ..., "how its volts are known"
+    )
     about: str = key(..., "what the volts stand for")
     held: bool = key(..., "whether the answer's interval holds it")
     settle: str = key(..., "what would settle it")
@@ -33,7 +35,9 @@ class Effect(Settings):
     share: float | None = key(None, "a bound from the source, as a share of the release", "[0, 1]")
     squared_V2: float | None = key(None, "what is taken off the square of the voltage", "V^2")
     charge_e_cm2: float | None = key(None, "charge at the surface of the dielectric", "1/cm^2")
-    hardness: float | None = key(None, "factor on the hardness of the film, or of the body without one", "(0, 10]")
+    hardness: float | None = key(
+        None, "factor on the hardness of the film, or of the body without one", "(0, 10]"
+    )
     varied_as: str = key("", "input that stands for it, where a scene varies it")
     changes: str = key("", "property of the device that it changes")
     factor: float = key(1.0, "times its value")
@@ -43,10 +47,19 @@ class Effect(Settings):
     @model_validator(mode="after")
     def _has_a_source(self) -> "Effect":
         if not self.source.strip():
-            raise ValueError("a row without source; name the publication or page that its volts come from")
+            raise ValueError(
+                "a row without source; name the publication or page that its volts come from"
+            )
         if self.changes and self.changes not in DeviceSettings.model_fields:
             raise ValueError(f"changes = {self.changes}: no property of the device")
-        ways = [self.volts, self.share, self.squared_V2, self.charge_e_cm2, self.hardness, self.changes or None]
+        ways = [
+            self.volts,
+            self.share,
+            self.squared_V2,
+            self.charge_e_cm2,
+            self.hardness,
+            self.changes or None,
+        ]
         if sum(way is not None for way in ways) != (self.how != "unknown"):
             words = "volts, share, squared_V2, charge_e_cm2, hardness and changes"
             raise ValueError(f"state one of {words}; none of what is unknown")
@@ -75,7 +88,9 @@ TWIN = "potential with half its energies"
 """The effect whose factor twins of the closing runs tell."""
 
 
-def with_twins(effects: Mapping[str, Effect], twins: Sequence[Mapping[str, Any]]) -> dict[str, Effect]:
+def with_twins(
+    effects: Mapping[str, Effect], twins: Sequence[Mapping[str, Any]]
+) -> dict[str, Effect]:
     """The effects with the factor on the hardness that the twins of half the energies have.
 
     Parameters
@@ -86,8 +101,14 @@ def with_twins(effects: Mapping[str, Effect], twins: Sequence[Mapping[str, Any]]
     if 0.5 not in known:
         return dict(effects)
     ratio = known[0.5]
-    about = f"{ratio['median']:.2f} [{ratio['low']:.2f}, {ratio['high']:.2f}] of the hardness, by twins of this scene"
-    return {**effects, TWIN: effects[TWIN].model_copy(update={"hardness": ratio["median"], "about": about})}
+    about = (
+        f"{ratio['median']:.2f} [{ratio['low']:.2f}, {ratio['high']:.2f}] of the hardness, by twins"
+        " of this scene"
+    )
+    return {
+        **effects,
+        TWIN: effects[TWIN].model_copy(update={"hardness": ratio["median"], "about": about}),
+    }
 
 
 def budget(
@@ -97,14 +118,15 @@ def budget(
     by_hardness: Mapping[float, float] | None = None,
     errors_V: Mapping[str, float] | None = None,
 ) -> list[dict[str, Any]]:
-    """Rows of device/budget.csv, the most volts first; without a release there is nothing to move, and no row.
+    """Rows of device/budget.csv, the most volts first; without a release there is nothing to move,
+    and no row.
 
     Parameters
     ----------
     switch : content of device/pad_switch.json.
     by_hardness : of `release_by_hardness`; None: effects on the hardness have no row.
-    errors_V : errors of the release by numerical choice, as device/errors.csv has them; None: not known.
-    """
+    errors_V : errors of the release by numerical choice, as device/errors.csv has them; None: not
+        known."""
     if central.pad is None or not central.states or central.states["release_V"] == 0.0:
         return []
     pressed = _Pressed(central)
@@ -126,14 +148,19 @@ def budget(
 
 
 def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator[dict[str, Any]]:
-    """What the answer varies beside properties of the device, and what its own points tell of its errors."""
+    """What the answer varies beside properties of the device, and what its own points tell of its
+    errors.
+    """
     here = {"how": "computed", "source": HERE}
     by_law = [row["release_V"] for row in switch["by_attraction"] if row["release_V"] is not None]
     if by_law:
         yield {
             "effect": "law of attraction",
             "volts": max(by_law) - min(by_law),
-            "about": "a third to three times the work of adhesion" + "; it may stick" * (min(by_law) == 0.0),
+            "about": (
+                "a third to three times the work of adhesion"
+                + "; it may stick" * (min(by_law) == 0.0)
+            ),
             "held": False,
             "settle": "pull-off of the contact (target calibrate)",
             **here,
@@ -177,7 +204,9 @@ def _numerical(errors_V: Mapping[str, float]) -> dict[str, Any]:
     return {
         "effect": NUMERICAL,
         "volts": volts,
-        "about": ", ".join(f"{name.partition(',')[0]} {error:.2g} V" for name, error in errors_V.items()),
+        "about": ", ".join(
+            f"{name.partition(',')[0]} {error:.2g} V" for name, error in errors_V.items()
+        ),
         "how": "computed",
         "held": False,
         "settle": "a finer grid; target accuracy tells which",
@@ -224,7 +253,9 @@ def _of_device(pressed: _Pressed) -> Iterator[dict[str, Any]]:
         }
 
 
-def _moved_V(effect: Effect, pressed: _Pressed, by_hardness: Mapping[float, float]) -> tuple[float | None, str]:
+def _moved_V(
+    effect: Effect, pressed: _Pressed, by_hardness: Mapping[float, float]
+) -> tuple[float | None, str]:
     """By how much an effect moves the release of the central switch, and a remark."""
     device, release = pressed.device, pressed.central.states["release_V"]
     if effect.hardness is not None:
@@ -247,5 +278,7 @@ def _changed(effect: Effect, central: Solved) -> DeviceSettings:
     device = central.point.device
     if effect.to:
         return device.model_copy(update={effect.changes: effect.to})
-    value = value_of(device, effect.changes, central.states["pull_in_V"]) * effect.factor + effect.step
+    value = (
+        value_of(device, effect.changes, central.states["pull_in_V"]) * effect.factor + effect.step
+    )
     return device.model_copy(update={effect.changes: value})

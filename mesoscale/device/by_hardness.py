@@ -1,4 +1,6 @@
-"""Release of the switch at central inputs on contacts that are harder or softer, for rows of the budget."""
+"""Release of the switch at central inputs on contacts that are harder or softer, for rows of the
+budget.
+"""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -15,7 +17,9 @@ FILM = "h_film"
 
 
 def harder(point: Point, factor: float) -> Point:
-    """The point with `factor` times the hardness: that of the film where there is one, else of the whole body."""
+    """The point with `factor` times the hardness: that of the film where there is one, else of the
+    whole body.
+    """
     names = (FILM,) if FILM in point.values else HARDNESS
     scaled = {name: factor * value for name, value in point.values.items() if name in names}
     return replace(point, values=point.values | scaled)

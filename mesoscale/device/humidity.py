@@ -1,8 +1,8 @@
-"""The switch against humidity: at central inputs by both limits of opening, and over all that is uncertain.
+"""The switch against humidity: at central inputs by both limits of opening, and over all that is
+uncertain.
 
-Two limits hold what menisci do while the switch opens: in balance with the vapour, or with a volume that stays
-(docs/humid_air.md).
-"""
+Two limits hold what menisci do while the switch opens: in balance with the vapour, or with a volume
+that stays (docs/humid_air.md)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -29,7 +29,9 @@ def levels(table: InputTable, contact: ContactSettings) -> Array:
     if "humidity" not in table.names:
         return np.array([contact.air.humidity if contact.air else 0.0])
     low, high = table.rows[table.names.index("humidity")].distribution.span()
-    return low + (high - low) * np.linspace(0.0, 1.0, 7) ** 2  # a few per cent of humidity change most
+    return (
+        low + (high - low) * np.linspace(0.0, 1.0, 7) ** 2
+    )  # a few per cent of humidity change most
 
 
 def humidity_rows(
@@ -54,7 +56,9 @@ def humidity_rows(
     steps = (len(humidities) + HALVINGS) * len(openings)
 
     def solve(humidity: float, share: dict[str, float]) -> None:
-        point = replace(model.central.point, values={**model.central.point.values, "humidity": humidity})
+        point = replace(
+            model.central.point, values={**model.central.point.values, "humidity": humidity}
+        )
         for opening in openings:
             chosen = contact.model_copy(update={"air": air.model_copy(update={"opening": opening})})
             solved = solve_point(point, chosen, 2 * point_cells, surfaces_of(0))
@@ -84,8 +88,12 @@ def humidity_rows(
 
 
 def sticking_between(rows: Sequence[dict[str, Any]]) -> tuple[float, float] | None:
-    """Humidities of two neighbours, of which the switch lets go at the first and sticks at the second."""
-    known = sorted((row["humidity"], row["release_V"]) for row in rows if row["release_V"] is not None)
+    """Humidities of two neighbours, of which the switch lets go at the first and sticks at the
+    second.
+    """
+    known = sorted(
+        (row["humidity"], row["release_V"]) for row in rows if row["release_V"] is not None
+    )
     for (low, release), (high, stuck) in pairwise(known):
         if release > 0.0 == stuck:
             return low, high
@@ -95,12 +103,16 @@ def sticking_between(rows: Sequence[dict[str, Any]]) -> tuple[float, float] | No
 def _shares(model: PadModel, humidities: Array) -> list[dict[str, float]]:
     """Share of the points nearest to each humidity whose switch sticks, with its 95 % interval."""
     stuck = model.states("release_V") == 0.0
-    at = np.array([model.points[k].point.values.get("humidity", humidities[0]) for k in model.solved])
+    at = np.array(
+        [model.points[k].point.values.get("humidity", humidities[0]) for k in model.solved]
+    )
     nearest = np.abs(at[:, None] - humidities).argmin(axis=1) if at.size else at.astype(int)
     shares = []
     for number in range(len(humidities)):
         here = stuck[nearest == number]
         said = probability(int(here.sum()), here.size) if here.size else {}
         names = {"value": "stuck", "low": "stuck_low", "high": "stuck_high"}
-        shares.append({name: said[key] for key, name in names.items() if said} | {"points": here.size})
+        shares.append(
+            {name: said[key] for key, name in names.items() if said} | {"points": here.size}
+        )
     return shares

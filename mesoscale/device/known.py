@@ -1,10 +1,10 @@
-"""What is known of the release: the band between devices, and apart from it the band of what is not known.
+"""What is known of the release: the band between devices, and apart from it the band of what is not
+known.
 
-An input is common to all devices, one unknown value U, or varies with each device, X. A sum of functions of single
-numbers is fitted to the solved switches, so that it splits in one part of U and one of X. It is the release, or its
-square, which the forces balance. Where the switch sticks, the fitted quantity lies below zero, and nothing else is
-known of it.
-"""
+An input is common to all devices, one unknown value U, or varies with each device, X. A sum of
+functions of single numbers is fitted to the solved switches, so that it splits in one part of U and
+one of X. It is the release, or its square, which the forces balance. Where the switch sticks, the
+fitted quantity lies below zero, and nothing else is known of it."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -26,7 +26,8 @@ class Additive:
     Attributes
     ----------
     power, degree : 1 or 2; degree of the Legendre polynomials in the probabilities of the numbers.
-    coefficients, covariance : of the constant, then of each polynomial of each number; and their error.
+    coefficients, covariance : of the constant, then of each polynomial of each number; and their
+        error.
     missed : standard deviation of what the sum misses.
     explained : share of the variance that it predicts of switches left out one at a time.
     values : fitted ones, with the expected ones of switches that stick.
@@ -51,7 +52,9 @@ class Additive:
         return self.degree * self.missed**2 / self.values.size / self.variance
 
     def shares(self) -> Array:
-        """Share of the variance by each number; what noise alone would seem to explain is taken off."""
+        """Share of the variance by each number; what noise alone would seem to explain is taken
+        off.
+        """
         of_number = (self.coefficients[1:] ** 2).reshape(self.degree, -1).sum(axis=0)
         return np.maximum(of_number / self.variance - self.noise, 0.0)
 
@@ -72,11 +75,11 @@ def basis(units: Array, degree: int) -> Array:
 
 
 def fit_additive(units: Array, release_V: Array) -> Additive:
-    """The sum that best predicts switches that are left out; numbers (m, k), releases (m,), 0 where it sticks.
+    """The sum that best predicts switches that are left out; numbers (m, k), releases (m,), 0 where
+    it sticks.
 
-    Of the release and its square, linear and of second degree. The linear ones need more than k + 1 switches that let
-    go, the others twice as many.
-    """
+    Of the release and its square, linear and of second degree. The linear ones need more than k + 1
+    switches that let go, the others twice as many."""
     fits = [_fit(units, release_V, power, 1) for power in (1, 2)]
     if np.count_nonzero(release_V) > 2 * units.shape[1] + 2:
         fits += [_fit(units, release_V, power, 2) for power in (1, 2)]
@@ -103,10 +106,14 @@ def _fit(units: Array, release_V: Array, power: int, degree: int) -> Additive:
 
 
 def _sum(columns: Array, values: Array, stuck: NDArray[np.bool_]) -> Censored:
-    """Coefficients of the columns by values (m,), of which some are known only to lie below zero."""
+    """Coefficients of the columns by values (m,), of which some are known only to lie below
+    zero.
+    """
     if stuck.any() and not stuck.all():
         return most_likely(columns, values, stuck)
-    values = np.where(stuck, -1.0, values)  # where all stick, nothing says how far below zero they are
+    values = np.where(
+        stuck, -1.0, values
+    )  # where all stick, nothing says how far below zero they are
     inverse = np.linalg.pinv(columns)
     coefficients = inverse @ values
     missed = ((values - columns @ coefficients) ** 2).sum()
@@ -127,11 +134,14 @@ def known(
 
     Returns
     -------
-    unknown_V : 5, 50 and 95 % of the release of the typical device, by what is common; each with its error.
+    unknown_V : 5, 50 and 95 % of the release of the typical device, by what is common; each with
+        its error.
     between_V : the same from device to device, where what is common is at its median.
     rest_V : deviation of what the fit misses beyond the cells, which is of either kind.
-    stuck_share : 5, 50 and 95 % of the share of devices that stick, one in the number of switches where it is less. Its
-        low and high end hold the error of the fit, and that what it misses may be common or of each device.
+    stuck_share : 5, 50 and 95 % of the share of devices that stick, one in the number of switches
+        where it is less. Its
+        low and high end hold the error of the fit, and that what it misses may be common or of each
+        device.
     """
     rng = np.random.default_rng(np.random.SeedSequence([0, 0x2100]))
     columns = basis(rng.random((draws, common.size)), fit.degree)
@@ -142,14 +152,18 @@ def known(
     between = coefficients[:, ~of_common] @ columns[:, ~of_common].T
     rest, noise = np.sqrt(max(fit.missed**2 - cells**2, 0.0)), rng.normal(size=draws)
     devices = between.std(axis=1)[:, None]
-    with np.errstate(divide="ignore", invalid="ignore"):  # where no device differs, all stick or none
+    with np.errstate(
+        divide="ignore", invalid="ignore"
+    ):  # where no device differs, all stick or none
         by_rest = [
             ndtr(np.nan_to_num(-unknown / np.hypot(devices, rest), nan=-np.inf)),
             ndtr(np.nan_to_num(-(unknown + rest * noise) / devices, nan=-np.inf)),
         ]
     least = 1.0 / fit.values.size  # so many switches know no tail
     ends = [np.quantile(np.maximum(rates, least), ENDS, axis=1) for rates in by_rest]
-    low, high = (np.quantile(np.hstack([part[:, 1:] for part in ends]), q, axis=1) for q in (0.05, 0.95))
+    low, high = (
+        np.quantile(np.hstack([part[:, 1:] for part in ends]), q, axis=1) for q in (0.05, 0.95)
+    )
     middle = float(np.median(unknown[0]))
     slope = fit.power * max(float(fit.volts(np.array(middle))), 1e-9) ** (fit.power - 1)
     return {
@@ -167,5 +181,6 @@ def _quantiles(volts: Array) -> dict[str, dict[str, float]]:
     """Of the first row, with the scatter of the others as errors."""
     ends = np.quantile(volts, ENDS, axis=1)
     return {
-        f"{q:g}": {"value": float(row[0]), "error": float(row[1:].std())} for q, row in zip(ENDS, ends, strict=True)
+        f"{q:g}": {"value": float(row[0]), "error": float(row[1:].std())}
+        for q, row in zip(ENDS, ends, strict=True)
     }

@@ -1,13 +1,14 @@
-"""A switch as a plate on a spring above a dielectric: its numbers, and what it does on the curves of a pad.
+"""A switch as a plate on a spring above a dielectric: its numbers, and what it does on the curves
+of a pad.
 
 The plate at mean separation s from the dielectric is in balance when
 
     F(s) = eps0 A V^2 / (2 (s + t/eps)^2)
 
-with F the force that opens it: that of its spring, k (g - s), and that of the pad, on which it lies flat. V^2 is then a
-single-valued function of s. A state is stable where it falls with s; where it turns are pull-in and release. Nothing is
-extrapolated: a held state beyond the computed closing, or an opening from a depth that was not computed, is refused.
-"""
+with F the force that opens it: that of its spring, k (g - s), and that of the pad, on which it lies
+flat. V^2 is then a single-valued function of s. A state is stable where it falls with s; where it
+turns are pull-in and release. Nothing is extrapolated: a held state beyond the computed closing, or
+an opening from a depth that was not computed, is refused."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -58,20 +59,27 @@ class Plate:
 
     def capacitance_F(self, separation_nm: np.ndarray) -> np.ndarray:
         """Parallel-plate capacitance at a mean separation."""
-        return VACUUM_PERMITTIVITY * self.area_m2 / ((np.asarray(separation_nm) + self.dielectric_nm) * NM)
+        return (
+            VACUUM_PERMITTIVITY
+            * self.area_m2
+            / ((np.asarray(separation_nm) + self.dielectric_nm) * NM)
+        )
 
     @property
     def pull_in_V(self) -> float:
         """Pull-in without contact: sqrt(8 k (g + t/eps)^3 / (27 eps0 A))."""
         gap = (self.gap_nm + self.dielectric_nm) * NM
-        return float(np.sqrt(8 * self.spring_N_per_m * gap**3 / (27 * VACUUM_PERMITTIVITY * self.area_m2)))
+        return float(
+            np.sqrt(8 * self.spring_N_per_m * gap**3 / (27 * VACUUM_PERMITTIVITY * self.area_m2))
+        )
 
 
 def beam_stiffness_N_per_m(settings: DeviceSettings) -> float:
-    """Stiffness of the beam at rest against a uniform pull of its electrode, where it comes down farthest.
+    """Stiffness of the beam at rest against a uniform pull of its electrode, where it comes down
+    farthest.
 
-    For a clamped beam that is pulled all along, 32 E b (t/L)^3 without tension, and with a tension little enough
-    8 sigma (1 - nu) b t/L more (G. M. Rebeiz, RF MEMS, Wiley 2003, section 2.2).
+    For a clamped beam that is pulled all along, 32 E b (t/L)^3 without tension, and with a tension
+    little enough 8 sigma (1 - nu) b t/L more (G. M. Rebeiz, RF MEMS, Wiley 2003, section 2.2).
 
     Raises
     ------
@@ -137,16 +145,20 @@ def solve_on_pad(plate: Plate, law: "PadLaw", hold_voltage_V: float | None) -> P
     holds = np.flatnonzero(near & (down >= hold))
     if holds.size == 0:
         raise NotComputed(
-            f"device.hold_voltage_V: {np.sqrt(hold):.4g} V presses the pad harder than the computed "
-            f"{law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa"
+            f"device.hold_voltage_V: {np.sqrt(hold):.4g} V presses the pad harder than the computed"
+            f" {law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa"
         )
     inner = int(holds[-1])
     if inner + 1 == near.sum():
         raise InputError(
-            f"device.hold_voltage_V = {np.sqrt(hold):.4g}: too little to keep the switch on the pad (pull-in is at "
-            f"{np.sqrt(pull_in):.4g} V); raise it"
+            f"device.hold_voltage_V = {np.sqrt(hold):.4g}: too little to keep the switch on the pad"
+            f" (pull-in is at {np.sqrt(pull_in):.4g} V); raise it"
         )
-    held = brentq(lambda s: _voltage_squared(plate, s, law.closing_GPa(s)) - hold, grid[inner], grid[inner + 1])
+    held = brentq(
+        lambda s: _voltage_squared(plate, s, law.closing_GPa(s)) - hold,
+        grid[inner],
+        grid[inner + 1],
+    )
     hold_nm = float(np.asarray(held))
     way_up = np.concatenate([[hold_nm], grid[grid > hold_nm]])
     up = _voltage_squared(plate, way_up, law.opening_GPa(way_up, hold_nm))

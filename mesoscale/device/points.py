@@ -1,9 +1,9 @@
-"""The joint distribution of inputs, D0 and devices as points, each with a pad that is pressed there and its switch.
+"""The joint distribution of inputs, D0 and devices as points, each with a pad that is pressed there
+and its switch.
 
-Nothing is fitted between points. Each pad has a few cells of its own, so their error averages out over the points as
-surfaces common to all would not let it. Half of its cells against the other half tells the error of a point; one that
-they leave undecided has more cells.
-"""
+Nothing is fitted between points. Each pad has a few cells of its own, so their error averages out
+over the points as surfaces common to all would not let it. Half of its cells against the other half
+tells the error of a point; one that they leave undecided has more cells."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -52,7 +52,9 @@ class Point:
         ------
         InputError : inputs that the contact does not accept.
         """
-        return contact_of(self.values, contact.model_copy(update={"gap_cutoff_nm": self.gap_cutoff_nm}))
+        return contact_of(
+            self.values, contact.model_copy(update={"gap_cutoff_nm": self.gap_cutoff_nm})
+        )
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,9 @@ def central_point(table: InputTable, contact: ContactSettings, settings: DeviceS
     return Point(table.medians(), float(np.mean(cutoff_range(table, contact))), settings)
 
 
-def plan_points(table: InputTable, contact: ContactSettings, settings: DeviceSettings, count: int) -> Design:
+def plan_points(
+    table: InputTable, contact: ContactSettings, settings: DeviceSettings, count: int
+) -> Design:
     """Points of a Latin hypercube over inputs, D0 and properties of the device."""
     from scipy.stats import qmc  # slow to import
 
@@ -100,13 +104,19 @@ def plan_points(table: InputTable, contact: ContactSettings, settings: DeviceSet
 
 
 def kinds(table: InputTable, settings: DeviceSettings) -> tuple[str, ...]:
-    """Of inputs, D0 and the `varied` properties of the device: common to all devices, or of each."""
+    """Of inputs, D0 and the `varied` properties of the device: common to all devices, or of
+    each.
+    """
     of_device = [getattr(settings.spread, name).varies for name in settings.varied]
     return (*(row.varies for row in table.rows), "common", *of_device)
 
 
-def values_at(units: Array, table: InputTable, settings: DeviceSettings, cutoffs_nm: tuple[float, float]) -> Array:
-    """Inputs, D0 (nm) and the `varied` properties of the device at probabilities; both of shape (m, k)."""
+def values_at(
+    units: Array, table: InputTable, settings: DeviceSettings, cutoffs_nm: tuple[float, float]
+) -> Array:
+    """Inputs, D0 (nm) and the `varied` properties of the device at probabilities; both of shape (m,
+    k).
+    """
     inputs, (low, high) = len(table.rows), cutoffs_nm
     return np.column_stack(
         [
@@ -127,9 +137,8 @@ def point_of(row: Array, names: Sequence[str], settings: DeviceSettings) -> Poin
 def on_pad_grid(contact: ContactSettings, table: InputTable) -> ContactSettings:
     """The contact on the coarsest of its halved grids that still holds all waves of the inputs.
 
-    The release of `reduced` moves by 0.03 V from 128 to 512 sites a side, at a fiftieth of the time (docs/pad.md).
-    Without a cut-off the grid itself is one, and stays.
-    """
+    The release of `reduced` moves by 0.03 V from 128 to 512 sites a side, at a fiftieth of the time
+    (docs/pad.md). Without a cut-off the grid itself is one, and stays."""
     if "q1" in table.names:
         shortest = float(table.rows[table.names.index("q1")].distribution.span()[1])
     elif contact.q1_per_nm is not None:
@@ -163,7 +172,9 @@ class Pad:
     @property
     def halves(self) -> tuple[PadLaw, PadLaw]:
         """The curves of half of its cells, and of the others."""
-        return law_of(self.cells.half(), self.flats), law_of(self.cells.half(other=True), self.flats)
+        return law_of(self.cells.half(), self.flats), law_of(
+            self.cells.half(other=True), self.flats
+        )
 
 
 @dataclass(frozen=True)
@@ -173,7 +184,8 @@ class Solved:
     Attributes
     ----------
     pad : None where it cannot be pressed.
-    states : pull_in_V, release_V (0: it sticks), capacitance_fF, deepened; empty where it has no answer.
+    states : pull_in_V, release_V (0: it sticks), capacitance_fF, deepened; empty where it has no
+        answer.
     halves_V : release on either half of the cells; NaN where it cannot carry the switch.
     refused : why it has no answer; empty where it has one.
     """
@@ -212,11 +224,16 @@ class Solved:
 
     @property
     def undecided(self) -> bool:
-        """Whether more cells are wanted: the halves disagree by much, or on whether the switch sticks, or fail."""
+        """Whether more cells are wanted: the halves disagree by much, or on whether the switch
+        sticks, or fail.
+        """
         if self.refused:
             return False
         disagree = (self.halves_V[0] == 0.0) != (self.halves_V[1] == 0.0)
-        enough = max(SWITCH.undecided * self.states["pull_in_V"], SWITCH.of_release * self.states["release_V"])
+        enough = max(
+            SWITCH.undecided * self.states["pull_in_V"],
+            SWITCH.of_release * self.states["release_V"],
+        )
         return disagree or not self.error_V <= enough
 
 
@@ -243,12 +260,18 @@ def press_pad(
     inputs, settings = point.contact_of(contact)
     device, area = pressing(point.device), settings.length_nm**2
     sampled = sample_cells(inputs, cells, first_seed, point.device.pad_um2 * 1e6 / area)
-    grid = plan_grid(inputs, settings, sampled, pressure_to_compute(device), presser(device), step_nm, depths)
+    grid = plan_grid(
+        inputs, settings, sampled, pressure_to_compute(device), presser(device), step_nm, depths
+    )
     return Pad(press_cells(inputs, settings, grid, sampled, progress), flats_of(inputs, settings))
 
 
 def solve_point(
-    point: Point, contact: ContactSettings, cells: int, first_seed: int, progress: Progress | None = None
+    point: Point,
+    contact: ContactSettings,
+    cells: int,
+    first_seed: int,
+    progress: Progress | None = None,
 ) -> Solved:
     """The switch of a point on a pad of so many cells; a point without an answer has the reason."""
     pad = None
@@ -257,7 +280,9 @@ def solve_point(
         states = solve_deepened(point.device, pad.law)
     except InputError as error:
         return Solved(point, pad, {}, (np.nan, np.nan), str(error))
-    first, second = (release_or_nan_V(point.device, law, SWITCH.coarse_elements) for law in pad.halves)
+    first, second = (
+        release_or_nan_V(point.device, law, SWITCH.coarse_elements) for law in pad.halves
+    )
     return Solved(point, pad, states, (first, second))
 
 
@@ -266,7 +291,9 @@ def surfaces_of(number: int) -> int:
     return PAD.first_seed + SWITCH.seeds * number
 
 
-def solve_points(points: Sequence[tuple[int, Point]], contact: ContactSettings, cells: int) -> Iterator[Solved]:
+def solve_points(
+    points: Sequence[tuple[int, Point]], contact: ContactSettings, cells: int
+) -> Iterator[Solved]:
     """The switches of points, each with its number; one that is undecided has more cells."""
     for number, point in points:
         solved = solve_point(point, contact, cells, surfaces_of(number))

@@ -1,4 +1,6 @@
-"""How hard a switch presses its pad, and so how far the pad is computed.  Imports nothing heavy: rules read it."""
+"""How hard a switch presses its pad, and so how far the pad is computed.  Imports nothing heavy:
+rules read it.
+"""
 
 from collections.abc import Callable
 
@@ -20,7 +22,8 @@ def pressing(settings: DeviceSettings) -> DeviceSettings:
 
 
 def pressure_to_compute(settings: DeviceSettings) -> Callable[[Array], Array]:
-    """Least pressure (GPa) to which the pad of a switch is computed, as a function of the separations (nm).
+    """Least pressure (GPa) to which the pad of a switch is computed, as a function of the
+    separations (nm).
 
     Raises
     ------
@@ -60,14 +63,16 @@ def pull_in_V(settings: DeviceSettings) -> float:
 
 
 def never_closes(settings: DeviceSettings, pull_in_V: float) -> str:
-    """One line on a hold voltage below pull-in, which never closes the switch; empty where there is none.
+    """One line on a hold voltage below pull-in, which never closes the switch; empty where there is
+    none.
 
-    A switch that is closed by more and then held by less has the deepest closing, and so the release, of the former.
-    """
+    A switch that is closed by more and then held by less has the deepest closing, and so the
+    release, of the former."""
     hold = settings.hold_voltage_V
     if hold is None or hold >= (1.0 - SWITCH.pull_in_error) * pull_in_V:
         return ""
     return (
-        f"device.hold_voltage_V = {hold:.4g}: never closes this switch, which pulls in at {pull_in_V:.4g} V; give the "
-        "largest voltage that it is closed with, or null for pull-in itself"
+        f"device.hold_voltage_V = {hold:.4g}: never closes this switch, which pulls in at"
+        f" {pull_in_V:.4g} V; give the largest voltage that it is closed with, or null for pull-in"
+        " itself"
     )

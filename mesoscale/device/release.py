@@ -1,8 +1,8 @@
-"""The answer: release voltage and probability of sticking over all that is uncertain, and what makes them so.
+"""The answer: release voltage and probability of sticking over all that is uncertain, and what
+makes them so.
 
-It is taken from the switches of `mesoscale.device.points` as they are. A point without an answer has its reason, and
-the probability's interval counts it both ways.
-"""
+It is taken from the switches of `mesoscale.device.points` as they are. A point without an answer
+has its reason, and the probability's interval counts it both ways."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -22,7 +22,9 @@ from mesoscale.pad.memory import attracting
 Array = NDArray[np.float64]
 
 WORKS = (1.0 / 3.0, 1.0, 3.0)
-"""Both laws of attraction differ by a factor of 3 in their work at touch (docs/contact.md); no statistics decides."""
+"""Both laws of attraction differ by a factor of 3 in their work at touch (docs/contact.md); no
+statistics decides.
+"""
 
 
 @dataclass(frozen=True)
@@ -42,18 +44,21 @@ class Answer:
     Attributes
     ----------
     release_V : 0 where it sticks; this, pull-in and capacitance as `describe` gives them.
-    quantile_error_V : standard errors of the 5, 50 and 95 % quantiles of the release, by the number of points.
+    quantile_error_V : standard errors of the 5, 50 and 95 % quantiles of the release, by the number
+        of points.
     stuck : share that sticks, with its interval.
-    causes : share of the variance by what is common to all devices, what is of each, and the number of cells.
+    causes : share of the variance by what is common to all devices, what is of each, and the number
+        of cells.
     sensitivity : by what varies, the largest first.
     points, refused : number of solved switches, and why the others are none.
     deepened : of the solved, those that press harder than their pads were computed.
     cells : of all pads together.
     cells_error_V : root mean square error of a point by its number of cells.
-    explained : share of the variance that the fit behind the causes predicts of switches left out one at a time.
+    explained : share of the variance that the fit behind the causes predicts of switches left out
+        one at a time.
     noise : share that a number seems to explain by chance, taken off those of `sensitivity`.
-    known : bands of what is not known and of what differs between devices; see `mesoscale.device.known.known`.
-    """
+    known : bands of what is not known and of what differs between devices; see
+        `mesoscale.device.known.known`."""
 
     release_V: dict[str, Any]
     quantile_error_V: dict[str, float]
@@ -81,15 +86,27 @@ def answer(model: PadModel) -> Answer:
     """
     solved, refused = [model.points[k] for k in model.solved], model.refused
     if len(solved) < SWITCH.solved * len(model.points):
-        raise InputError(f"device: {len(refused)} of {len(model.points)} switches cannot be solved: {refused[0]}")
+        raise InputError(
+            f"device: {len(refused)} of {len(model.points)} switches cannot be solved: {refused[0]}"
+        )
     release, stuck = model.states("release_V"), model.states("release_V") == 0.0
     errors = np.array([point.error_V for point in solved])
-    error_V = float(np.sqrt(np.mean(errors[np.isfinite(errors)] ** 2))) if np.isfinite(errors).any() else 0.0
+    error_V = (
+        float(np.sqrt(np.mean(errors[np.isfinite(errors)] ** 2)))
+        if np.isfinite(errors).any()
+        else 0.0
+    )
     names, varies, varying = model.design.names, model.design.varies, model.design.varying
     fit = fit_additive(model.design.probability[model.solved][:, varying], release)
     cells = fit.deviation(release, np.where(np.isfinite(errors), errors, error_V))
-    rows = [(names[k], varies[k], share) for k, share in zip(varying, fit.shares().tolist(), strict=True)]
-    by_cause = {kind: float(sum(share for _, of, share in rows if of == kind)) for kind in ("common", "each")}
+    rows = [
+        (names[k], varies[k], share)
+        for k, share in zip(varying, fit.shares().tolist(), strict=True)
+    ]
+    by_cause = {
+        kind: float(sum(share for _, of, share in rows if of == kind))
+        for kind in ("common", "each")
+    }
     by_cause["cells"] = cells**2 / fit.variance
     return Answer(
         describe(release),
@@ -125,7 +142,9 @@ def describe(values: Array) -> dict[str, Any]:
 
 
 def probability(count: int, total: int) -> dict[str, float]:
-    """Share of `count` in `total` with its 95 % Wilson interval, which stays sensible at 0 and 1."""
+    """Share of `count` in `total` with its 95 % Wilson interval, which stays sensible at 0 and
+    1.
+    """
     from scipy.stats import binomtest  # slow to import
 
     ends = binomtest(count, total).proportion_ci(0.95, method="wilson")
@@ -141,7 +160,9 @@ def _quantile_errors(release: Array) -> dict[str, float]:
 
 
 def _probability(stuck: int, solved: int, refused: int) -> dict[str, float]:
-    """Share that sticks; the interval is that of all points, with those refused once as released and once as stuck."""
+    """Share that sticks; the interval is that of all points, with those refused once as released
+    and once as stuck.
+    """
     total = solved + refused
     least, most = probability(stuck, total), probability(stuck + refused, total)
     return {"value": stuck / solved, "low": least["low"], "high": most["high"]}
@@ -163,9 +184,15 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         "cells_computed": cells.count if cells else 0,
         "cells_of_pad": settings.pad_um2 * 1e6 / cell_area_nm2,
         "central": {**central.states, "error_V": central.error_V} if central.states else None,
-        "by_attraction": [{"times": times, "release_V": _release_V(central, times)} for times in WORKS],
-        "adhesion": [asdict(opened) for opened in adhesion_of(central.pad.law)] if central.pad else [],
-        "by_key": release_by_key(settings, central.pad.law) if central.states and central.pad else [],
+        "by_attraction": [
+            {"times": times, "release_V": _release_V(central, times)} for times in WORKS
+        ],
+        "adhesion": (
+            [asdict(opened) for opened in adhesion_of(central.pad.law)] if central.pad else []
+        ),
+        "by_key": (
+            release_by_key(settings, central.pad.law) if central.states and central.pad else []
+        ),
         "gate": {"passed": not (reasons := _reasons(central)), "reasons": reasons},
         "answer": said,
         "answer_status": status,
@@ -181,8 +208,9 @@ def _reasons(central: Solved) -> list[str]:
         reasons.append(f"{unsettled} cells in which flow did not come to rest")
     if min(central.halves_V) == 0.0 < max(central.halves_V):
         reasons.append(
-            f"the {cells.count} computed cells do not decide whether the switch sticks: on one half of them it does, "
-            f"on the other it lets go at {max(central.halves_V):.3g} V; raise pad.cells"
+            f"the {cells.count} computed cells do not decide whether the switch sticks: on one half"
+            f" of them it does, on the other it lets go at {max(central.halves_V):.3g} V; raise"
+            " pad.cells"
         )
     return reasons
 

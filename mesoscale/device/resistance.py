@@ -1,25 +1,28 @@
 """Electrical resistance of a rough contact, by its incremental stiffness (docs/resistance.md).
 
-Current through the spots of a contact obeys the equations of a small further approach of its two elastic bodies:
+Current through the spots of a contact obeys the equations of a small further approach of its two
+elastic bodies:
 
     1 / R = 2 / (E* (rho_1 + rho_2)) dF / d(delta)
 
-for any shape and number of spots (Barber, Proc. R. Soc. A 459 (2003) 53). The approach delta is that of the mean
-planes. The further approach is elastic: where asperities flow, its slope is that of the way back. Contact grows with
-the force, so that the force is convex in delta, and its slope lies between those of the chords to both sides.
+for any shape and number of spots (Barber, Proc. R. Soc. A 459 (2003) 53). The approach delta is
+that of the mean planes. The further approach is elastic: where asperities flow, its slope is that
+of the way back. Contact grows with the force, so that the force is convex in delta, and its slope
+lies between those of the chords to both sides.
 
-Spots that are narrow beside the mean free path l of electrons resist more. Of a round spot of radius a between equal
-metals (Wexler, Proc. Phys. Soc. 89 (1966) 927), with Holm's resistance first and Sharvin's last:
+Spots that are narrow beside the mean free path l of electrons resist more. Of a round spot of
+radius a between equal metals (Wexler, Proc. Phys. Soc. 89 (1966) 927), with Holm's resistance first
+and Sharvin's last:
 
     R = gamma(l / a) rho / (2 a) + 4 rho l / (3 pi a^2)
 
-Sharvin's part depends on the area of contact alone, also of many spots. In gamma, a is the radius of equal, distant
-spots that together have this area and this resistance of Barber's.
+Sharvin's part depends on the area of contact alone, also of many spots. In gamma, a is the radius
+of equal, distant spots that together have this area and this resistance of Barber's.
 
-A film's resistance is added as if each spot had one potential, which is the least that spots and film have together;
-for one spot that is a film of its own, a twelfth of the spot's own resistance is missing at most (Holm, Electric
-Contacts, 1967: 0.27 rho / a at uniform current, 0.25 at one potential).
-"""
+A film's resistance is added as if each spot had one potential, which is the least that spots and
+film have together; for one spot that is a film of its own, a twelfth of the spot's own resistance
+is missing at most (Holm, Electric Contacts, 1967: 0.27 rho / a at uniform current, 0.25 at one
+potential)."""
 
 from dataclasses import dataclass
 
@@ -52,11 +55,15 @@ class Stiffness:
 def stiffness_of(branch: Branch) -> Stiffness:
     """Stiffness along an opening, or along a closing on which nothing flows.
 
-    The force is straight in the approach while the same sites touch. So where a neighbouring step has the same area,
-    the chord to it is the slope; elsewhere that of a parabola through three steps stands for it.
-    """
+    The force is straight in the approach while the same sites touch. So where a neighbouring step
+    has the same area, the chord to it is the slope; elsewhere that of a parabola through three
+    steps stands for it."""
     up = np.argsort(branch.separation_nm)[::-1]
-    force, approach, area = branch.repulsive_nN[up], -branch.separation_nm[up], branch.contact_area_nm2[up]
+    force, approach, area = (
+        branch.repulsive_nN[up],
+        -branch.separation_nm[up],
+        branch.contact_area_nm2[up],
+    )
     kept = (force > 0) & (np.diff(approach, prepend=-np.inf) > 0)
     force, approach, area = force[kept], approach[kept], area[kept]
     slope = np.gradient(force, approach, edge_order=2)
@@ -66,11 +73,12 @@ def stiffness_of(branch: Branch) -> Stiffness:
 
 
 def diffusive_share(knudsen: Array) -> Array:
-    """What is left of Holm's resistance of a spot of radius a where electrons fly `knudsen` = l / a, Wexler's gamma.
+    """What is left of Holm's resistance of a spot of radius a where electrons fly `knudsen` = l /
+    a, Wexler's gamma.
 
-    As Nikolic and Allen (Phys. Rev. B 60 (1999) 3963) fit it to Boltzmann's equation. Electrons followed one by one
-    give a resistance that is up to 4 % higher (tests/mesoscale/device/test_resistance.py).
-    """
+    As Nikolic and Allen (Phys. Rev. B 60 (1999) 3963) fit it to Boltzmann's equation. Electrons
+    followed one by one give a resistance that is up to 4 % higher
+    (tests/mesoscale/device/test_resistance.py)."""
     return (1.0 + 0.83 * knudsen) / (1.0 + 1.33 * knudsen)
 
 
@@ -88,7 +96,8 @@ def resistance_Ohm(
     ----------
     slope : stiffness, N/m; any shape, as the area.
     resistivities_nOhm_m : of the two bodies; gold 22.
-    mean_free_paths_nm : of their electrons; gold 37.7 at 20 C (Gall, J. Appl. Phys. 119 (2016) 085101); 0: Holm alone.
+    mean_free_paths_nm : of their electrons; gold 37.7 at 20 C (Gall, J. Appl. Phys. 119 (2016)
+        085101); 0: Holm alone.
     film_Ohm_um2 : resistance of a film times its area.
     """
     radius_nm = 2.0 * area_nm2 * e_star_GPa / (np.pi * slope)  # GPa nm^2 over N/m is nm

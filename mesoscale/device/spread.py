@@ -31,7 +31,9 @@ def departures(settings: DeviceSettings) -> InputTable:
 
 
 def properties_at(settings: DeviceSettings, units: Array) -> Array:
-    """Values of the properties of `DeviceSettings.varied` at probabilities; both of shape (m, k)."""
+    """Values of the properties of `DeviceSettings.varied` at probabilities; both of shape (m,
+    k).
+    """
     table = departures(settings)
     moved = table.transform(units) if table.rows else np.empty((len(units), 0))
     stated = np.array([getattr(settings, name) for name in table.names])
@@ -44,8 +46,12 @@ def with_properties(settings: DeviceSettings, values: Array) -> DeviceSettings:
     return settings.model_copy(update=dict(zip(settings.varied, values.tolist(), strict=True)))
 
 
-def departed(settings: DeviceSettings, probability: float) -> Iterator[tuple[str, DeviceSettings, DeviceSettings]]:
-    """Each property that varies, and the devices where it alone departs to this probability and to its complement."""
+def departed(
+    settings: DeviceSettings, probability: float
+) -> Iterator[tuple[str, DeviceSettings, DeviceSettings]]:
+    """Each property that varies, and the devices where it alone departs to this probability and to
+    its complement.
+    """
     names = settings.varied
     for place, name in enumerate(names):
         units = np.full((2, len(names)), 0.5)
@@ -70,5 +76,6 @@ def check_spread(settings: DeviceSettings) -> None:
             except InputError as error:
                 why = str(error).rpartition(": ")[2]
                 raise InputError(
-                    f"device.spread.{row.name}: reaches {row.name} = {value:.4g}: {why}; narrow or truncate it"
+                    f"device.spread.{row.name}: reaches {row.name} = {value:.4g}: {why}; narrow or"
+                    " truncate it"
                 ) from None

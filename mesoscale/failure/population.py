@@ -1,4 +1,5 @@
-"""Switches of all that a scene leaves uncertain, each on its pad: does it fail, and how much attraction does it bear?
+"""Switches of all that a scene leaves uncertain, each on its pad: does it fail, and how much
+attraction does it bear?
 
 The reserve of a switch is the logarithm of the factor on its attraction with which it just fails.
 """
@@ -37,7 +38,8 @@ class Pressed(Protocol):
 
 
 Press = Callable[[Point, int, int], Pressed]
-"""Presses the pad of a point: with so many times the cells of the scene, and surfaces by a number."""
+"""Presses the pad of a point: with so many times the cells of the scene, and surfaces by a number.
+"""
 
 
 @dataclass(frozen=True)
@@ -46,23 +48,28 @@ class FailureNumerics:
 
     Attributes
     ----------
-    first, fewest : switches of the first response beside those of the answer, and the fewest that may be solved.
+    first, fewest : switches of the first response beside those of the answer, and the fewest that
+        may be solved.
     rounds, batch : switches are added so often, so many at once, where a failure is likely.
     runs : switches that correct a probability.
-    wide : half of the first switches have this many times the deviations of the inputs: rare events are far out.
+    wide : half of the first switches have this many times the deviations of the inputs: rare events
+        are far out.
     surer_cells : times as many cells has a pad whose halves disagree on whether the switch fails.
     surfaces : numbers of surfaces.
-    least_times, most_times, step : factors on the attraction that are tried, and the difference of their logarithms to
+    least_times, most_times, step : factors on the attraction that are tried, and the difference of
+        their logarithms to
         which the reserve is known.
-    span, voltages : largest hold voltage of the curve, over that of the scene, and the number of voltages.
+    span, voltages : largest hold voltage of the curve, over that of the scene, and the number of
+        voltages.
     rough : probabilities of the RMS heights among which the least is sought, from the roughest.
     springs : springs among which the least is sought, over that of the scene.
-    spring_runs : switches that are solved with each spring. They know a probability to some 25 %, and a spring to 1 or
+    spring_runs : switches that are solved with each spring. They know a probability to some 25 %,
+        and a spring to 1 or
         2 %.
     confidence : that no more fail than allowed, by what is common to all devices and not known.
     near : difference of logarithms to which attractions and springs are sought.
-    far : deviations beyond which a probability is 1 in double precision, so that a number would be endless.
-    """
+    far : deviations beyond which a probability is 1 in double precision, so that a number would be
+        endless."""
 
     first: int = 48
     fewest: int = 32
@@ -108,15 +115,19 @@ class Attracted:
 
         Raises
         ------
-        InputError : the pad is pressed beyond what is known of it, or the electrode cannot be solved.
-        """
+        InputError : the pad is pressed beyond what is known of it, or the electrode cannot be
+            solved."""
         while True:
             try:
                 if not self.settings.bends:
                     law = attracting(self.laws[-1], times)
-                    plate = solve_on_pad(plate_from_settings(self.settings), law, self.settings.hold_voltage_V)
+                    plate = solve_on_pad(
+                        plate_from_settings(self.settings), law, self.settings.hold_voltage_V
+                    )
                     return plate.release_V == 0.0 or plate.release_V < self.release_V
-                self.closed = self.closed or closed_beam(self.settings, self.laws[-1], self.elements)
+                self.closed = self.closed or closed_beam(
+                    self.settings, self.laws[-1], self.elements
+                )
                 return self.closed(self.release_V, times)
             except NotComputed:
                 if len(self.laws) > SWITCH.deepened_by:
@@ -125,7 +136,9 @@ class Attracted:
                 self.closed = None
 
     def reserve(self, step: float = FAILURE.step) -> float:
-        """Logarithm of the factor on the attraction with which the switch just fails, known to half a step."""
+        """Logarithm of the factor on the attraction with which the switch just fails, known to half
+        a step.
+        """
         low, high = np.log(FAILURE.least_times), np.log(FAILURE.most_times)
         while high - low > step:
             middle = 0.5 * (low + high)
@@ -139,15 +152,16 @@ class Attracted:
 
 @dataclass(frozen=True)
 class Population:
-    """All switches that the scene allows, as standard normal numbers z: inputs, D0 and properties of the device.
+    """All switches that the scene allows, as standard normal numbers z: inputs, D0 and properties
+    of the device.
 
     Attributes
     ----------
     table, settings, cutoffs_nm : as `mesoscale.device.points` takes them.
     release_V : a switch that is still closed at this voltage has failed.
     press : of the pads.
-    solved : probabilities (m, dimension) of switches whose pads were pressed at the hold voltage, and these pads.
-    """
+    solved : probabilities (m, dimension) of switches whose pads were pressed at the hold voltage,
+        and these pads."""
 
     table: InputTable
     settings: DeviceSettings
@@ -188,8 +202,12 @@ class Population:
         return values_at(ndtr(ends), self.table, self.settings, self.cutoffs_nm).min(axis=0) > 0.0
 
     def columns(self, z: Array, hold_V: Array) -> Array:
-        """What the response depends on: logarithms of what is positive, as the reserve is a logarithm."""
-        values = values_at(ndtr(np.clip(z, -FAILURE.far, FAILURE.far)), self.table, self.settings, self.cutoffs_nm)
+        """What the response depends on: logarithms of what is positive, as the reserve is a
+        logarithm.
+        """
+        values = values_at(
+            ndtr(np.clip(z, -FAILURE.far, FAILURE.far)), self.table, self.settings, self.cutoffs_nm
+        )
         logs = np.log(np.maximum(values, np.finfo(float).tiny))
         return np.column_stack([np.where(self.positive, logs, values), hold_V])
 
@@ -200,18 +218,24 @@ class Population:
         return [point_of(row, self.table.names, held) for row in rows]
 
     def reserves(self, z: Array, hold_V: float, pads: Sequence[Pressed] | None = None) -> Array:
-        """Reserves of switches, shape (m,), on pads that are pressed where none are given; NaN where one cannot be."""
+        """Reserves of switches, shape (m,), on pads that are pressed where none are given; NaN
+        where one cannot be.
+        """
         reserves = np.full(len(z), np.nan)
         for k, point in enumerate(self.points(z, hold_V)):
             with suppress(InputError):
                 pad = self.press(point, 1, _surface(z[k])) if pads is None else pads[k]
-                reserves[k] = Attracted(point.device, pad.law, self.release_V, SWITCH.coarse_elements).reserve()
+                reserves[k] = Attracted(
+                    point.device, pad.law, self.release_V, SWITCH.coarse_elements
+                ).reserve()
         return reserves
 
     def failed(self, z: Array, hold_V: float, times: float) -> NDArray[np.bool_]:
         """Which switches fail, shape (m,); one that cannot be solved has failed."""
         points = self.points(z, hold_V)
-        return np.array([self._fails(point, _surface(row), times) for row, point in zip(z, points, strict=True)])
+        return np.array(
+            [self._fails(point, _surface(row), times) for row, point in zip(z, points, strict=True)]
+        )
 
     def _fails(self, point: Point, surface: int, times: float) -> bool:
         def fails(law: PadLaw, elements: int) -> bool:

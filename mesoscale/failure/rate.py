@@ -1,11 +1,11 @@
-"""How often a switch fails: the share of switches that stick, or let go too late, down to one in a million.
+"""How often a switch fails: the share of switches that stick, or let go too late, down to one in a
+million.
 
-Sticking is a yes or no, from which no rare event can be learned. So a response is learned of the reserve of switches
-(`mesoscale.failure.population`). One fails by itself where its reserve is below zero, and with k times the attraction
-where it is below ln k: one response serves all laws of attraction and hold voltages. It is learned from switches on
-pads that are pressed for them: those of the answer, and further ones where a failure is likely. Such switches also
-correct it.
-"""
+Sticking is a yes or no, from which no rare event can be learned. So a response is learned of the
+reserve of switches (`mesoscale.failure.population`). One fails by itself where its reserve is below
+zero, and with k times the attraction where it is below ln k: one response serves all laws of
+attraction and hold voltages. It is learned from switches on pads that are pressed for them: those
+of the answer, and further ones where a failure is likely. Such switches also correct it."""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
@@ -72,7 +72,9 @@ class ReserveResponse:
         samples: int = SAMPLES,
         repeats: int = 1,
     ) -> Sampled:
-        """The failures with `times` the attraction; one run where probabilities are only compared."""
+        """The failures with `times` the attraction; one run where probabilities are only
+        compared.
+        """
         return sample_event(
             lambda z: self.moments(_with(z, known), hold_V),
             self.population.dimension,
@@ -82,21 +84,35 @@ class ReserveResponse:
             repeats,
         )
 
-    def rates(self, times: float, hold_V: float, known: Known | None = None, seed: int = 0) -> Array:
-        """Shares of the devices that fail with `times` the attraction, by draws of what is common to all of them."""
+    def rates(
+        self, times: float, hold_V: float, known: Known | None = None, seed: int = 0
+    ) -> Array:
+        """Shares of the devices that fail with `times` the attraction, by draws of what is common
+        to all of them.
+        """
         return rates_given(
-            lambda z: self.moments(_with(z, known), hold_V), self.population.common, float(np.log(times)), seed
+            lambda z: self.moments(_with(z, known), hold_V),
+            self.population.common,
+            float(np.log(times)),
+            seed,
         )
 
 
 def voltages(population: Population) -> Array:
-    """Hold voltages of the curve: from pull-in, or that of the scene, to `FAILURE.span` times that of the scene."""
+    """Hold voltages of the curve: from pull-in, or that of the scene, to `FAILURE.span` times that
+    of the scene.
+    """
     hold_V = population.hold_V
-    return np.linspace(min(hold_V, pull_in_V(population.settings)), FAILURE.span * hold_V, FAILURE.voltages)
+    return np.linspace(
+        min(hold_V, pull_in_V(population.settings)), FAILURE.span * hold_V, FAILURE.voltages
+    )
 
 
-def learn(population: Population, tell: Callable[[float, str], None], seed: int = 0) -> ReserveResponse:
-    """The response of the reserve, from switches of the whole population and then from such as nearly fail.
+def learn(
+    population: Population, tell: Callable[[float, str], None], seed: int = 0
+) -> ReserveResponse:
+    """The response of the reserve, from switches of the whole population and then from such as
+    nearly fail.
 
     Raises
     ------
@@ -112,24 +128,29 @@ def learn(population: Population, tell: Callable[[float, str], None], seed: int 
     known_z, hold_V = ndtri(units), population.hold_V
     columns = population.columns(known_z, np.full(len(known_z), hold_V))
     reserves = population.reserves(known_z, hold_V, pads)
-    batches = [(z[k :: FAILURE.voltages], float(volts)) for k, volts in enumerate(voltages(population))]
+    batches = [
+        (z[k :: FAILURE.voltages], float(volts)) for k, volts in enumerate(voltages(population))
+    ]
     number = 0
     while True:
         for part, hold_V in batches:
             tell(0.2 * number / FAILURE.rounds, f"{len(reserves)} switches")
-            columns = np.concatenate([columns, population.columns(part, np.full(len(part), hold_V))])
+            columns = np.concatenate(
+                [columns, population.columns(part, np.full(len(part), hold_V))]
+            )
             reserves = np.concatenate([reserves, population.reserves(part, hold_V)])
         # a switch that fails with the least attraction says nothing of where others begin to
         within, known = np.isfinite(reserves), reserves > np.log(FAILURE.least_times) + FAILURE.step
         if within.sum() < FAILURE.fewest:
             raise InputError(
-                f"failure: {within.sum()} of {len(reserves)} switches can be solved; accepted are at least "
-                f"{FAILURE.fewest}; lower device.hold_voltage_V, or narrow the inputs"
+                f"failure: {within.sum()} of {len(reserves)} switches can be solved; accepted are"
+                f" at least {FAILURE.fewest}; lower device.hold_voltage_V, or narrow the inputs"
             )
         if known.sum() < FAILURE.fewest:
             raise InputError(
-                f"failure.release_V = {population.release_V:.4g}: {known.sum()} of {within.sum()} switches release "
-                f"above it; accepted are at least {FAILURE.fewest}; lower it, or device.hold_voltage_V"
+                f"failure.release_V = {population.release_V:.4g}: {known.sum()} of {within.sum()}"
+                f" switches release above it; accepted are at least {FAILURE.fewest}; lower it, or"
+                " device.hold_voltage_V"
             )
         learned = columns[known], reserves[known]
         response = ReserveResponse(population, Process(*learned), len(reserves), *learned)
@@ -144,7 +165,9 @@ def learn(population: Population, tell: Callable[[float, str], None], seed: int 
 def corrected(
     response: ReserveResponse, times: float, hold_V: float, seed: int = 0, runs: int = FAILURE.runs
 ) -> Corrected:
-    """Probability of a failure with `times` the attraction, the response corrected by so many runs."""
+    """Probability of a failure with `times` the attraction, the response corrected by so many
+    runs.
+    """
     sampled = response.sample(times, hold_V, seed, repeats=REPEATS)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0xC0]))
     chosen = rng.permutation(len(sampled.points))[:runs]
@@ -153,10 +176,11 @@ def corrected(
 
 
 def furthest_allowed(values: Array, probability: Array, allowed: float) -> float | None:
-    """The last of values, from the safest on, with an allowed probability of failure; None where the first has more.
+    """The last of values, from the safest on, with an allowed probability of failure; None where
+    the first has more.
 
-    Between values, which rise or fall, the logarithm of the probability is interpolated; both of shape (n,).
-    """
+    Between values, which rise or fall, the logarithm of the probability is interpolated; both of
+    shape (n,)."""
     logarithm = np.log(np.maximum(np.maximum.accumulate(probability), LEAST))
     wanted = float(np.log(allowed))
     if logarithm[0] > wanted:
@@ -168,8 +192,11 @@ def furthest_allowed(values: Array, probability: Array, allowed: float) -> float
     return float(values[beyond - 1] + share * (values[beyond] - values[beyond - 1]))
 
 
-def least_rms_nm(response: ReserveResponse, times: float, hold_V: float, allowed: float) -> float | None:
-    """Least RMS height (nm), all else varying, with which no more switches fail than allowed, by `FAILURE.confidence`.
+def least_rms_nm(
+    response: ReserveResponse, times: float, hold_V: float, allowed: float
+) -> float | None:
+    """Least RMS height (nm), all else varying, with which no more switches fail than allowed, by
+    `FAILURE.confidence`.
 
     None where even the largest of `FAILURE.rough` is too little, or where roughness is no input.
     """
@@ -180,8 +207,13 @@ def least_rms_nm(response: ReserveResponse, times: float, hold_V: float, allowed
     rough = ndtri(np.array(FAILURE.rough))
     middle = np.zeros((rough.size, population.dimension))
     middle[:, place] = rough
-    rms_nm = values_at(ndtr(middle), population.table, population.settings, population.cutoffs_nm)[:, place]
-    failing = [np.quantile(response.rates(times, hold_V, (place, z)), FAILURE.confidence) for z in rough.tolist()]
+    rms_nm = values_at(ndtr(middle), population.table, population.settings, population.cutoffs_nm)[
+        :, place
+    ]
+    failing = [
+        np.quantile(response.rates(times, hold_V, (place, z)), FAILURE.confidence)
+        for z in rough.tolist()
+    ]
     return furthest_allowed(rms_nm, np.array(failing), allowed)
 
 
@@ -198,11 +230,12 @@ def just_allowed(response: ReserveResponse, hold_V: float, allowed: float) -> fl
 def least_spring(
     response: ReserveResponse, likely: Sampled, times: float, hold_V: float, allowed: float
 ) -> float | None:
-    """Least spring, in the unit of its setting, all else varying, with which no more switches fail than allowed.
+    """Least spring, in the unit of its setting, all else varying, with which no more switches fail
+    than allowed.
 
-    A weaker spring makes those fail that nearly fail with more attraction. So some of `likely` are solved with other
-    springs, and correct its probability as in `corrected`. None where even the largest of `FAILURE.springs` is too
-    weak, or where none is likely.
+    A weaker spring makes those fail that nearly fail with more attraction. So some of `likely` are
+    solved with other springs, and correct its probability as in `corrected`. None where even the
+    largest of `FAILURE.springs` is too weak, or where none is likely.
 
     Parameters
     ----------
@@ -216,7 +249,9 @@ def least_spring(
     chosen = rng.permutation(len(likely.points))[: FAILURE.spring_runs]
 
     def too_many(logarithm: float) -> bool:
-        changed = population.settings.model_copy(update={population.spring: now * float(np.exp(logarithm))})
+        changed = population.settings.model_copy(
+            update={population.spring: now * float(np.exp(logarithm))}
+        )
         failed = replace(population, settings=changed).failed(likely.points[chosen], hold_V, times)
         return likely.probability * float(np.mean(failed / likely.chance[chosen])) > allowed
 
@@ -243,7 +278,11 @@ def failure_rate(
     InputError : no switch of the population can be solved, or none lets go above the asked voltage.
     """
     hold, response = population.hold_V, learn(population, tell)
-    given = {(volts, times): response.rates(times, volts) for volts in voltages(population).tolist() for times in WORKS}
+    given = {
+        (volts, times): response.rates(times, volts)
+        for volts in voltages(population).tolist()
+        for times in WORKS
+    }
     rows = [
         {
             "hold_V": volts,
@@ -275,11 +314,16 @@ def failure_rate(
                 "largest_hold_V": allowed_V,
                 "least_rms_nm": least_rms_nm(response, times, hold, allowed),
                 "least_spring": spring,
-                "there": None if allowed_V is None else asdict(corrected(response, times, allowed_V)),
+                "there": (
+                    None if allowed_V is None else asdict(corrected(response, times, allowed_V))
+                ),
             }
         )
     # with the scene's own attraction, or where that never fails with the largest
-    judged = next((times for times in (1.0, WORKS[-1]) if response.sample(times, hold, 0).probability > 0.0), None)
+    judged = next(
+        (times for times in (1.0, WORKS[-1]) if response.sample(times, hold, 0).probability > 0.0),
+        None,
+    )
     return {
         "release_V": population.release_V,
         "allowed": allowed,
@@ -290,7 +334,10 @@ def failure_rate(
         "control_attraction": judged,
         "control": sorted(
             (
-                {"name": name, "failing_if_known": response.sample(judged, hold, 0, (k, 0.0)).probability}
+                {
+                    "name": name,
+                    "failing_if_known": response.sample(judged, hold, 0, (k, 0.0)).probability,
+                }
                 for k, name in enumerate(population.names)
                 if judged is not None
             ),

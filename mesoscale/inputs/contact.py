@@ -1,4 +1,6 @@
-"""What the contact model takes: the inputs of Table 1, those of a film, and how uncertain inputs enter it."""
+"""What the contact model takes: the inputs of Table 1, those of a film, and how uncertain inputs
+enter it.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -13,7 +15,8 @@ from mesoscale.settings.definitions import BY_NAME, RMS_SCATTER, definition
 
 @dataclass(frozen=True)
 class ContactInputs:
-    """The seven inputs of Table 1, and a film; their accepted ranges stand in `mesoscale.settings.definitions`.
+    """The seven inputs of Table 1, and a film; their accepted ranges stand in
+    `mesoscale.settings.definitions`.
 
     Attributes
     ----------
@@ -24,7 +27,8 @@ class ContactInputs:
     q0 : roll-off wave vector of the surface, 1/nm.
     hurst : Hurst exponent of the surface.
     rms : RMS height of the surface, nm.
-    h_film, t_film, k_film, m_film : hardness (GPa) and thickness (nm) of a film, and how the base softens it
+    h_film, t_film, k_film, m_film : hardness (GPa) and thickness (nm) of a film, and how the base
+        softens it
         (`HardnessLaw`); a film needs all four.
 
     Raises
@@ -51,16 +55,22 @@ class ContactInputs:
         film = {name: getattr(self, name) for name in ("h_film", "k_film", "m_film")}
         if self.t_film == 0 and any(film.values()):
             stated = ", ".join(f"{name} = {value:g}" for name, value in film.items() if value)
-            raise InputError(f"{stated} without t_film: a film needs its thickness; give t_film, or leave them out")
+            raise InputError(
+                f"{stated} without t_film: a film needs its thickness; give t_film, or leave"
+                " them out"
+            )
         if self.t_film > 0 and not (self.k_film or self.m_film):
             raise InputError(
-                f"t_film = {self.t_film:.4g} nm without k_film and m_film: nothing says how the base softens the film; "
-                "give both, or without t_film the film's hardness as h_macro"
+                f"t_film = {self.t_film:.4g} nm without k_film and m_film: nothing says how the"
+                " base softens the film; give both, or without t_film the film's hardness as"
+                " h_macro"
             )
-        if self.t_film > 0 and self.h_film < self.h_macro:  # contacts that harden as they grow have no one pressure
+        if (
+            self.t_film > 0 and self.h_film < self.h_macro
+        ):  # contacts that harden as they grow have no one pressure
             raise InputError(
-                f"h_film = {self.h_film:.4g} GPa on h_macro = {self.h_macro:.4g} GPa: accepted are films at least as "
-                "hard as their base"
+                f"h_film = {self.h_film:.4g} GPa on h_macro = {self.h_macro:.4g} GPa: accepted are"
+                " films at least as hard as their base"
             )
 
     @property
@@ -81,8 +91,11 @@ class FilmInputs(ContactInputs):
     rms_scatter: float
 
 
-def contact_of(values: Mapping[str, float], settings: ContactSettings) -> tuple[ContactInputs, ContactSettings]:
-    """Contact inputs from values by name, and the settings with those inputs put in that replace one of them.
+def contact_of(
+    values: Mapping[str, float], settings: ContactSettings
+) -> tuple[ContactInputs, ContactSettings]:
+    """Contact inputs from values by name, and the settings with those inputs put in that replace
+    one of them.
 
     Raises
     ------

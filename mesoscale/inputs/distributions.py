@@ -1,4 +1,6 @@
-"""Distributions of the uncertain inputs: quantile function, support, and joint samples with correlation."""
+"""Distributions of the uncertain inputs: quantile function, support, and joint samples with
+correlation.
+"""
 
 from dataclasses import dataclass, field
 
@@ -16,7 +18,8 @@ class Distribution:
 
     Attributes
     ----------
-    kind : uniform, log_uniform (uniform in the logarithm), normal, truncated_normal, samples or fixed.
+    kind : uniform, log_uniform (uniform in the logarithm), normal, truncated_normal, samples or
+        fixed.
     a : lower end, mean or fixed value.
     b : upper end or standard deviation.
     low : lower truncation.
@@ -51,7 +54,9 @@ class Distribution:
 
     def scaled(self, factor: float) -> "Distribution":
         """The distribution of `factor` times the value."""
-        numbers = {name: factor * getattr(self, name) for name in ("a", "b", "low", "high", "values")}
+        numbers = {
+            name: factor * getattr(self, name) for name in ("a", "b", "low", "high", "values")
+        }
         return Distribution(self.kind, **numbers)
 
     def span(self, central_share: float = 0.999) -> tuple[float, float]:
@@ -98,7 +103,8 @@ class InputTable:
     def __repr__(self) -> str:
         medians = self.medians()
         return (
-            f"InputTable, medians: {', '.join(f'{row.name} {medians[row.name]:.4g} {row.unit}' for row in self.rows)}"
+            "InputTable, medians:"
+            f" {', '.join(f'{row.name} {medians[row.name]:.4g} {row.unit}' for row in self.rows)}"
         )
 
     @property
@@ -107,7 +113,9 @@ class InputTable:
         return [row.name for row in self.rows]
 
     def medians(self) -> dict[str, float]:
-        """Central values by name, in the inputs' units (the means, where a distribution is symmetric)."""
+        """Central values by name, in the inputs' units (the means, where a distribution is
+        symmetric).
+        """
         return {row.name: float(row.distribution.quantile(0.5)) for row in self.rows}
 
     def ranges(self) -> Array:
@@ -115,12 +123,15 @@ class InputTable:
         return np.array([row.distribution.span() for row in self.rows])
 
     def transform(self, unit_points: Array) -> Array:
-        """Points of the unit cube (m, n) to values of the inputs with their correlation (Gaussian copula)."""
+        """Points of the unit cube (m, n) to values of the inputs with their correlation (Gaussian
+        copula).
+        """
         if not np.array_equal(self.correlation, np.eye(len(self.rows))):
             from scipy.special import ndtr, ndtri
 
-            # the copula's linear correlation that gives this rank correlation; OpenTURNS' NormalCopula has the
-            # same points to 4e-16, but takes as many lines and belongs to an extra
+            # the copula's linear correlation that gives this rank correlation; OpenTURNS'
+            # NormalCopula has the same points to 4e-16, but takes as many lines and belongs to an
+            # extra
             linear = 2 * np.sin(np.pi / 6 * self.correlation)
             factor = np.linalg.cholesky(linear)
             inside = np.clip(unit_points, 1e-15, 1 - 1e-15)
@@ -145,9 +156,14 @@ def correlation_matrix(names: list[str], pairs: dict[tuple[str, str], float]) ->
     for (first, second), rank in pairs.items():
         i, j = names.index(first), names.index(second)
         matrix[i, j] = matrix[j, i] = rank
-    if np.linalg.eigvalsh(2 * np.sin(np.pi / 6 * matrix) * (1 - np.eye(len(names))) + np.eye(len(names)))[0] <= 0:
+    if (
+        np.linalg.eigvalsh(
+            2 * np.sin(np.pi / 6 * matrix) * (1 - np.eye(len(names))) + np.eye(len(names))
+        )[0]
+        <= 0
+    ):
         raise InputError(
-            f"inputs.correlations: {', '.join(f'{a}-{b} {r:g}' for (a, b), r in pairs.items())} contradict "
-            "one another (not positive definite); make them weaker"
+            f"inputs.correlations: {', '.join(f'{a}-{b} {r:g}' for (a, b), r in pairs.items())}"
+            " contradict one another (not positive definite); make them weaker"
         )
     return matrix

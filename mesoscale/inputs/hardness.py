@@ -7,7 +7,8 @@ import numpy as np
 
 
 class HardnessLaw(NamedTuple):
-    """H = H_b + (H_film - H_b) / (1 + k (L/t)^m) of a film on a base, L the root of the contact's area.
+    """H = H_b + (H_film - H_b) / (1 + k (L/t)^m) of a film on a base, L the root of the contact's
+    area.
 
     The base has H_b(A) = H_macro + H' A^-1/4 (eq. 4). Without a film (t = 0) H is that of the base.
 
@@ -38,11 +39,17 @@ class HardnessLaw(NamedTuple):
         base = self.h_macro + self.h_prime / np.sqrt(length)
         if not np.any(self.t_film):
             return base
-        return base + (self.h_film - base) / (1.0 + self.k_film * (length / self.t_film) ** self.m_film)
+        return base + (self.h_film - base) / (
+            1.0 + self.k_film * (length / self.t_film) ** self.m_film
+        )
 
     def scaled(self, factor: float) -> "HardnessLaw":
         """The law of a material with this share of the hardness."""
-        return self._replace(h_macro=factor * self.h_macro, h_prime=factor * self.h_prime, h_film=factor * self.h_film)
+        return self._replace(
+            h_macro=factor * self.h_macro,
+            h_prime=factor * self.h_prime,
+            h_film=factor * self.h_film,
+        )
 
     @property
     def constant(self) -> bool:

@@ -1,4 +1,6 @@
-"""The table of uncertain inputs in use (the paper's Table 1): each row from literature or from a stage."""
+"""The table of uncertain inputs in use (the paper's Table 1): each row from literature or from a
+stage.
+"""
 
 import json
 import os
@@ -10,7 +12,12 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
-from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
+from mesoscale.inputs.distributions import (
+    Distribution,
+    InputTable,
+    UncertainInput,
+    correlation_matrix,
+)
 from mesoscale.settings import TABLE_1, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.contact import AttractionLaw
 from mesoscale.settings.definitions import BY_NAME, RMS_SCATTER
@@ -31,21 +38,26 @@ def collect(
     Parameters
     ----------
     settings : origin of each row, and the distributions of the literature rows.
-    stages : content of the result file of each stage that a row wants: `inputs` (by name: distribution, a, b
+    stages : content of the result file of each stage that a row wants: `inputs` (by name:
+        distribution, a, b
         and perhaps low, high, correlation) and `gate` (`passed`, `reasons`).
     files : name of that file, for messages and the table.
     law : `contact.attraction`, by which a stated work and range become A_H and D0.
 
     Raises
     ------
-    InputError : a stage's gate failed and is not accepted, a stage lacks an input, or a range crosses a physical bound.
-    """
+    InputError : a stage's gate failed and is not accepted, a stage lacks an input, or a range
+        crosses a physical bound."""
     rows, pairs = [], dict(settings.pairs)
     for names, rank in joint_samples(settings.rows(law)).items():
         pairs.setdefault(names, rank)
     for name, row in settings.rows(law).items():
         if row.origin == "literature":
-            given, source, where = stated_distribution(name, row), row.source or "scene", f"inputs.{name}"
+            given, source, where = (
+                stated_distribution(name, row),
+                row.source or "scene",
+                f"inputs.{name}",
+            )
         else:
             source = files[row.origin]
             accepted = row.origin in settings.accepted_gates
@@ -54,7 +66,9 @@ def collect(
             given = distribution_of(entry, where)
             for other, rank in entry.get("correlation", {}).items():
                 partner = settings.rows(law).get(other)
-                if row.origin == "calibration":  # a posterior has its own correlations, among its own inputs
+                if (
+                    row.origin == "calibration"
+                ):  # a posterior has its own correlations, among its own inputs
                     if partner is not None and partner.origin == "calibration":
                         pairs.pop((other, name), None)
                         pairs[name, other] = float(rank)
@@ -66,12 +80,15 @@ def collect(
     return InputTable(tuple(rows), correlation_matrix(names, pairs))
 
 
-def film_table(table: InputTable, film: Mapping[str, Any], scatter: Sequence[float] | None) -> InputTable:
+def film_table(
+    table: InputTable, film: Mapping[str, Any], scatter: Sequence[float] | None
+) -> InputTable:
     """The inputs of a pad, which holds all places of a film, from those of a cell anywhere.
 
     Parameters
     ----------
-    film : what topography found of the film as a whole, by name: distributions of its typical place, and of the
+    film : what topography found of the film as a whole, by name: distributions of its typical
+        place, and of the
         standard deviation of ln RMS between places.
     scatter : range of that deviation; None: topography's, where the RMS height comes from there.
 
@@ -80,9 +97,13 @@ def film_table(table: InputTable, film: Mapping[str, Any], scatter: Sequence[flo
     InputError : a range crosses a physical bound.
     """
     rows = [
-        replace(row, distribution=distribution_of(film[row.name], f"{row.source}: film.{row.name}"))
-        if row.origin == "topography" and row.name in film
-        else row
+        (
+            replace(
+                row, distribution=distribution_of(film[row.name], f"{row.source}: film.{row.name}")
+            )
+            if row.origin == "topography" and row.name in film
+            else row
+        )
         for row in table.rows
     ]
     rms, name = rows[table.names.index("rms")], RMS_SCATTER.name
@@ -100,7 +121,8 @@ def film_table(table: InputTable, film: Mapping[str, Any], scatter: Sequence[flo
 
 
 def check_literature(settings: InputsSettings) -> dict[str, tuple[float, float]]:
-    """Check what needs no stage: the literature rows, priors among them, and the correlations that the settings give.
+    """Check what needs no stage: the literature rows, priors among them, and the correlations that
+    the settings give.
 
     Returns
     -------
@@ -129,8 +151,9 @@ def check_resolved(table: InputTable, nyquist_per_nm: float) -> None:
         _, high = row.distribution.span()
         if row.name == "q1" and high > nyquist_per_nm * (1 + 1e-9):
             raise InputError(
-                f"{row.source}: q1 reaches {high:.4g} 1/nm, beyond what contact.pixels and contact.length_nm resolve "
-                f"({nyquist_per_nm:.4g} 1/nm); raise contact.pixels, or set inputs.q1.origin to literature with values"
+                f"{row.source}: q1 reaches {high:.4g} 1/nm, beyond what contact.pixels and"
+                f" contact.length_nm resolve ({nyquist_per_nm:.4g} 1/nm); raise contact.pixels, or"
+                " set inputs.q1.origin to literature with values"
             )
 
 
@@ -155,12 +178,17 @@ def input_table(topography: Mapping[str, Any] | None = None, **rows: InputRow) -
 
     Raises
     ------
-    InputError : unknown name, a range that crosses a physical bound, or roughness that the scans do not determine.
-    """
+    InputError : unknown name, a range that crosses a physical bound, or roughness that the scans do
+        not determine."""
     measured = (
-        {} if topography is None else {name: InputRow(origin="topography") for name in ("q0", "hurst", "rms", "q1")}
+        {}
+        if topography is None
+        else {name: InputRow(origin="topography") for name in ("q0", "hurst", "rms", "q1")}
     )
-    paper = {**PAPER_ROWS, "h_prime": PAPER_ROWS["h_prime"] if rows.get("hardness", "paper") == "paper" else None}
+    paper = {
+        **PAPER_ROWS,
+        "h_prime": PAPER_ROWS["h_prime"] if rows.get("hardness", "paper") == "paper" else None,
+    }
     settings = InputsSettings(**{**paper, **measured, **rows})
     stages = {} if topography is None else {"topography": topography}
     return collect(settings, stages, {"topography": "measured roughness"})
@@ -175,15 +203,19 @@ def stated_distribution(name: str, row: DistributionRow, section: str = "inputs"
     """
     if isinstance(row.values, tuple):
         return Distribution(row.distribution, **dict(zip(NUMBERS, row.values, strict=False)))
-    return Distribution("samples", values=np.sort(_read_samples(name, row.values or "", f"{section}.{name}")))
+    return Distribution(
+        "samples", values=np.sort(_read_samples(name, row.values or "", f"{section}.{name}"))
+    )
 
 
 def joint_samples(rows: Mapping[str, InputRow]) -> dict[tuple[str, str], float]:
-    """Rank correlations of inputs whose samples stand in the same file, a row of it one joint sample.
+    """Rank correlations of inputs whose samples stand in the same file, a row of it one joint
+    sample.
 
     Raises
     ------
-    InputError : a file has samples of an input in use that takes its own from elsewhere, or joint samples of one that
+    InputError : a file has samples of an input in use that takes its own from elsewhere, or joint
+        samples of one that
         is common to all devices and one that varies with each.
     """
     files: dict[str, list[str]] = {}
@@ -194,13 +226,16 @@ def joint_samples(rows: Mapping[str, InputRow]) -> dict[tuple[str, str], float]:
     for file, names in files.items():
         key = f"inputs.{names[0]}.values = {rows[names[0]].values}"
         if partners := sorted((set(foreign_columns(file, key)) & set(rows)) - set(names)):
-            raise InputError(f"{key}: holds samples of {partners[0]} beside; give inputs.{partners[0]} the same file")
+            raise InputError(
+                f"{key}: holds samples of {partners[0]} beside; give inputs.{partners[0]} the same"
+                " file"
+            )
         if len(names) < 2:
             continue
         if len({rows[name].varies for name in names}) > 1:
             raise InputError(
-                f"{key}: joint samples of {', '.join(names)}, of which some are common to all devices and others vary "
-                "with each (varies); give these a file of their own"
+                f"{key}: joint samples of {', '.join(names)}, of which some are common to all"
+                " devices and others vary with each (varies); give these a file of their own"
             )
         from scipy.stats import spearmanr  # slow to import
 
@@ -221,19 +256,25 @@ def distribution_of(entry: Mapping[str, Any], where: str) -> Distribution:
     """
     if entry.get("distribution") == "samples":  # of the calibration
         return Distribution("samples", values=np.sort(np.asarray(entry["values"], float)))
-    numbers: dict[str, Any] = {key: float(entry[key]) for key in NUMBERS if entry.get(key) is not None}
+    numbers: dict[str, Any] = {
+        key: float(entry[key]) for key in NUMBERS if entry.get(key) is not None
+    }
     if (
-        entry.get("distribution") not in ("uniform", "log_uniform", "normal", "truncated_normal", "fixed")
+        entry.get("distribution")
+        not in ("uniform", "log_uniform", "normal", "truncated_normal", "fixed")
         or "a" not in numbers
     ):
         raise InputError(
-            f"{where}: distribution {entry.get('distribution')} with {numbers} is not usable; "
-            "accepted: uniform, log_uniform, normal (a, b), truncated_normal (a, b, low, high), fixed (a)"
+            f"{where}: distribution {entry.get('distribution')} with {numbers} is not usable;"
+            " accepted: uniform, log_uniform, normal (a, b), truncated_normal (a, b, low, high),"
+            " fixed (a)"
         )
     return Distribution(str(entry["distribution"]), **numbers)
 
 
-def _from_stage(name: str, origin: str, content: Mapping[str, Any], source: str, accepted: bool) -> Mapping[str, Any]:
+def _from_stage(
+    name: str, origin: str, content: Mapping[str, Any], source: str, accepted: bool
+) -> Mapping[str, Any]:
     gate = content.get("gate", {})
     if not (gate.get("passed", False) or accepted):
         reasons = "; ".join(gate.get("reasons", [])) or "no reason given"
@@ -243,7 +284,9 @@ def _from_stage(name: str, origin: str, content: Mapping[str, Any], source: str,
         )
     entry = content.get("inputs", {}).get(name)
     if entry is None:
-        raise InputError(f"{source}: holds no inputs.{name}; set inputs.{name}.origin to literature with values")
+        raise InputError(
+            f"{source}: holds no inputs.{name}; set inputs.{name}.origin to literature with values"
+        )
     return entry
 
 
@@ -252,9 +295,13 @@ def _read_samples(name: str, file: str, key: str) -> np.ndarray:
     try:
         values = np.array([float(value) for value in columns[name]])  # type: ignore[arg-type]  # None: refused below
     except (KeyError, TypeError, ValueError):
-        raise InputError(f"{key}.values = {file}: needs a column {name} with one number a row") from None
+        raise InputError(
+            f"{key}.values = {file}: needs a column {name} with one number a row"
+        ) from None
     if values.size < 2 or not np.isfinite(values).all():
-        raise InputError(f"{key}.values = {file}: {values.size} samples; at least 2, all finite, are needed")
+        raise InputError(
+            f"{key}.values = {file}: {values.size} samples; at least 2, all finite, are needed"
+        )
     return values
 
 
@@ -274,10 +321,16 @@ def to_rows(table: InputTable) -> list[dict[str, Any]]:
     rows = []
     for k, row in enumerate(table.rows):
         given = row.distribution
-        partners = {table.names[j]: table.correlation[k, j] for j in range(k) if table.correlation[k, j]}
+        partners = {
+            table.names[j]: table.correlation[k, j] for j in range(k) if table.correlation[k, j]
+        }
         finite = {key: value for key in NUMBERS if np.isfinite(value := getattr(given, key))}
         # samples travel inside the table, so that inputs.csv alone defines the inputs in use
-        kind = given.kind if given.kind != "samples" else "samples " + json.dumps(given.values.tolist())
+        kind = (
+            given.kind
+            if given.kind != "samples"
+            else "samples " + json.dumps(given.values.tolist())
+        )
         rows.append(
             {
                 "parameter": row.name,
@@ -316,5 +369,7 @@ def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
 
 
 def medians(rows: Iterable[Mapping[str, str]]) -> dict[str, float]:
-    """Central inputs by name (the means, where a distribution is symmetric) from the rows of inputs.csv."""
+    """Central inputs by name (the means, where a distribution is symmetric) from the rows of
+    inputs.csv.
+    """
     return from_rows(rows).medians()

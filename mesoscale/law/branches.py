@@ -44,7 +44,10 @@ def fit_cycle(cycle: Cycle) -> Outcome:
             cycle.inputs.hamaker,
             touch,
         )
-        for branch, touch in ((cycle.closing, cycle.first_contact_nm), (cycle.opening, cycle.last_contact_nm))
+        for branch, touch in (
+            (cycle.closing, cycle.first_contact_nm),
+            (cycle.opening, cycle.last_contact_nm),
+        )
     ]
     return Outcome(fits[0], fits[1], "ok" if cycle.converged else "unconverged")
 
@@ -61,20 +64,27 @@ def laws_of(cycle: Cycle) -> tuple[Law, Law]:
         if not np.isfinite(fit.parameters).all():
             raise InputError(f"law of {branch}: {fit.status}; choose a larger force")
     closing, opening = (
-        Law(**dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True)), hamaker=cycle.inputs.hamaker)
+        Law(
+            **dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True)),
+            hamaker=cycle.inputs.hamaker,
+        )
         for fit in (outcome.closing, outcome.opening)
     )
     return closing, opening
 
 
 def stored_rows(
-    curves: Mapping[str, Mapping[str, Array]], name: str, attributes: Mapping[str, Any], cell_area_nm2: float
+    curves: Mapping[str, Mapping[str, Array]],
+    name: str,
+    attributes: Mapping[str, Any],
+    cell_area_nm2: float,
 ) -> Iterator[dict[str, Any]]:
     """Columns of the tables in law/ for both branches of a stored curve.
 
     Parameters
     ----------
-    curves : datasets by group `<name>/closing` and `<name>/opening`; a missing group gives no curve and no fit.
+    curves : datasets by group `<name>/closing` and `<name>/opening`; a missing group gives no curve
+        and no fit.
     attributes : the curve's: hamaker, first_contact_nm, last_contact_nm, status.
     """
     for branch, touch in (("closing", "first_contact_nm"), ("opening", "last_contact_nm")):

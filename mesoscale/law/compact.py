@@ -2,8 +2,8 @@
 
 With h0 the mean separation and <x> = max(x, 0), per unit area,
 
-    attraction = -A_H / (6 pi d_s^3) - C_a <d_c + rho_a - h0>        (eq. 10)
-    d_s = (h0^3 + alpha^3)^(1/3) for h0 > 0, else alpha              (eq. 12; the printed -alpha is a slip)
+    attraction = -A_H / (6 pi d_s^3) - C_a <d_c + rho_a - h0>        (eq. 10) d_s = (h0^3 +
+    alpha^3)^(1/3) for h0 > 0, else alpha              (eq. 12; the printed -alpha is a slip)
     repulsion = C_r [exp(<d_c - h0> / rho_r) - 1]                    (eq. 13)
 """
 
@@ -27,7 +27,8 @@ class Law:
     rho_r_nm : repulsion length (nm).
     hamaker : Hamaker constant (1e-18 J = nN nm).
     rho_a_nm : attraction length (nm), fixed by the paper.
-    shield_nm : alpha of eq. 12 (nm), which the paper does not give: as long as rho_a. It acts where the attraction is
+    shield_nm : alpha of eq. 12 (nm), which the paper does not give: as long as rho_a. It acts where
+        the attraction is
         that of C_a.
     """
 
@@ -55,12 +56,16 @@ def pressure(separation_nm: ArrayLike, law: Law) -> tuple[Array, Array]:
     d_c = np.asarray(law.d_c_nm, float)
     attractive = shielded_hamaker(h0, law.hamaker, law.shield_nm)
     attractive = attractive - np.asarray(law.C_a_GPa_nm) * np.maximum(d_c + law.rho_a_nm - h0, 0.0)
-    repulsive = np.asarray(law.C_r_GPa) * np.expm1(np.maximum(d_c - h0, 0.0) / np.asarray(law.rho_r_nm))
+    repulsive = np.asarray(law.C_r_GPa) * np.expm1(
+        np.maximum(d_c - h0, 0.0) / np.asarray(law.rho_r_nm)
+    )
     return attractive, repulsive
 
 
 def force(separation_nm: ArrayLike, law: Law, cell_area_nm2: float) -> tuple[Array, Array]:
-    """Attractive (negative) and repulsive force in nN on a cell of `cell_area_nm2` (1 GPa nm^2 = 1 nN)."""
+    """Attractive (negative) and repulsive force in nN on a cell of `cell_area_nm2` (1 GPa nm^2 = 1
+    nN).
+    """
     attractive, repulsive = pressure(separation_nm, law)
     return attractive * cell_area_nm2, repulsive * cell_area_nm2
 

@@ -1,9 +1,9 @@
 """Fit of the compact law to one branch of a curve.
 
-d_c, C_r and rho_r are nearly degenerate in eq. 13: shifting d_c by x multiplies C_r by exp(-x / rho_r) and
-leaves the curve almost as it is. So d_c is not fitted beside the other two but *taken from the curve* by a
-stated definition (`contact_separation`), and C_r and rho_r are fitted given d_c.
-"""
+d_c, C_r and rho_r are nearly degenerate in eq. 13: shifting d_c by x multiplies C_r by exp(-x /
+rho_r) and leaves the curve almost as it is. So d_c is not fitted beside the other two but *taken
+from the curve* by a stated definition (`contact_separation`), and C_r and rho_r are fitted given
+d_c."""
 
 import json
 from dataclasses import dataclass, field, replace
@@ -28,7 +28,8 @@ class FitNumerics:
     ----------
     points : even points in separation that a branch is resampled to.
     fewest_points : of the curve in contact: two parameters and an error.
-    shallowest, deepest : window over rho_r: a shallower one shows a straight line, a deeper one a step.
+    shallowest, deepest : window over rho_r: a shallower one shows a straight line, a deeper one a
+        step.
     largest_error : relative error of C_r and rho_r from which on they are not identified.
     largest_residual : misfit over the largest repulsion from which on a fit is called poor.
     """
@@ -52,7 +53,8 @@ class LawFit:
     Attributes
     ----------
     covariance : covariance of (C_a_GPa_nm, C_r_GPa, rho_r_nm), d_c given, shape (3, 3).
-    residual : root mean square misfit of attraction and repulsion over the window, relative to the largest repulsive
+    residual : root mean square misfit of attraction and repulsion over the window, relative to the
+        largest repulsive
         force (1).
     status : `ok`, or why numbers are missing or doubtful.
     """
@@ -71,16 +73,19 @@ class LawFit:
         return np.array([getattr(self, name) for name in PARAMETERS])
 
 
-def contact_separation(separation_nm: Array, repulsive_nN: Array, touch_nm: float | None = None) -> float:
-    """The separation d_c where the first asperity touches (of an opening branch: the last one), NaN without contact.
+def contact_separation(
+    separation_nm: Array, repulsive_nN: Array, touch_nm: float | None = None
+) -> float:
+    """The separation d_c where the first asperity touches (of an opening branch: the last one), NaN
+    without contact.
 
     It is an extreme value of the surface, which grows with the sample area.
 
     Parameters
     ----------
     separation_nm, repulsive_nN : one branch in any order, shape (n,).
-    touch_nm : the engine's exact value, if it is known for this branch; else that of the nearest point outside.
-    """
+    touch_nm : the engine's exact value, if it is known for this branch; else that of the nearest
+        point outside."""
     order = np.argsort(separation_nm)[::-1]
     h, f = np.asarray(separation_nm, float)[order], np.asarray(repulsive_nN, float)[order]
     touching = np.flatnonzero(f > 0)
@@ -101,36 +106,50 @@ def fit_branch(
 ) -> LawFit:
     """Fit the law to one branch of a force-separation curve.
 
-    The branch is resampled evenly in separation over [smallest separation, d_c] for the repulsion and
-    [smallest separation, d_c + rho_a] for the attraction, so that the engine's choice of steps carries no
-    weight. C_a follows linearly. For C_r and rho_r, C_r is eliminated (it is linear given rho_r) and the
-    misfit minimised over rho_r alone, which cannot run away along the degenerate valley.
+    The branch is resampled evenly in separation over [smallest separation, d_c] for the repulsion
+    and [smallest separation, d_c + rho_a] for the attraction, so that the engine's choice of steps
+    carries no weight. C_a follows linearly. For C_r and rho_r, C_r is eliminated (it is linear
+    given rho_r) and the misfit minimised over rho_r alone, which cannot run away along the
+    degenerate valley.
 
     Parameters
     ----------
-    separation_nm, repulsive_nN, attractive_nN : the branch, shape (n,), any order; attraction negative.
+    separation_nm, repulsive_nN, attractive_nN : the branch, shape (n,), any order; attraction
+        negative.
     cell_area_nm2 : area of the cell.
     hamaker : Hamaker constant (1e-18 J).
-    d_c_nm : exact separation at contact, where it is known; else it is taken from the curve (`contact_separation`).
+    d_c_nm : exact separation at contact, where it is known; else it is taken from the curve
+        (`contact_separation`).
 
     Returns
     -------
-    LawFit : with status `ok`, `no_contact`, `few_points`, `not_identifiable: why` or `poor_fit`. Only `ok`
+    LawFit : with status `ok`, `no_contact`, `few_points`, `not_identifiable: why` or `poor_fit`.
+        Only `ok`
         and `poor_fit` carry C_r and rho_r.
 
     Raises
     ------
     InputError : arrays of unequal length or not finite.
     """
-    named = (("separation_nm", separation_nm), ("repulsive_nN", repulsive_nN), ("attractive_nN", attractive_nN))
-    h, repulsive, attractive = (checked_array(f"law fit: {name}", x, name.rpartition("_")[2]) for name, x in named)
+    named = (
+        ("separation_nm", separation_nm),
+        ("repulsive_nN", repulsive_nN),
+        ("attractive_nN", attractive_nN),
+    )
+    h, repulsive, attractive = (
+        checked_array(f"law fit: {name}", x, name.rpartition("_")[2]) for name, x in named
+    )
     if not (h.ndim == 1 and h.shape == repulsive.shape == attractive.shape):
         raise InputError(
             f"law fit: separation and forces have shapes {h.shape}, {repulsive.shape}, "
             f"{attractive.shape}; one value of each per point is needed"
         )
     order = np.argsort(h, kind="stable")
-    h, repulsive, attractive = h[order], repulsive[order] / cell_area_nm2, attractive[order] / cell_area_nm2
+    h, repulsive, attractive = (
+        h[order],
+        repulsive[order] / cell_area_nm2,
+        attractive[order] / cell_area_nm2,
+    )
 
     d_c_nm = contact_separation(h, repulsive, d_c_nm)
     if not np.isfinite(d_c_nm) or repulsive.max(initial=0.0) <= 0:
@@ -145,16 +164,26 @@ def fit_branch(
     depth, f_r = d_c_nm - h_r, np.interp(h_r, h, repulsive)
     rho, at_bound = _best_rho(depth, f_r)
     C_r = float(_prefactor(depth, f_r, np.array([rho]))[0][0])
-    covariance = _covariance(depth, f_r, C_r, rho, C_a_var, points=min(int(inside.sum()), FIT.points))
-    residual = float(np.sqrt(np.mean((f_r - C_r * np.expm1(depth / rho)) ** 2) + misfit_a**2) / scale)
+    covariance = _covariance(
+        depth, f_r, C_r, rho, C_a_var, points=min(int(inside.sum()), FIT.points)
+    )
+    residual = float(
+        np.sqrt(np.mean((f_r - C_r * np.expm1(depth / rho)) ** 2) + misfit_a**2) / scale
+    )
 
     fit = LawFit(float(d_c_nm), C_a, C_r, rho, covariance, residual)
     if at_bound:
-        why = "the curve is a straight line, only C_r/rho_r is determined" if at_bound > 0 else "a step at the end"
+        why = (
+            "the curve is a straight line, only C_r/rho_r is determined"
+            if at_bound > 0
+            else "a step at the end"
+        )
         return _without_repulsion(fit, f"not_identifiable: {why}")
     relative_error = np.sqrt(np.diag(covariance)[1:]) / np.array([C_r, rho])
     if not np.all(relative_error < FIT.largest_error):
-        return _without_repulsion(fit, "not_identifiable: relative error of C_r or rho_r above the gate")
+        return _without_repulsion(
+            fit, "not_identifiable: relative error of C_r or rho_r above the gate"
+        )
     if residual > FIT.largest_residual:
         return replace(fit, status="poor_fit")
     return fit
@@ -164,7 +193,9 @@ def _without_repulsion(fit: LawFit, status: str) -> LawFit:
     return replace(fit, C_r_GPa=np.nan, rho_r_nm=np.nan, status=status)
 
 
-def _fit_attraction(h: Array, attractive: Array, d_c: float, hamaker: float) -> tuple[float, float, float]:
+def _fit_attraction(
+    h: Array, attractive: Array, d_c: float, hamaker: float
+) -> tuple[float, float, float]:
     """C_a (GPa/nm), its variance and the rms misfit (GPa); NaN without a point below the kink."""
     kink = d_c + Law.rho_a_nm
     top = min(kink, h.max())
@@ -192,7 +223,9 @@ def _prefactor(depth: Array, f: Array, rho: Array) -> tuple[Array, Array]:
 
 
 def _best_rho(depth: Array, f: Array) -> tuple[float, int]:
-    """rho_r of least misfit, and -1 or +1 if it lies at the lower or upper end of the accepted range."""
+    """rho_r of least misfit, and -1 or +1 if it lies at the lower or upper end of the accepted
+    range.
+    """
     span = depth.max()
     low, high = np.log(span / FIT.deepest), np.log(span / FIT.shallowest)
     grid = np.linspace(low, high, 48)
@@ -208,8 +241,12 @@ def _best_rho(depth: Array, f: Array) -> tuple[float, int]:
     return float(np.exp((left + right) / 2)), 0
 
 
-def _covariance(depth: Array, f: Array, C_r: float, rho: float, C_a_var: float, points: int) -> Array:
-    """Covariance of (C_a, C_r, rho_r) from the misfit, as if `points` of the curve were independent."""
+def _covariance(
+    depth: Array, f: Array, C_r: float, rho: float, C_a_var: float, points: int
+) -> Array:
+    """Covariance of (C_a, C_r, rho_r) from the misfit, as if `points` of the curve were
+    independent.
+    """
     covariance = np.zeros((3, 3))
     covariance[0, 0] = C_a_var
     growth = np.expm1(depth / rho)
@@ -227,7 +264,9 @@ def _covariance(depth: Array, f: Array, C_r: float, rho: float, C_a_var: float, 
 
 def row_of(fit: LawFit) -> dict[str, Any]:
     """One row of law/parameters.csv (without run, seed and branch); the covariance as JSON."""
-    values = [[float(f"{x:.6g}") if np.isfinite(x) else None for x in line] for line in fit.covariance]
+    values = [
+        [float(f"{x:.6g}") if np.isfinite(x) else None for x in line] for line in fit.covariance
+    ]
     return {
         **{name: value for name, value in zip(PARAMETERS, fit.parameters.tolist(), strict=True)},
         "covariance": json.dumps(values),

@@ -27,7 +27,10 @@ def follow_all(
         for held in follow(inputs, contact, settings, seed):
             yield seed, held
             if progress is not None:
-                progress((done + held.number / settings.cycles) / SURFACES, f"surface {seed}, cycle {held.number}")
+                progress(
+                    (done + held.number / settings.cycles) / SURFACES,
+                    f"surface {seed}, cycle {held.number}",
+                )
 
 
 def cycle_row(seed: int, held: HeldCycle) -> dict[str, Any]:
@@ -53,7 +56,9 @@ def cycle_row(seed: int, held: HeldCycle) -> dict[str, Any]:
     }
 
 
-def dwell_rows(seed: int, held: HeldCycle, contact: ContactSettings, settings: HistorySettings) -> list[dict[str, Any]]:
+def dwell_rows(
+    seed: int, held: HeldCycle, contact: ContactSettings, settings: HistorySettings
+) -> list[dict[str, Any]]:
     """Rows of history/dwell.csv: the contact at each time of the hold."""
     site = (contact.length_nm / contact.pixels) ** 2
     factors = hardness_factor(held.held_s, settings)

@@ -1,4 +1,6 @@
-"""The one table of the law's parameters, and of the outputs made of them.  Imports nothing heavy."""
+"""The one table of the law's parameters, and of the outputs made of them.  Imports nothing
+heavy.
+"""
 
 from dataclasses import dataclass, replace
 

@@ -18,7 +18,8 @@ class Adhesion:
     ----------
     depth_nm, load_MPa : separation from which it is opened, and its mean repulsion there.
     zero_force_nm : separation at which the net force is first zero on the way out.
-    energy_uJ_m2, flats_uJ_m2 : work per area from there to infinity, and that of two flats so far apart.
+    energy_uJ_m2, flats_uJ_m2 : work per area from there to infinity, and that of two flats so far
+        apart.
     pull_off_kPa : largest net attraction on the way.
     """
 

@@ -1,7 +1,7 @@
 """Mean pressure of a pad against separation, from its cells.
 
-A pad has some 10^4 to 10^5 cells; the few that are computed stand for all of them, each with its weight.
-"""
+A pad has some 10^4 to 10^5 cells; the few that are computed stand for all of them, each with its
+weight."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -51,7 +51,9 @@ class PadCells:
         return np.einsum("c,c...->...", self.weight, pressures)
 
     def half(self, other: bool = False) -> "PadCells":
-        """The pad of one half of its cells; each stands for its neighbour of the other half, too (`half_of`)."""
+        """The pad of one half of its cells; each stands for its neighbour of the other half, too
+        (`half_of`).
+        """
         kept = np.flatnonzero(half_of(self.count, other))
         pairs = np.bincount(np.arange(self.count) // 2, self.weight)[kept // 2]
         return PadCells(

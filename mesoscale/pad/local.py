@@ -12,12 +12,14 @@ from mesoscale.pad.numerics import PAD
 Array = NDArray[np.float64]
 
 FADE_NM = 1.0
-"""Rise over which a difference between the end of closing and the start of opening fades, where push and pull nearly
-cancel."""
+"""Rise over which a difference between the end of closing and the start of opening fades, where
+push and pull nearly cancel."""
 
 
 class LocalPad:
-    """Net pressure (GPa) and its slope (GPa/nm) of places of a pad that remember how deep they were closed."""
+    """Net pressure (GPa) and its slope (GPa/nm) of places of a pad that remember how deep they were
+    closed.
+    """
 
     def __init__(self, law: PadLaw):
         self.law = law
@@ -26,18 +28,34 @@ class LocalPad:
         self.closing = law.closing.sum(axis=0)
         self.depth_nm = np.linspace(law.depth_nm[0], law.depth_nm[-1], PAD.memory_depths)
         shallow = law.depth_nm[-1]
-        highest = max(PAD.highest_rise_nm, _reach_nm(law)) if shallow > PAD.coarse_nm else PAD.highest_rise_nm
-        self.rise_nm = np.linspace(0.0, min(law.separation_nm[-1] - shallow, highest), PAD.memory_rises)
+        highest = (
+            max(PAD.highest_rise_nm, _reach_nm(law))
+            if shallow > PAD.coarse_nm
+            else PAD.highest_rise_nm
+        )
+        self.rise_nm = np.linspace(
+            0.0, min(law.separation_nm[-1] - shallow, highest), PAD.memory_rises
+        )
         self.opening = law.opened(self.rise_nm, self.depth_nm).sum(axis=1)
 
     @property
     def tables(self) -> tuple[Array, Array, Array, Array, Array, float, float]:
         """What `pad_pressure` takes of the pad."""
         flats = self.law.flats
-        return self.at_nm, self.closing, self.depth_nm, self.rise_nm, self.opening, flats.hamaker, flats.offset_nm
+        return (
+            self.at_nm,
+            self.closing,
+            self.depth_nm,
+            self.rise_nm,
+            self.opening,
+            flats.hamaker,
+            flats.offset_nm,
+        )
 
     def attracting(self, times: float, bare: "LocalPad") -> "LocalPad":
-        """The pad with `times` its attraction, from that without any: pressures are linear in it."""
+        """The pad with `times` its attraction, from that without any: pressures are linear in
+        it.
+        """
         pad = copy(self)
         pad.law = attracting(self.law, times)
         pad.closing = bare.closing + times * (self.closing - bare.closing)
@@ -45,7 +63,9 @@ class LocalPad:
         return pad
 
     def __call__(self, separation_nm: Array, deepest_nm: Array) -> tuple[Array, Array]:
-        """Pressure and slope, of the shape (e, p) of both; continued in a line below the computed closing."""
+        """Pressure and slope, of the shape (e, p) of both; continued in a line below the computed
+        closing.
+        """
         pressure, slope = np.empty_like(separation_nm), np.empty_like(separation_nm)
         pad_pressure(separation_nm, deepest_nm, pressure, slope, *self.tables)
         return pressure, slope
@@ -54,18 +74,35 @@ class LocalPad:
 def _reach_nm(law: PadLaw) -> float:
     """Largest rise above a computed depth at which opening and closing still differ."""
     same_GPa = PAD.same * float(law.closing[0].max())
-    apart = np.abs(law.opening.sum(axis=1) - law.closing.sum(axis=0)) > same_GPa  # not a number below the depth
+    apart = (
+        np.abs(law.opening.sum(axis=1) - law.closing.sum(axis=0)) > same_GPa
+    )  # not a number below the depth
     last = apart.shape[1] - 1 - apart[:, ::-1].argmax(axis=1)
     return float(np.max(np.where(apart.any(axis=1), law.separation_nm[last] - law.depth_nm, 0.0)))
 
 
 @njit(cache=True)
 def pad_pressure(
-    separation_nm, deepest_nm, pressure, slope, at_nm, closing, depth_nm, rise_nm, opening, hamaker, offset_nm
+    separation_nm,
+    deepest_nm,
+    pressure,
+    slope,
+    at_nm,
+    closing,
+    depth_nm,
+    rise_nm,
+    opening,
+    hamaker,
+    offset_nm,
 ):
-    """Set net pressure (GPa) and slope (GPa/nm) of a pad at places with a deepest closing of their own; all (e, p)."""
+    """Set net pressure (GPa) and slope (GPa/nm) of a pad at places with a deepest closing of their
+    own; all (e, p).
+    """
     last = at_nm.size - 1
-    depth_step, rise_step = max(depth_nm[1] - depth_nm[0], 1e-9), rise_nm[1] - rise_nm[0]  # 1e-9: a pad of one depth
+    depth_step, rise_step = (
+        max(depth_nm[1] - depth_nm[0], 1e-9),
+        rise_nm[1] - rise_nm[0],
+    )  # 1e-9: a pad of one depth
     for e in range(separation_nm.shape[0]):
         for g in range(separation_nm.shape[1]):
             s, deep = separation_nm[e, g], deepest_nm[e, g]
@@ -77,7 +114,8 @@ def pad_pressure(
                 share, part = x - i, y - j
                 low = (1 - share) * opening[i, j] + share * opening[i + 1, j]
                 high = (1 - share) * opening[i, j + 1] + share * opening[i + 1, j + 1]
-                # opening starts where closing ended, to the last digit: a step there would never come to rest
+                # opening starts where closing ended, to the last digit: a step there would never
+                # come to rest
                 start = (1 - share) * opening[i, 0] + share * opening[i + 1, 0]
                 place = min(max(np.searchsorted(at_nm, deep) - 1, 0), last - 1)
                 portion = (deep - at_nm[place]) / (at_nm[place + 1] - at_nm[place])
@@ -85,12 +123,16 @@ def pad_pressure(
                 alike = start > 0.0 and 0.5 * start < ended < 2.0 * start
                 scale, shift = (ended / start, 0.0) if alike else (1.0, ended - start)
                 fading = shift if risen < FADE_NM else 0.0
-                pressure[e, g] = scale * (low + part * (high - low)) + fading * (1.0 - risen / FADE_NM)
+                pressure[e, g] = scale * (low + part * (high - low)) + fading * (
+                    1.0 - risen / FADE_NM
+                )
                 slope[e, g] = scale * (high - low) / rise_step - fading / FADE_NM
             elif s > at_nm[last]:
                 pressure[e, g] = -hamaker / (6.0 * np.pi * (s + offset_nm) ** 3)
                 slope[e, g] = -3.0 * pressure[e, g] / (s + offset_nm)
             else:
                 place = min(max(np.searchsorted(at_nm, s) - 1, 0), last - 1)
-                slope[e, g] = (closing[place + 1] - closing[place]) / (at_nm[place + 1] - at_nm[place])
+                slope[e, g] = (closing[place + 1] - closing[place]) / (
+                    at_nm[place + 1] - at_nm[place]
+                )
                 pressure[e, g] = closing[place] + slope[e, g] * (s - at_nm[place])

@@ -1,4 +1,6 @@
-"""The scan is the judge: surfaces made from a description are pressed beside the measured scans themselves."""
+"""The scan is the judge: surfaces made from a description are pressed beside the measured scans
+themselves.
+"""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -23,7 +25,9 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
 from mesoscale.topography.synthesis import synthesize_spectrum
 
 Array = np.ndarray
-MOST_CONTACT = 0.5  # share of the cell; beyond, contacts have merged and asperities one by one say nothing
+MOST_CONTACT = (
+    0.5  # share of the cell; beyond, contacts have merged and asperities one by one say nothing
+)
 LOADS_NN = (1000.0, 7000.0)  # per cell of the contact settings: 1 and 7 uN
 
 
@@ -45,7 +49,8 @@ class Described:
         """`count` spectra C(q) that the measurements allow for a place of the surface."""
         from scipy.special import ndtri
 
-        # spread evenly, the first ones too: twenty random places can have half of the film's scatter
+        # spread evenly, the first ones too: twenty random places can have half of the film's
+        # scatter
         golden = 0.5 * (5.0**0.5 - 1.0)  # its multiples (modulo 1) are spread evenly, however many
         places = ndtri((np.arange(count) + 0.5) * golden % 1.0)
         if self.one is not None:
@@ -77,10 +82,11 @@ def judge(
 ) -> Iterator[dict[str, Any]]:
     """Rows of topography/judged.csv: pressing each scan, and what its description says of it.
 
-    Each scan is left out of the description that it judges, as far as there are others; a lone one meets the
-    description made from itself, which tests nothing. A scan that the others say nothing of is passed over. The
-    surfaces go the way of the scan: they are cut from larger ones, levelled as it is, and made periodic. They are as
-    blunt as the scan: what the tips took is left out of both.
+    Each scan is left out of the description that it judges, as far as there are others; a lone one
+    meets the description made from itself, which tests nothing. A scan that the others say nothing
+    of is passed over. The surfaces go the way of the scan: they are cut from larger ones, levelled
+    as it is, and made periodic. They are as blunt as the scan: what the tips took is left out of
+    both.
 
     Parameters
     ----------
@@ -107,7 +113,8 @@ def judge(
 
 
 def disagreeing(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """First contacts that are further from their description than the worst of so many scans is by chance.
+    """First contacts that are further from their description than the worst of so many scans is by
+    chance.
 
     Parameters
     ----------
@@ -132,11 +139,17 @@ def testable(rows: Sequence[Mapping[str, Any]]) -> bool:
 
 
 def height_maps(scans: Sequence[Scan], count: int = 10) -> Iterator[tuple[float, ...]]:
-    """Maps of heights that few grains allow: from blocks of the scans drawn anew (bootstrap over places)."""
+    """Maps of heights that few grains allow: from blocks of the scans drawn anew (bootstrap over
+    places).
+    """
     blocks, cuts = [], 4
     for scan in scans:
         standard = (scan.heights_nm - scan.heights_nm.mean()) / scan.rms_nm
-        blocks += [part for row in np.array_split(standard, cuts) for part in np.array_split(row, cuts, axis=1)]
+        blocks += [
+            part
+            for row in np.array_split(standard, cuts)
+            for part in np.array_split(row, cuts, axis=1)
+        ]
     rng = np.random.default_rng(2)
     for _ in range(count):
         drawn = [blocks[k].ravel() for k in rng.integers(len(blocks), size=len(blocks))]
@@ -154,14 +167,23 @@ def _judged(
     most_contact: float,
 ) -> Iterator[dict[str, Any]]:
     measured, side = contacting_heights(scan)
-    stride = -(-len(measured) // 256)  # at most so many sites a side; the surfaces beside it are thinned, too
+    stride = -(
+        -len(measured) // 256
+    )  # at most so many sites a side; the surfaces beside it are thinned, too
     measured = np.ascontiguousarray(measured[::stride, ::stride])
     sites = len(measured)
     chosen = contact.model_copy(update={"pixels": sites, "length_nm": side})
     truth, share = _press(measured, inputs, chosen, contact.length_nm)
-    truth = {quantity: value for quantity, value in truth.items() if share.get(quantity, 0.0) <= most_contact}
+    truth = {
+        quantity: value
+        for quantity, value in truth.items()
+        if share.get(quantity, 0.0) <= most_contact
+    }
     made: dict[str, list[float]] = {quantity: [] for quantity in truth}
-    touched, pressed = 40, 20  # surfaces that are brought to first contact, and of these the ones that are pressed
+    touched, pressed = (
+        40,
+        20,
+    )  # surfaces that are brought to first contact, and of these the ones that are pressed
     for number, psd in enumerate(described.spectra(touched)):
         height = _rms(psd, 2 * side, 2 * sites)
         seed = NOMINAL_SEED + number
@@ -170,7 +192,9 @@ def _judged(
             larger = synthesize_heights(2 * sites, 2 * side, psd, chart, height, seed)
         else:
             larger = synthesize_spectrum(2 * sites, 2 * side, psd, height, seed)
-        surface, _ = contacting_heights(clean(Scan(larger[:sites, :sites], (side, side), scan.name), settings))
+        surface, _ = contacting_heights(
+            clean(Scan(larger[:sites, :sites], (side, side), scan.name), settings)
+        )
         if number < pressed:
             values, _ = _press(surface, inputs, chosen, contact.length_nm)
         else:
@@ -178,7 +202,9 @@ def _judged(
         for quantity in values.keys() & made.keys():
             made[quantity].append(values[quantity])
     for quantity, value in truth.items():
-        low, middle, high = _predicted(np.array(made[quantity]), not quantity.startswith("separation"))
+        low, middle, high = _predicted(
+            np.array(made[quantity]), not quantity.startswith("separation")
+        )
         yield {
             "scan": scan.name,
             "description": name,
@@ -197,21 +223,31 @@ def _judged(
 def _press(
     surface: Array, inputs: ContactInputs, contact: ContactSettings, cell_nm: float
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """RMS, first contact, separation at both pressures and area at the larger; nm, nm^2. Contact is at the minima.
+    """RMS, first contact, separation at both pressures and area at the larger; nm, nm^2. Contact is
+    at the minima.
 
     Besides, for what is read at a load, the share of the cell in contact there.
     """
     area = (contact.length_nm / cell_nm) ** 2
     values = {"rms": float(np.std(surface)), "first_contact": float(surface.mean() - surface.min())}
     force_nN = LOADS_NN[-1] * area
-    cycle = run_cycle(replace(inputs, rms=values["rms"]), contact, NOMINAL_SEED, force_nN, surface, contact_at="lowest")
+    cycle = run_cycle(
+        replace(inputs, rms=values["rms"]),
+        contact,
+        NOMINAL_SEED,
+        force_nN,
+        surface,
+        contact_at="lowest",
+    )
     closing = cycle.closing
     force = np.maximum.accumulate(closing.repulsive_nN)
     share: dict[str, float] = {}
     for load in LOADS_NN:
         name = f"separation_{load / 1000:g}uN"
         values[name] = float(np.interp(load * area, force, closing.separation_nm))
-        share[name] = float(np.interp(load * area, force, closing.contact_area_nm2)) / contact.length_nm**2
+        share[name] = (
+            float(np.interp(load * area, force, closing.contact_area_nm2)) / contact.length_nm**2
+        )
     name = f"area_{LOADS_NN[-1] / 1000:g}uN"
     values[name] = float(closing.contact_area_nm2[-1])
     share[name] = values[name] / contact.length_nm**2
@@ -227,10 +263,10 @@ def _rms(psd: Callable[[Array], Array], side: float, sites: int) -> float:
 def _predicted(values: Array, positive: bool) -> tuple[float, float, float]:
     """Lower end, middle and upper end of where one more surface is expected.
 
-    What is positive by nature is taken by its logarithm, with Student's distribution. Separations are skewed as the RMS
-    height is, and negative in full contact: only their order counts. One more lies between the j-th of n from below and
-    the j-th from above with probability 1 - 2 j / (n + 1).
-    """
+    What is positive by nature is taken by its logarithm, with Student's distribution. Separations
+    are skewed as the RMS height is, and negative in full contact: only their order counts. One more
+    lies between the j-th of n from below and the j-th from above with probability 1 - 2 j / (n +
+    1)."""
     count = len(values)
     if positive:
         logs = np.log(values)

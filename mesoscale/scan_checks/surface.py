@@ -18,9 +18,11 @@ def has_square_pixels(data: Scan | Profile) -> TypeGuard[Scan]:
 
 
 def contacting_heights(scan: Scan) -> tuple[np.ndarray, float]:
-    """The largest centred square of a cleaned scan as the contact model wants it: heights (n, n) and side, nm.
+    """The largest centred square of a cleaned scan as the contact model wants it: heights (n, n)
+    and side, nm.
 
-    The contact is at the minima of its heights and periodic, so the scan is turned upside down and made periodic.
+    The contact is at the minima of its heights and periodic, so the scan is turned upside down and
+    made periodic.
 
     Raises
     ------
@@ -28,7 +30,9 @@ def contacting_heights(scan: Scan) -> tuple[np.ndarray, float]:
     """
     px, py = scan.pixel_nm
     if abs(px / py - 1) > OBLONG:
-        raise InputError(f"{scan.name}: pixels of {px:.3g} nm x {py:.3g} nm; accepted are square pixels")
+        raise InputError(
+            f"{scan.name}: pixels of {px:.3g} nm x {py:.3g} nm; accepted are square pixels"
+        )
     nx, ny = scan.heights_nm.shape
     n = min(nx, ny)
     i, j = (nx - n) // 2, (ny - n) // 2
@@ -37,17 +41,22 @@ def contacting_heights(scan: Scan) -> tuple[np.ndarray, float]:
 
 
 def periodic_part(heights: np.ndarray) -> np.ndarray:
-    """Heights less the smoothest surface that has their jumps across the edges (doi:10.1007/s10851-010-0227-1).
+    """Heights less the smoothest surface that has their jumps across the edges
+    (doi:10.1007/s10851-010-0227-1).
 
-    What is left meets itself across the edges without a jump, and is nearly unchanged away from them.
-    """
+    What is left meets itself across the edges without a jump, and is nearly unchanged away from
+    them."""
     nx, ny = heights.shape
     jumps = np.zeros_like(heights)
     jumps[0] += heights[-1] - heights[0]
     jumps[-1] -= heights[-1] - heights[0]
     jumps[:, 0] += heights[:, -1] - heights[:, 0]
     jumps[:, -1] -= heights[:, -1] - heights[:, 0]
-    laplace = 2 * np.cos(2 * np.pi * np.fft.fftfreq(nx))[:, None] + 2 * np.cos(2 * np.pi * np.fft.rfftfreq(ny)) - 4
+    laplace = (
+        2 * np.cos(2 * np.pi * np.fft.fftfreq(nx))[:, None]
+        + 2 * np.cos(2 * np.pi * np.fft.rfftfreq(ny))
+        - 4
+    )
     laplace[0, 0] = 1.0
     smooth = np.asarray(scipy.fft.rfft2(jumps)) / laplace
     smooth[0, 0] = 0.0

@@ -1,4 +1,6 @@
-"""Settings of the mesoscale stages, a module each: every key with its default, unit and accepted range."""
+"""Settings of the mesoscale stages, a module each: every key with its default, unit and accepted
+range.
+"""
 
 from asperity.guards.settings import Settings
 from mesoscale.settings.contact import ContactSettings, ReadingSettings, SceneContact
@@ -8,7 +10,11 @@ from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import TABLE_1, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
 from mesoscale.settings.pad import PadSettings
-from mesoscale.settings.topography import InstrumentSettings, SyntheticScanSettings, TopographySettings
+from mesoscale.settings.topography import (
+    InstrumentSettings,
+    SyntheticScanSettings,
+    TopographySettings,
+)
 from mesoscale.settings.uncertainty import UncertaintySettings
 
 __all__ = [

@@ -28,31 +28,44 @@ NOMINAL_LOADS_NN = (1e3, 3e3, 7e3, 1e4, 2e4, 5e4)
 
 
 def advised_grid(pixels: int) -> str:
-    """Advice for a message to take so many sites a side, up to its comma; empty where no grid may have them."""
+    """Advice for a message to take so many sites a side, up to its comma; empty where no grid may
+    have them.
+    """
     return f"contact.pixels >= {pixels}, " if pixels <= MOST_PIXELS else ""
 
 
 class ReadingSettings(Settings):
-    """What the paper leaves open; the defaults come nearest to its Tables 2 and 3, and physics would choose them."""
+    """What the paper leaves open; the defaults are physical and nearest to its Tables 2 and 3."""
 
     convention: Literal["profile", "areal"] = key(
-        "areal", "slope of the two-dimensional PSD: -(2H+1), as the paper prints it, or -(2H+2), an isotropic surface's"
+        "areal",
+        "slope of the two-dimensional PSD: -(2H+1), as the paper prints it, or -(2H+2), an"
+        " isotropic surface's",
     )
-    prefactor: Literal["paper", "hertz"] = key("hertz", "p of eq. 3: 2/3 as printed, or Hertz's 4/3")
+    prefactor: Literal["paper", "hertz"] = key(
+        "hertz", "p of eq. 3: 2/3 as printed, or Hertz's 4/3"
+    )
     radius: Literal["curvature", "truncation"] = key(
         "curvature", "asperity radius: mean curvature of the sites (eq. 2), or R = A/(2 pi delta)"
     )
-    area: Literal["sites", "hertz"] = key("sites", "asperity area in eq. 4: its sites, or Hertz's pi R delta")
-    flow_pair: Literal["paper", "wide"] = key(
-        "wide", "second Gaussian of a flow: 3 times the radius of curvature (s2 = 3^(1/4) s1), or the width"
+    area: Literal["sites", "hertz"] = key(
+        "sites", "asperity area in eq. 4: its sites, or Hertz's pi R delta"
     )
-    touching_attracts: bool = key(False, "whether sites in contact attract (with the gap D0) or are left out of eq. 1")
+    flow_pair: Literal["paper", "wide"] = key(
+        "wide",
+        "second Gaussian of a flow: 3 times the radius of curvature (s2 = 3^(1/4) s1), or the"
+        " width",
+    )
+    touching_attracts: bool = key(
+        False, "whether sites in contact attract (with the gap D0) or are left out of eq. 1"
+    )
 
 
 class MaterialSettings(Settings):
     """An elastic layer of one of the two bodies, or its base."""
 
-    # the table of influences resolves the ratios of these bounds (tests/mesoscale/contact/test_layers.py)
+    # the table of influences resolves the ratios of these bounds
+    # (tests/mesoscale/contact/test_layers.py)
     young_GPa: float = key(..., "Young's modulus", "[1e-6, 1e6] GPa")
     poisson: float = key(..., "Poisson's ratio", "[0, 0.5)")
     thickness_nm: float | None = key(None, "thickness, above 0; null: the base", "[0, 1e6] nm")
@@ -75,27 +88,37 @@ class AirSettings(Settings):
     surface_tension_mN_m: float | None = key(
         None, "surface tension of the liquid; null: water's at the temperature", "[0.001, 1e5] mN/m"
     )
-    molar_volume_cm3: float | None = key(None, f"its molar volume; null: water's, {WATER_CM3:g}", "[0.1, 1e5] cm^3")
-    contact_angles_deg: tuple[float, float] = key((0.0, 0.0), "contact angles of the liquid on both walls, 0 to 180")
+    molar_volume_cm3: float | None = key(
+        None, f"its molar volume; null: water's, {WATER_CM3:g}", "[0.1, 1e5] cm^3"
+    )
+    contact_angles_deg: tuple[float, float] = key(
+        (0.0, 0.0), "contact angles of the liquid on both walls, 0 to 180"
+    )
     film_nm: float = key(0.0, "thickness of the adsorbed film on each wall", "[0, 1000] nm")
     hamaker_share: float = key(
         0.3,
-        "Hamaker constant across the liquid over that across air; in water 0.29 for silicon nitride, 0.35 for "
-        "titanium oxide, 0.07 for silica (Bergstrom 1997, doi:10.1016/S0001-8686(97)00003-1)",
+        "Hamaker constant across the liquid over that across air; in water 0.29 for silicon"
+        " nitride, 0.35 for titanium oxide, 0.07 for silica (Bergstrom 1997,"
+        " doi:10.1016/S0001-8686(97)00003-1)",
         "[0, 1]",
     )
     opening: Opening = key(
-        "balance", "menisci open in balance with the vapour, or at constant volume (not mechanics: adhesive)"
+        "balance",
+        "menisci open in balance with the vapour, or at constant volume (not mechanics: adhesive)",
     )
 
     @model_validator(mode="after")
     def _liquid_is_known(self) -> "AirSettings":
         for angle in self.contact_angles_deg:
             if not 0.0 <= angle <= 180.0:
-                raise ValueError(f"contact_angles_deg: {angle:g} is no contact angle; accepted are 0 to 180 degrees")
+                raise ValueError(
+                    f"contact_angles_deg: {angle:g} is no contact angle; accepted are 0 to 180"
+                    " degrees"
+                )
         if (self.surface_tension_mN_m is None) != (self.molar_volume_cm3 is None):
             raise ValueError(
-                "surface_tension_mN_m and molar_volume_cm3 go together: both of another liquid, or neither"
+                "surface_tension_mN_m and molar_volume_cm3 go together: both of another liquid, or"
+                " neither"
             )
         return self
 
@@ -104,25 +127,38 @@ class SceneContact(Settings):
     """Mesoscale contact model (docs/contact.md)."""
 
     mechanics: Literal["asperity", "coupled", "adhesive"] = key(
-        "coupled", "asperities each on its own (the paper's), on one elastic half-space, or one that attraction deforms"
+        "coupled",
+        "asperities each on its own (the paper's), on one elastic half-space, or one that"
+        " attraction deforms",
     )
     model: Literal["elastic", "nonlinear", "plastic"] = key(
-        "plastic", "asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface"
+        "plastic",
+        "asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the"
+        " surface",
     )
     pixels: int = key(1024, "grid points per side", f"[32, {MOST_PIXELS}]")
     length_nm: float = key(
         1000.0,
-        "side of the square, periodic cell; with measured scans left out: it holds the shortest measured waves "
-        "and most of the RMS height (docs/topography.md, Cells), and max_force_nN grows with its area",
+        "side of the square, periodic cell; with measured scans left out: it holds the shortest"
+        " measured waves and most of the RMS height (docs/topography.md, Cells), and max_force_nN"
+        " grows with its area",
         "[1, 1e6] nm",
     )
-    max_force_nN: float = key(7000.0, "repulsive force at which closing turns into opening", "[1e-6, 1e12] nN")
-    q1_per_nm: float | None = key(None, "short-wave cut-off of the spectrum; null: Nyquist limit", "[1e-6, 1000] 1/nm")
+    max_force_nN: float = key(
+        7000.0, "repulsive force at which closing turns into opening", "[1e-6, 1e12] nN"
+    )
+    q1_per_nm: float | None = key(
+        None, "short-wave cut-off of the spectrum; null: Nyquist limit", "[1e-6, 1000] 1/nm"
+    )
     attraction: AttractionLaw = key(
-        "offset", "eq. 1: A_H/(6 pi (g + D0)^3), or the paper's A_H/(6 pi max(g, D0)^3), of twice more work within D0"
+        "offset",
+        "eq. 1: A_H/(6 pi (g + D0)^3), or the paper's A_H/(6 pi max(g, D0)^3), of twice more work"
+        " within D0",
     )
     gap_cutoff_nm: float = key(
-        0.165, "D0: distance of the walls at touch (offset), or least gap (clamped)", "[1e-6, 30] nm"
+        0.165,
+        "D0: distance of the walls at touch (offset), or least gap (clamped)",
+        "[1e-6, 30] nm",
     )
     retardation_nm: float | None = key(
         None, "wavelength of Gregory's retardation, about 100 nm; null: none", "[1, 1e6] nm"
@@ -130,8 +166,9 @@ class SceneContact(Settings):
     air: AirSettings | None = key(None, "humid air around the contact; null: dry")
     bodies: tuple[Body, ...] = key(
         (),
-        "elastic layers of the two bodies, each from its surface down to its base; e_star is then that of the "
-        "bases together, and scales all layers; empty: e_star alone (mechanics: coupled or adhesive)",
+        "elastic layers of the two bodies, each from its surface down to its base; e_star is then"
+        " that of the bases together, and scales all layers; empty: e_star alone (mechanics:"
+        " coupled or adhesive)",
         max_length=2,
     )
     reading: ReadingSettings = ReadingSettings()
@@ -141,14 +178,23 @@ class SceneContact(Settings):
         if any(material.thickness_nm == 0.0 for body in self.bodies for material in body):
             raise ValueError("bodies: a layer with thickness_nm = 0 is none; leave it out")
         for body in self.bodies:
-            if not body or [material.thickness_nm is None for material in body] != [False] * (len(body) - 1) + [True]:
+            if not body or [material.thickness_nm is None for material in body] != [False] * (
+                len(body) - 1
+            ) + [True]:
                 raise ValueError(
-                    "bodies: each is a list of layers with thickness_nm, and at its end a base without one"
+                    "bodies: each is a list of layers with thickness_nm, and at its end a base"
+                    " without one"
                 )
         if self.air and self.air.opening == "volume" and self.mechanics == "adhesive":
-            raise ValueError("air.opening = volume: an adhesive contact opens in balance; take mechanics: coupled")
+            raise ValueError(
+                "air.opening = volume: an adhesive contact opens in balance; take mechanics:"
+                " coupled"
+            )
         if self.bodies and self.mechanics == "asperity":
-            raise ValueError("bodies: single asperities know one modulus; accepted with mechanics: coupled or adhesive")
+            raise ValueError(
+                "bodies: single asperities know one modulus; accepted with mechanics: coupled or"
+                " adhesive"
+            )
         return self
 
     @property

@@ -35,7 +35,7 @@ def _normal(deviation: float, source: str = ASSUMED, **what: Any) -> SpreadRow:
 
 
 class SpreadSettings(Settings):
-    """Departures of a device from its stated properties, uncertain inputs of the answer (docs/device.md)."""
+    """Departures of a device from its stated properties, uncertain inputs (docs/pad.md)."""
 
     thickness_um: SpreadRow | None = _departs("thickness_um", _normal(0.02, relative=True))
     gap_um: SpreadRow | None = _departs("gap_um", _normal(0.02, relative=True))
@@ -53,11 +53,14 @@ class SpreadSettings(Settings):
         "dielectric_nm",
         _normal(
             0.03,
-            "nitride over a wafer: 2.5 % by LPCVD, 7 % by PECVD (MEMS Exchange, processes P3684 and P3822)",
+            "nitride over a wafer: 2.5 % by LPCVD, 7 % by PECVD (MEMS Exchange, processes P3684 and"
+            " P3822)",
             relative=True,
         ),
     )
-    permittivity: SpreadRow | None = _departs("permittivity", _normal(0.05, relative=True, varies="common"))
+    permittivity: SpreadRow | None = _departs(
+        "permittivity", _normal(0.05, relative=True, varies="common")
+    )
     bow_nm: SpreadRow | None = _departs("bow_nm", _normal(200.0))
     tilt_nm: SpreadRow | None = _departs("tilt_nm", _normal(200.0))
     temperature_C: SpreadRow | None = _departs("temperature_C", None)
@@ -75,46 +78,77 @@ class DeviceSettings(Settings):
     The defaults are the published fixed-fixed beam of the PRISM capacitive switch.
     """
 
-    ends: Literal["clamped", "cantilever"] = key("clamped", "beam clamped at both ends, or at its first end only")
+    ends: Literal["clamped", "cantilever"] = key(
+        "clamped", "beam clamped at both ends, or at its first end only"
+    )
     length_um: float = key(510.0, "length of the beam", "[0.01, 1e4] um")
     width_um: float = key(123.0, "width of the beam", "[0.01, 1e5] um")
     thickness_um: float = key(4.0, "thickness of the beam", "[0.001, 1000] um")
-    gap_um: float = key(3.49, "distance from the beam at rest to the mean plane of the dielectric", "(0.01, 1000] um")
+    gap_um: float = key(
+        3.49,
+        "distance from the beam at rest to the mean plane of the dielectric",
+        "(0.01, 1000] um",
+    )
     youngs_modulus_GPa: float = key(89.3, "Young's modulus of the beam", "[0.001, 2000] GPa")
     poisson_ratio: float = key(0.3, "Poisson's ratio of the beam", "[0, 0.5)")
     bends_as: Literal["beam", "plate"] | None = key(
-        None, "bends with E (beam) or E/(1 - nu^2) (plate); null: as a plate from a width of 5 thicknesses on"
+        None,
+        "bends with E (beam) or E/(1 - nu^2) (plate); null: as a plate from a width of 5"
+        " thicknesses on",
     )
     residual_stress_MPa: float = key(
-        0.0, "residual stress at rest at 20 C; negative: compressive, beyond Euler's it buckles", "[-2000, 2000] MPa"
+        0.0,
+        "residual stress at rest at 20 C; negative: compressive, beyond Euler's it buckles",
+        "[-2000, 2000] MPa",
     )
-    buckled: Literal["up", "down"] = key("up", "side of a buckled beam; up: away from the dielectric")
+    buckled: Literal["up", "down"] = key(
+        "up", "side of a buckled beam; up: away from the dielectric"
+    )
     temperature_C: float = key(REFERENCE_C, "temperature of the switch", "[-270, 2000] C")
     excess_expansion_ppm_C: float = key(
         10.8,
         "thermal expansion of the beam less the substrate's; default: nickel 13.4, silicon 2.6",
         "[-1000, 1000] 1e-6/C",
     )
-    anchor_um_per_N: float = key(0.0, "how far both anchors together give way to the axial force", "[0, 1e9] um/N")
+    anchor_um_per_N: float = key(
+        0.0, "how far both anchors together give way to the axial force", "[0, 1e9] um/N"
+    )
     spring_N_per_m: float | None = key(
         None, "stiffness of a plate of length times width; null: a beam", "[0.001, 1e6] N/m"
     )
-    electrode: PartOfBeam = key((0.0, 1.0), "part of the beam over the electrode, from and to", "share of the length")
-    contact: PartOfBeam = key((0.0, 1.0), "part over the rough pad, from and to", "share of the length")
+    electrode: PartOfBeam = key(
+        (0.0, 1.0), "part of the beam over the electrode, from and to", "share of the length"
+    )
+    contact: PartOfBeam = key(
+        (0.0, 1.0), "part over the rough pad, from and to", "share of the length"
+    )
     dimple_nm: float = key(0.0, "height of a dimple under the contact part", "[0, 1e5] nm")
-    stopper_nm: float = key(0.0, "height of rigid stoppers elsewhere; 0: the dielectric itself", "[0, 1e5] nm")
+    stopper_nm: float = key(
+        0.0, "height of rigid stoppers elsewhere; 0: the dielectric itself", "[0, 1e5] nm"
+    )
     fringe: float = key(
         0.64,
-        "pull at the sides, as gaps of more width; a thin strip: 0.64 (Palmer, Trans. AIEE 56 (1937) 363)",
+        "pull at the sides, as gaps of more width; a thin strip: 0.64 (Palmer, Trans. AIEE 56"
+        " (1937) 363)",
         "[0, 10]",
     )
-    bow_nm: float = key(0.0, "height at rest of the middle (cantilever: of the tip) over the anchors", "[-1e5, 1e5] nm")
+    bow_nm: float = key(
+        0.0,
+        "height at rest of the middle (cantilever: of the tip) over the anchors",
+        "[-1e5, 1e5] nm",
+    )
     tilt_nm: float = key(0.0, "height at rest of the last end over the first", "[-1e5, 1e5] nm")
-    spread: SpreadSettings = key(SpreadSettings(), "departures from these properties, as uncertain inputs")
+    spread: SpreadSettings = key(
+        SpreadSettings(), "departures from these properties, as uncertain inputs"
+    )
     dielectric_nm: float = key(200.0, "thickness of the dielectric", "[0, 1e5] nm")
     permittivity: float = key(7.9, "relative permittivity of the dielectric", "[1, 1e5]")
-    density_g_cm3: float = key(8.9, "density of the electrode, which moves; default: nickel", "[0.01, 30] g/cm^3")
-    gas_kPa: float = key(101.325, "pressure of the air around the electrode, for its motion", "[1e-6, 1e4] kPa")
+    density_g_cm3: float = key(
+        8.9, "density of the electrode, which moves; default: nickel", "[0.01, 30] g/cm^3"
+    )
+    gas_kPa: float = key(
+        101.325, "pressure of the air around the electrode, for its motion", "[1e-6, 1e4] kPa"
+    )
     hold_voltage_V: float | None = key(
         None, "voltage of the closed switch; null: its pull-in voltage", "[0.001, 1e4] V"
     )
@@ -124,7 +158,10 @@ class DeviceSettings(Settings):
         for name in ("electrode", "contact"):
             start, end = getattr(self, name)
             if not 0.0 <= start < end <= 1.0:
-                raise ValueError(f"{name} = [{start:g}, {end:g}]: accepted are two rising shares of the length, 0 to 1")
+                raise ValueError(
+                    f"{name} = [{start:g}, {end:g}]: accepted are two rising shares of the length,"
+                    " 0 to 1"
+                )
         return self
 
     @property
@@ -147,7 +184,9 @@ class DeviceSettings(Settings):
     @property
     def bending_GPa(self) -> float:
         """Modulus of bending: E, or E / (1 - nu^2) of a wide beam, whose edges cannot curl."""
-        wide = self.width_um >= 5.0 * self.thickness_um  # Osterberg and Senturia, J. MEMS 6 (1997) 107
+        wide = (
+            self.width_um >= 5.0 * self.thickness_um
+        )  # Osterberg and Senturia, J. MEMS 6 (1997) 107
         plate = wide if self.bends_as is None else self.bends_as == "plate"
         return self.youngs_modulus_GPa / (1.0 - self.poisson_ratio**2 if plate else 1.0)
 
@@ -158,7 +197,9 @@ class DeviceSettings(Settings):
         return -1e3 * self.youngs_modulus_GPa * strain
 
     def shape_at_rest_nm(self, share: ArrayLike) -> NDArray[np.float64]:
-        """Height of the bending electrode at rest over its flat place (nm), at shares of its length from one end."""
+        """Height of the bending electrode at rest over its flat place (nm), at shares of its length
+        from one end.
+        """
         x = np.asarray(share, float)
         if self.ends == "cantilever":
             return self.bow_nm * x**2 + self.tilt_nm * x
@@ -181,8 +222,8 @@ class DeviceSettings(Settings):
         if not self.bends or lowest_nm > 0.0:
             return ""
         return (
-            f"device: at rest the electrode is {lowest_nm:.4g} nm above what it lands on at its lowest; "
-            "lower bow_nm, tilt_nm, dimple_nm or stopper_nm, or raise gap_um"
+            f"device: at rest the electrode is {lowest_nm:.4g} nm above what it lands on at its"
+            " lowest; lower bow_nm, tilt_nm, dimple_nm or stopper_nm, or raise gap_um"
         )
 
     @property
@@ -193,12 +234,15 @@ class DeviceSettings(Settings):
 
     @property
     def without_lumps(self) -> str:
-        """One line on a beam that has no lumps, which are those of a symmetric one; empty where it has."""
+        """One line on a beam that has no lumps, which are those of a symmetric one; empty where it
+        has.
+        """
         if self.ends == "clamped" and self.electrode == self.contact == (0.0, 1.0):
             return ""
         return (
-            "device.ends, electrode, contact: circuits are made of beams clamped at both ends, with electrode and pad "
-            "all along; take clamped, [0, 1] and [0, 1], or leave the circuit out"
+            "device.ends, electrode, contact: circuits are made of beams clamped at both ends, with"
+            " electrode and pad all along; take clamped, [0, 1] and [0, 1], or leave the"
+            " circuit out"
         )
 
 

@@ -20,12 +20,15 @@ FORMS = (
 class DistributionRow(Settings):
     """A distribution as a scene states it."""
 
-    distribution: Literal["uniform", "log_uniform", "normal", "truncated_normal", "samples", "fixed"] = key(
-        "uniform", "form of the distribution that `values` state"
-    )
+    distribution: Literal[
+        "uniform", "log_uniform", "normal", "truncated_normal", "samples", "fixed"
+    ] = key("uniform", "form of the distribution that `values` state")
     values: tuple[float, ...] | str | None = Field(
         default=None,
-        description=f"its numbers, in the input's unit: {FORMS} (one sample a row, in a column named like the input)",
+        description=(
+            f"its numbers, in the input's unit: {FORMS} (one sample a row, in a column named like"
+            " the input)"
+        ),
     )
     source: str = key("", "where the values come from, shown in the report", max_length=500)
     varies: Literal["common", "each"] = key(
@@ -38,7 +41,9 @@ class DistributionRow(Settings):
         if given is None or isinstance(given, str):
             return given
         numbers = given if isinstance(given, (list, tuple)) else [None]
-        if not all(isinstance(item, (int, float)) and not isinstance(item, bool) for item in numbers):
+        if not all(
+            isinstance(item, (int, float)) and not isinstance(item, bool) for item in numbers
+        ):
             raise ValueError(f"accepted are {FORMS}")
         return tuple(numbers)
 
@@ -54,22 +59,36 @@ class DistributionRow(Settings):
         if kind == "samples" and isinstance(values, str):
             return
         if kind == "samples" or isinstance(values, str) or len(values) != NUMBERS[kind]:
-            raise ValueError(f"values = {values!r:.60} are none of distribution {kind}; accepted are {FORMS}")
+            raise ValueError(
+                f"values = {values!r:.60} are none of distribution {kind}; accepted are {FORMS}"
+            )
         if kind == "log_uniform" and not values[0] > 0:
             raise ValueError(f"log_uniform values [{values[0]:g}, {values[1]:g}]: both must be > 0")
         if "uniform" in kind and not values[0] <= values[1]:
-            raise ValueError(f"{kind} values [{values[0]:g}, {values[1]:g}]: the first must not exceed the second")
+            raise ValueError(
+                f"{kind} values [{values[0]:g}, {values[1]:g}]: the first must not exceed the"
+                " second"
+            )
         if "normal" in kind and not values[1] >= 0:
             raise ValueError(f"{kind} with deviation {values[1]:g}: it must be >= 0")
         if kind == "truncated_normal" and not values[2] < values[3]:
             raise ValueError(f"truncation {values[2]:g} .. {values[3]:g}: low must lie below high")
-        flat = kind == "fixed" or (kind == "uniform" and values[0] == values[1]) or ("normal" in kind and not values[1])
+        flat = (
+            kind == "fixed"
+            or (kind == "uniform" and values[0] == values[1])
+            or ("normal" in kind and not values[1])
+        )
         if flat and self.varies == "each" and "varies" in self.model_fields_set:
-            raise ValueError("varies: each, but its values have no spread; give a distribution, or leave varies out")
+            raise ValueError(
+                "varies: each, but its values have no spread; give a distribution, or leave"
+                " varies out"
+            )
 
     @property
     def reaches(self) -> float | None:
-        """The largest number that it states as an end, or its mean; None of samples and of a stage's distribution."""
+        """The largest number that it states as an end, or its mean; None of samples and of a
+        stage's distribution.
+        """
         place = {"uniform": 1, "log_uniform": 1, "truncated_normal": 3}.get(self.distribution, 0)
         return self.values[place] if isinstance(self.values, tuple) else None
 
@@ -79,9 +98,9 @@ class InputRow(DistributionRow):
 
     origin: Literal["literature", "hardness", "elastic", "topography", "calibration"] = key(
         "literature",
-        "where the distribution comes from: this file; the result of that stage; or the calibration with the "
-        "scene's measurements, whose prior is stated here or, without values, by the stage that computes the "
-        "input",
+        "where the distribution comes from: this file; the result of that stage; or the calibration"
+        " with the scene's measurements, whose prior is stated here or, without values, by the"
+        " stage that computes the input",
     )
 
     @model_validator(mode="after")
@@ -95,7 +114,9 @@ class InputRow(DistributionRow):
 
     def _check_calibrated(self) -> Self:
         if self.origin == "calibration" and self.varies == "each":
-            raise ValueError("origin calibration narrows one unknown value; varies: each needs another origin")
+            raise ValueError(
+                "origin calibration narrows one unknown value; varies: each needs another origin"
+            )
         return self
 
 
@@ -104,11 +125,13 @@ TABLE_1 = "Kim et al. (2013), Table 1"
 
 
 class WorkAndRangeSettings(Settings):
-    """The attraction of two flats by its work and range, which stand for A_H and D0 (docs/contact.md, Attraction)."""
+    """Attraction of two flats by its work and range, in place of A_H and D0 (docs/contact.md)."""
 
     work_mJ_m2: float = key(..., "work that separates two flats from touch", "(0, 100000] mJ/m^2")
     range_nm: float = key(
-        ..., "that work over the largest attraction: D0/2 (offset), 3/2 D0 (clamped)", "[0.001, 15] nm"
+        ...,
+        "that work over the largest attraction: D0/2 (offset), 3/2 D0 (clamped)",
+        "[0.001, 15] nm",
     )
 
     def gap_cutoff_nm(self, law: AttractionLaw) -> float:
@@ -129,30 +152,48 @@ def _key(row: InputDefinition) -> Any:
     if row.literature is None:
         kind = InputRow | None if row.hardness else InputRow
         return kind, Field(default=InputRow(origin=cast(Any, row.stage)), description=about)
-    return InputRow, Field(default=InputRow(values=row.literature, source=TABLE_1), description=about)
+    return InputRow, Field(
+        default=InputRow(values=row.literature, source=TABLE_1), description=about
+    )
 
 
-class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.name: _key(row) for row in INPUTS})):
+class InputsSettings(
+    create_model("InputsSettings", __base__=Settings, **{row.name: _key(row) for row in INPUTS})
+):
     """Origin and distribution of the uncertain inputs (docs/uncertainty.md)."""
 
     hardness: HardnessLawName = key(
         "paper",
-        "hardness by contact area: constant, eq. 4 (h_prime), or film on a base (h_film, t_film, k_film, m_film)",
+        "hardness by contact area: constant, eq. 4 (h_prime), or film on a base (h_film, t_film,"
+        " k_film, m_film)",
     )
-    adhesion: WorkAndRangeSettings | None = key(None, "work and range in place of hamaker and gap_cutoff")
+    adhesion: WorkAndRangeSettings | None = key(
+        None, "work and range in place of hamaker and gap_cutoff"
+    )
     accepted_gates: tuple[Literal["hardness", "elastic", "topography"], ...] = key(
-        (), "stages whose inputs are taken although their gate failed: to test the chain, for no prediction"
+        (),
+        "stages whose inputs are taken although their gate failed: to test the chain, for no"
+        " prediction",
     )
     correlations: dict[str, dict[str, float]] = key(
-        {}, "rank correlations besides those that a stage reports, such as {rms: {q0: -0.4, hurst: 0.2}}; -1 < each < 1"
+        {},
+        "rank correlations besides those that a stage reports, such as {rms: {q0: -0.4, hurst:"
+        " 0.2}}; -1 < each < 1",
     )
 
     @model_validator(mode="after")
     def _one_attraction(self) -> "InputsSettings":
         fields = type(self).model_fields
-        given = [name for name in ("hamaker", "gap_cutoff") if getattr(self, name) != fields[name].default]
+        given = [
+            name
+            for name in ("hamaker", "gap_cutoff")
+            if getattr(self, name) != fields[name].default
+        ]
         if self.adhesion and given:
-            raise ValueError(f"adhesion and {' and '.join(given)} give the same attraction; leave one of them out")
+            raise ValueError(
+                f"adhesion and {' and '.join(given)} give the same attraction; leave one of"
+                " them out"
+            )
         return self
 
     @model_validator(mode="after")
@@ -160,11 +201,14 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
         for row in INPUTS:
             given, default = getattr(self, row.name), type(self).model_fields[row.name].default
             if row.hardness == self.hardness and given is None:
-                raise ValueError(f"hardness: {row.hardness} needs {row.name}, {row.label} ({row.unit}); give its row")
+                raise ValueError(
+                    f"hardness: {row.hardness} needs {row.name}, {row.label} ({row.unit}); give"
+                    " its row"
+                )
             if row.hardness not in ("", self.hardness) and given not in (None, default):
                 raise ValueError(
-                    f"{row.name} belongs to hardness: {row.hardness}, but hardness is {self.hardness}; "
-                    f"set {row.name} to null, or take that law"
+                    f"{row.name} belongs to hardness: {row.hardness}, but hardness is"
+                    f" {self.hardness}; set {row.name} to null, or take that law"
                 )
         return self
 
@@ -173,17 +217,25 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
         names = list(self.rows())
         for pair in self.pairs:
             if unknown := [name for name in pair if name not in names]:
-                raise ValueError(f"correlations: unknown input {unknown[0]}; accepted: {', '.join(names)}")
+                raise ValueError(
+                    f"correlations: unknown input {unknown[0]}; accepted: {', '.join(names)}"
+                )
             if pair[0] == pair[1]:
                 raise ValueError(f"correlations: {pair[0]} with itself; name two inputs")
             if len({self.rows()[name].varies for name in pair}) > 1:
-                raise ValueError(f"correlations: of {' and '.join(pair)} one is common and one varies with each device")
+                raise ValueError(
+                    f"correlations: of {' and '.join(pair)} one is common and one varies with each"
+                    " device"
+                )
             if pair[::-1] in self.pairs:
-                raise ValueError(f"correlations: {pair[0]} with {pair[1]} is stated twice; leave one of them out")
+                raise ValueError(
+                    f"correlations: {pair[0]} with {pair[1]} is stated twice; leave one of them out"
+                )
             if not -1 < (rank := self.pairs[pair]) < 1:
                 raise ValueError(
-                    f"correlations: {pair[0]} with {pair[1]} = {rank:g}; accepted is more than -1 and less than 1; "
-                    "where one input follows from the other, give both the same file of joint samples"
+                    f"correlations: {pair[0]} with {pair[1]} = {rank:g}; accepted is more than -1"
+                    " and less than 1; where one input follows from the other, give both the same"
+                    " file of joint samples"
                 )
         for name, row in self.rows().items():
             stage = BY_NAME[name].stage
@@ -191,31 +243,49 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
             if row.origin not in accepted:
                 raise ValueError(f"{name}: origin {row.origin}; accepted: {', '.join(accepted)}")
             if row.origin == "calibration" and row.values is None and stage == "literature":
-                raise ValueError(f"{name}: no stage computes it, so that its prior must be stated: give its values")
+                raise ValueError(
+                    f"{name}: no stage computes it, so that its prior must be stated: give its"
+                    " values"
+                )
         return self
 
     @property
     def pairs(self) -> dict[tuple[str, str], float]:
         """The stated rank correlations (Spearman's) of two inputs."""
-        return {(one, other): rank for one, others in self.correlations.items() for other, rank in others.items()}
+        return {
+            (one, other): rank
+            for one, others in self.correlations.items()
+            for other, rank in others.items()
+        }
 
     def rows(self, law: AttractionLaw = "offset") -> dict[str, InputRow]:
         """The inputs in use, by name; `law` of the attraction that `adhesion` states."""
-        named = {row.name: getattr(self, row.name) for row in INPUTS if row.hardness in ("", self.hardness)}
+        named = {
+            row.name: getattr(self, row.name)
+            for row in INPUTS
+            if row.hardness in ("", self.hardness)
+        }
         if self.adhesion:
-            stated = {"hamaker": self.adhesion.hamaker(law), "gap_cutoff": self.adhesion.gap_cutoff_nm(law)}
+            stated = {
+                "hamaker": self.adhesion.hamaker(law),
+                "gap_cutoff": self.adhesion.gap_cutoff_nm(law),
+            }
             for name, value in stated.items():
-                named[name] = InputRow(distribution="fixed", values=(value,), source="inputs.adhesion")
+                named[name] = InputRow(
+                    distribution="fixed", values=(value,), source="inputs.adhesion"
+                )
         return {name: row for name, row in named.items() if row is not None}
 
     def prior_origins(self) -> dict[str, str]:
         """Where the distribution of each input comes from, before any calibration."""
         return {
-            name: row.origin
-            if row.origin != "calibration"
-            else BY_NAME[name].stage
-            if row.values is None
-            else "literature"
+            name: (
+                row.origin
+                if row.origin != "calibration"
+                else BY_NAME[name].stage
+                if row.values is None
+                else "literature"
+            )
             for name, row in self.rows().items()
         }
 
@@ -227,5 +297,8 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
         """The inputs before any calibration."""
         origins = self.prior_origins()
         return self.model_copy(
-            update={name: row.model_copy(update={"origin": origins[name]}) for name, row in self.rows().items()}
+            update={
+                name: row.model_copy(update={"origin": origins[name]})
+                for name, row in self.rows().items()
+            }
         )

@@ -23,21 +23,28 @@ class MeasurementTable(Settings):
     ] = key(..., "what was measured")
     file: str = key(..., "CSV file, its columns named with their units (docs/calibration.md)")
     zero: Literal["unknown", "known"] = key(
-        "unknown", "whether separations of curves count from the mean plane, or each specimen has its own zero"
+        "unknown",
+        "whether separations of curves count from the mean plane, or each specimen has its own"
+        " zero",
     )
     discrepancy: float = key(
-        0.0, "standard deviation of the model's error: nm for curves and contact_begin, else a share", "[0, 1000]"
+        0.0,
+        "standard deviation of the model's error: nm for curves and contact_begin, else a share",
+        "[0, 1000]",
     )
     source: str = key("", "where the measurements come from, shown in the report")
 
 
 class MeasurementsSettings(Settings):
-    """Measurements and the calibration of the inputs with them (docs/calibration.md); off without tables."""
+    """Measurements that calibrate the inputs (docs/calibration.md); off without tables."""
 
-    tables: tuple[MeasurementTable, ...] = key((), "tables, one of each kind at most; none: not run")
+    tables: tuple[MeasurementTable, ...] = key(
+        (), "tables, one of each kind at most; none: not run"
+    )
     runs: int = key(
         800,
-        "contact cycles over the whole prior behind the responses; more follow where the posterior lies",
+        "contact cycles over the whole prior behind the responses; more follow where the posterior"
+        " lies",
         "[50, 1_000_000]",
     )
 
@@ -46,5 +53,7 @@ class MeasurementsSettings(Settings):
         kinds = [table.kind for table in self.tables]
         twice = sorted({kind for kind in kinds if kinds.count(kind) > 1})
         if twice:
-            raise ValueError(f"tables: {', '.join(twice)} given twice; put all data of a kind into one table")
+            raise ValueError(
+                f"tables: {', '.join(twice)} given twice; put all data of a kind into one table"
+            )
         return self

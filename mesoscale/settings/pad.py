@@ -19,14 +19,18 @@ class PadSettings(Settings):
 
     cells: int = key(64, "cells of the pad at central inputs", "[2, 100_000]")
     points: int = key(
-        128, "points of the joint distribution, each with a pad and a switch; 0: no interval", "[0, 100_000]"
+        128,
+        "points of the joint distribution, each with a pad and a switch; 0: no interval",
+        "[0, 100_000]",
     )
-    point_cells: int = key(12, "cells of a point's pad; undecided: four times as many", "[2, 10_000]")
+    point_cells: int = key(
+        12, "cells of a point's pad; undecided: four times as many", "[2, 10_000]"
+    )
     rms_scatter: tuple[RmsScatter, RmsScatter] | None = key(
         None,
-        "range of the standard deviation of ln RMS between places of a film, of which a pad holds all; "
-        "`inputs.rms` is then that of the median place. null: by topography where RMS comes from there, else "
-        "none",
+        "range of the standard deviation of ln RMS between places of a film, of which a pad holds"
+        " all; `inputs.rms` is then that of the median place. null: by topography where RMS comes"
+        " from there, else none",
     )
 
     @field_validator("rms_scatter")

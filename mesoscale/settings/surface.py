@@ -8,29 +8,40 @@ from asperity.guards.settings import Settings, key
 
 Positive = Annotated[float, Field(ge=1e-30, le=1e12)]
 PsdValue = Annotated[float, Field(ge=1e-60, le=1e60)]
-"""As far apart as logarithms of single precision are: of a spectrum by points only the shape counts."""
+"""As far apart as logarithms of single precision are: of a spectrum by points only the shape
+counts.
+"""
 
 
 class SpectrumSettings(Settings):
-    """A spectrum by points instead of the form of eq. 9; only its shape counts, the RMS is that of Table 1."""
+    """A spectrum by points instead of the form of eq. 9; only its shape counts, the RMS is that of
+    Table 1.
+    """
 
-    q: tuple[Positive, ...] = key(..., "wave vectors in rising order", "1/nm", min_length=2, max_length=10000)
+    q: tuple[Positive, ...] = key(
+        ..., "wave vectors in rising order", "1/nm", min_length=2, max_length=10000
+    )
     psd: tuple[PsdValue, ...] = key(
         ..., "C at these, of the two-dimensional spectrum", "nm^4", min_length=2, max_length=10000
     )
 
     q0: float | None = key(
         None,
-        "with `hurst`: eq. 9 nearest to the points; the inputs' q0 and hurst then bend the spectrum by the ratio "
-        "of their eq. 9 to this one; null: they are unused",
+        "with `hurst`: eq. 9 nearest to the points; the inputs' q0 and hurst then bend the spectrum"
+        " by the ratio of their eq. 9 to this one; null: they are unused",
         "[1e-7, 1000] 1/nm",
     )
-    hurst: float | None = key(None, "its Hurst exponent, in contact.reading.convention", "[1e-6, 2]")
+    hurst: float | None = key(
+        None, "its Hurst exponent, in contact.reading.convention", "[1e-6, 2]"
+    )
 
     @model_validator(mode="after")
     def _a_function(self) -> "SpectrumSettings":
         if len(self.psd) != len(self.q):
-            raise ValueError(f"psd has {len(self.psd)} values, q has {len(self.q)}; accepted are lists of one length")
+            raise ValueError(
+                f"psd has {len(self.psd)} values, q has {len(self.q)}; accepted are lists of one"
+                " length"
+            )
         if any(later <= earlier for earlier, later in zip(self.q, self.q[1:], strict=False)):
             raise ValueError("q is not in rising order")
         if (self.q0 is None) != (self.hurst is None):
@@ -44,8 +55,8 @@ class SurfaceSettings(Settings):
     spectrum: SpectrumSettings | None = key(None, "spectrum by points; null: eq. 9")
     heights: tuple[Annotated[float, Field(ge=-1000, le=1000)], ...] = key(
         (),
-        "measured heights: their values in units of the RMS at the normal variables -5, -4.9, ... 6 (as "
-        "topography/parameters.json has them); empty: a normal distribution",
+        "measured heights: their values in units of the RMS at the normal variables -5, -4.9, ... 6"
+        " (as topography/parameters.json has them); empty: a normal distribution",
         max_length=111,
     )
 

@@ -1,1 +1,3 @@
-"""Accuracy of a scene's topography and pad, stability of its contact (targets `accuracy` and `stability`)."""
+"""Accuracy of a scene's topography and pad, stability of its contact (targets `accuracy` and
+`stability`).
+"""

@@ -1,4 +1,6 @@
-"""Error of a release against run time by the choices of the beam, on pads that the scene has pressed."""
+"""Error of a release against run time by the choices of the beam, on pads that the scene has
+pressed.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -11,26 +13,49 @@ from mesoscale.device.electrode import with_pad
 from mesoscale.device.numerics import SWITCH
 from mesoscale.device.points import PadModel, Solved
 from mesoscale.errors import InputError
-from mesoscale.studies.driver import RELEASE, Array, Choice, Knob, Progress, Quantity, StudyRow, rows_of
+from mesoscale.studies.driver import (
+    RELEASE,
+    Array,
+    Choice,
+    Knob,
+    Progress,
+    Quantity,
+    StudyRow,
+    rows_of,
+)
 
 SWITCHES = 4
 """Switches that are solved with each choice."""
-ELEMENTS, STEPS, TOLERANCE = "elements of the beam", "steps of opening, nm", "relative error of a release"
+ELEMENTS, STEPS, TOLERANCE = (
+    "elements of the beam",
+    "steps of opening, nm",
+    "relative error of a release",
+)
 QUANTITIES = (RELEASE, Quantity("pull-in", "V"))
 
 
 def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterator[StudyRow]:
-    """Rows of accuracy/answer.csv without the stage; none of a plate on a spring, which has no such choices."""
+    """Rows of accuracy/answer.csv without the stage; none of a plate on a spring, which has no such
+    choices.
+    """
     if not model.central.point.device.bends:
         return
     switches = samples_of(model, SWITCHES)
     solve = partial(states, switches)
     solve(SWITCH.coarse_elements)  # compiles, so that no value pays for it
 
-    def knob(name: str, shipped: float, values: Sequence[float], best: float, compute: Callable[..., Array]) -> Knob:
+    def knob(
+        name: str,
+        shipped: float,
+        values: Sequence[float],
+        best: float,
+        compute: Callable[..., Array],
+    ) -> Knob:
         choices = [Choice(value, partial(compute, value)) for value in values]
         samples = f"{len(switches)} switches of the scene"
-        return Knob(name, QUANTITIES, choices, shipped, f"{name}: {best:g}", partial(compute, best), samples)
+        return Knob(
+            name, QUANTITIES, choices, shipped, f"{name}: {best:g}", partial(compute, best), samples
+        )
 
     elements = [round(factor * SWITCH.elements) for factor in (0.125, 0.25, 0.5, 1, 2)]
     steps = [factor * OPENING_NM for factor in (2, 1, 0.5)]
@@ -39,13 +64,17 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
     knobs = [
         knob(ELEMENTS, SWITCH.elements, elements, 4 * SWITCH.elements, solve),
         knob(STEPS, OPENING_NM, steps, OPENING_NM / 4, partial(solve, SWITCH.elements)),
-        knob(TOLERANCE, usual, tolerances, 1e-3 * usual, partial(solve, SWITCH.elements, OPENING_NM)),
+        knob(
+            TOLERANCE, usual, tolerances, 1e-3 * usual, partial(solve, SWITCH.elements, OPENING_NM)
+        ),
     ]
     yield from rows_of(knobs, progress)
 
 
 def samples_of(model: PadModel, switches: int) -> list[Solved]:
-    """So many switches at most: the central one and some of the solved points, of all parts of the design."""
+    """So many switches at most: the central one and some of the solved points, of all parts of the
+    design.
+    """
     solved = model.solved
     count = min(switches - 1, solved.size)
     chosen = solved[np.linspace(0, solved.size - 1, count).round().astype(int)] if count else []
@@ -63,7 +92,9 @@ def states(
     voltages = np.full((len(switches), 2), np.nan)
     for row, switch in zip(voltages, switches, strict=True):
         device = switch.point.device
-        solve = partial(solve_beam, device, elements=elements, opening_nm=opening_nm, tolerance=tolerance)
+        solve = partial(
+            solve_beam, device, elements=elements, opening_nm=opening_nm, tolerance=tolerance
+        )
         try:
             beam, _ = with_pad(solve, switch.pressed.law)
         except InputError:

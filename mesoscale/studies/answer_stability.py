@@ -1,8 +1,9 @@
-"""Stiff and extreme switches: each is solved with numbers that can be, or refused in one line that says why.
+"""Stiff and extreme switches: each is solved with numbers that can be, or refused in one line that
+says why.
 
-Beams are those around the published default, on a made-up pad: a change of stress or shape is hard only for the beam
-that it is made for. The device of the scene stands at its own extremes on its own pad.
-"""
+Beams are those around the published default, on a made-up pad: a change of stress or shape is hard
+only for the beam that it is made for. The device of the scene stands at its own extremes on its own
+pad."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -25,7 +26,12 @@ FLAT = DeviceSettings()
 EULER_MPa = euler_MPa(FLAT) / (1.0 - FLAT.poisson_ratio)
 """Residual stress at which the default beam buckles."""
 TIP: Changes = {"ends": "cantilever", "length_um": 250.0, "thickness_um": 3.0}
-BESIDE: Changes = {"electrode": (0.3, 0.8), "contact": (0.93, 1.0), "dimple_nm": 1500.0, "hold_voltage_V": 50.0}
+BESIDE: Changes = {
+    "electrode": (0.3, 0.8),
+    "contact": (0.93, 1.0),
+    "dimple_nm": 1500.0,
+    "hold_voltage_V": 50.0,
+}
 """It touches before it would pull in, and is then pressed."""
 SOLVED: dict[str, Changes] = {
     "at the buckling point": {"residual_stress_MPa": -EULER_MPa},
@@ -50,13 +56,29 @@ SOLVED: dict[str, Changes] = {
     "electrode beside the contact": {**TIP, **BESIDE},
     "the same, pressed harder": {**TIP, **BESIDE, "hold_voltage_V": 60.0},
     "dimple in the middle": {"contact": (0.45, 0.55), "dimple_nm": 500.0},
-    "electrode on one side": {**TIP, "ends": "clamped", **BESIDE, "contact": (0.45, 0.55), "hold_voltage_V": 400.0},
-    "on stoppers as high as the dimple": {"contact": (0.45, 0.55), "dimple_nm": 300.0, "stopper_nm": 300.0},
+    "electrode on one side": {
+        **TIP,
+        "ends": "clamped",
+        **BESIDE,
+        "contact": (0.45, 0.55),
+        "hold_voltage_V": 400.0,
+    },
+    "on stoppers as high as the dimple": {
+        "contact": (0.45, 0.55),
+        "dimple_nm": 300.0,
+        "stopper_nm": 300.0,
+    },
     "held with three times its pull-in": {"hold_voltage_V": 150.0, "gap_um": 2.0},
 }
 REFUSED: dict[str, tuple[Changes, str]] = {
-    "onto the pad": ({"residual_stress_MPa": -200.0, "buckled": "down"}, "the beam stands on the dielectric at rest"),
-    "hot onto the pad": ({"temperature_C": 400.0, "buckled": "down"}, "temperature_C = 400: the beam stands on"),
+    "onto the pad": (
+        {"residual_stress_MPa": -200.0, "buckled": "down"},
+        "the beam stands on the dielectric at rest",
+    ),
+    "hot onto the pad": (
+        {"temperature_C": 400.0, "buckled": "down"},
+        "temperature_C = 400: the beam stands on",
+    ),
     "stopper above the gap": (
         {"contact": (0.4, 0.6), "stopper_nm": 4000.0},
         "lower bow_nm, tilt_nm, dimple_nm or stop",
@@ -65,7 +87,10 @@ REFUSED: dict[str, tuple[Changes, str]] = {
         {"contact": (0.45, 0.55), "electrode": (0.2, 0.4), "stopper_nm": 1500.0},
         "does not land on the pad",
     ),
-    "that touches gently, held with no more": ({**TIP, **BESIDE, "hold_voltage_V": None}, "raise hold_voltage_V"),
+    "that touches gently, held with no more": (
+        {**TIP, **BESIDE, "hold_voltage_V": None},
+        "raise hold_voltage_V",
+    ),
     "gap inside the pad": ({"gap_um": 0.03}, "rests within reach of its pad"),
     "held with too little": ({"hold_voltage_V": 20.0}, "never closes this switch"),
 }
@@ -79,7 +104,10 @@ HIGHER: dict[str, Changes] = {
     "cantilever": {"ends": "cantilever", "length_um": 250.0},
 }
 """Beams over a pad that is higher than their gap."""
-CHECK_SOLVED = "finite, released below the hold voltage, landed, pull-in and release by half as many elements alike"
+CHECK_SOLVED = (
+    "finite, released below the hold voltage, landed, pull-in and release by half as many elements"
+    " alike"
+)
 CHECK_REFUSED = "refused in one line that says why"
 CHECK_HIGHER = "refused with a gap, and with that gap it lands and lets go"
 CHECK_OWN = "finite, released below the hold voltage; or refused in one line"
@@ -87,21 +115,27 @@ DEPTHS_NM = (16.0, 18.0, 20.0, 22.0, 24.0, 26.0, 28.0, 30.0, 32.0)
 
 
 def made_up_law(adhesion_kPa=0.0):
-    """Closing 7 MPa at 24 nm, e-fold 2 nm; opening loses contact 4 nm above the depth, with a well 1 nm wide there."""
+    """Closing 7 MPa at 24 nm, e-fold 2 nm; opening loses contact 4 nm above the depth, with a well
+    1 nm wide there.
+    """
     s = np.arange(15.0, 80.0, 0.05)
     closing = np.stack([7e-3 * np.exp((24.0 - s) / 2.0) * (s < 40.0), np.full(s.size, -1e-12)])
     opening = np.full((len(DEPTHS_NM), 2, s.size), np.nan)
     for k, depth in enumerate(DEPTHS_NM):
         above = s >= depth - 1e-9
         risen = s[above] - depth
-        opening[k, 0, above] = 7e-3 * np.exp((24.0 - depth) / 2.0) * np.maximum(1.0 - risen / 4.0, 0.0)
+        opening[k, 0, above] = (
+            7e-3 * np.exp((24.0 - depth) / 2.0) * np.maximum(1.0 - risen / 4.0, 0.0)
+        )
         opening[k, 1, above] = -1e-12 - adhesion_kPa * 1e-6 * np.exp(-((risen - 5.0) ** 2) / 0.5)
     return PadLaw(s, closing, np.array(DEPTHS_NM), opening, Flats(1e-6, 0.0))
 
 
 def lifted(law: PadLaw, by_nm: float) -> PadLaw:
     """The pad with so much more height above its mean plane."""
-    return PadLaw(law.separation_nm + by_nm, law.closing, law.depth_nm + by_nm, law.opening, law.flats)
+    return PadLaw(
+        law.separation_nm + by_nm, law.closing, law.depth_nm + by_nm, law.opening, law.flats
+    )
 
 
 def hard_cases(device: DeviceSettings, law: PadLaw) -> list[HardCase]:
@@ -112,18 +146,25 @@ def hard_cases(device: DeviceSettings, law: PadLaw) -> list[HardCase]:
 def hard_beams() -> Iterator[HardCase]:
     """Beams around the default, on made-up pads."""
     for name, changes in SOLVED.items():
-        yield HardCase(name, _told(changes), CHECK_SOLVED, partial(_solved, DeviceSettings(**changes)))
+        yield HardCase(
+            name, _told(changes), CHECK_SOLVED, partial(_solved, DeviceSettings(**changes))
+        )
     for name, (changes, words) in REFUSED.items():
-        yield HardCase(name, _told(changes), CHECK_REFUSED, partial(_refused, DeviceSettings(**changes), words))
+        yield HardCase(
+            name, _told(changes), CHECK_REFUSED, partial(_refused, DeviceSettings(**changes), words)
+        )
     for name, changes in HIGHER.items():
         description = f"a pad 6 um high, as rough as optical maps are; {_told(changes)}"
-        yield HardCase(f"pad above the gap, {name}", description, CHECK_HIGHER, partial(_higher, changes))
+        yield HardCase(
+            f"pad above the gap, {name}", description, CHECK_HIGHER, partial(_higher, changes)
+        )
 
 
 def _told(changes: Changes) -> str:
     """What is changed of the default device."""
     words = [
-        f"{key} = {value:.6g}" if isinstance(value, float) else f"{key} = {value}" for key, value in changes.items()
+        f"{key} = {value:.6g}" if isinstance(value, float) else f"{key} = {value}"
+        for key, value in changes.items()
     ]
     return ", ".join(words) or "the default beam"
 
@@ -145,10 +186,14 @@ def _solved(settings: DeviceSettings) -> tuple[bool, str]:
             broken.append(f"held below its pull-in of {states.pull_in_V:.4g} V")
     if not abs(coarse.pull_in_V - fine.pull_in_V) <= 5e-3 * fine.pull_in_V:
         broken.append(f"pull-in at {coarse.pull_in_V:.4g} V with {SWITCH.coarse_elements} elements")
-    # the mesh moves a release by some per cent of the hold voltage where the beam tears off in jerks
+    # the mesh moves a release by some per cent of the hold voltage where the beam tears off in
+    # jerks
     if not abs(coarse.release_V - fine.release_V) <= 0.02 * fine.hold_V:
         broken.append(f"release at {coarse.release_V:.4g} V with {SWITCH.coarse_elements} elements")
-    detail = f"pull-in {fine.pull_in_V:.4g} V, release {fine.release_V:.4g} V, {fine.landed_share:.0%} landed"
+    detail = (
+        f"pull-in {fine.pull_in_V:.4g} V, release {fine.release_V:.4g} V, {fine.landed_share:.0%}"
+        " landed"
+    )
     return not broken, "; ".join([*broken, detail])
 
 
@@ -174,7 +219,9 @@ def _higher(changes: Changes) -> tuple[bool, str]:
     gap_um = float(line.partition("gap_um to ")[2].partition(",")[0])
     wider = DeviceSettings(**changes, gap_um=gap_um)
     states, _ = with_pad(lambda pad: solve_beam(wider, pad, SWITCH.coarse_elements), law)
-    detail = f"gap {gap_um:.4g} um, release {states.release_V:.4g} V, {states.landed_share:.0%} landed"
+    detail = (
+        f"gap {gap_um:.4g} um, release {states.release_V:.4g} V, {states.landed_share:.0%} landed"
+    )
     return states.landed_share > 0.0 and states.release_V > 0.0, detail
 
 
@@ -196,7 +243,9 @@ def _own(device: DeviceSettings, law: PadLaw) -> Iterator[HardCase]:
         }
     for name, changed in changes.items():
         settings = device.model_copy(update=changed)
-        yield HardCase(f"own device, {name}", _told(changed), CHECK_OWN, partial(_finite, settings, law))
+        yield HardCase(
+            f"own device, {name}", _told(changed), CHECK_OWN, partial(_finite, settings, law)
+        )
     for times in (0.0, 30.0):
         pad = attracting(law, times)
         words = f"{times:g} times the attraction of its pad"

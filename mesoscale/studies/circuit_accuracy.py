@@ -1,4 +1,6 @@
-"""Error of the switch for simulators against run time: by its lumps, and by the tables of its pad."""
+"""Error of the switch for simulators against run time: by its lumps, and by the tables of its
+pad.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -17,7 +19,16 @@ from mesoscale.errors import InputError
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_accuracy import samples_of
-from mesoscale.studies.driver import RELEASE, Array, Choice, Knob, Progress, Quantity, StudyRow, rows_of
+from mesoscale.studies.driver import (
+    RELEASE,
+    Array,
+    Choice,
+    Knob,
+    Progress,
+    Quantity,
+    StudyRow,
+    rows_of,
+)
 
 SWITCHES = 3
 """Switches that are solved with each choice: the central one and others."""
@@ -48,16 +59,26 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
     in_use, _ = with_pad(partial(choose_lumps, device), model.central.pressed.law)
     counts = sorted({*CIRCUIT.lump_counts[::2], in_use.lumps})
     elements = CIRCUIT.reference_elements // 2
-    by_lumps = [Choice(count, partial(states, switches, partial(lumped_beam, lumps=count))) for count in counts]
+    by_lumps = [
+        Choice(count, partial(states, switches, partial(lumped_beam, lumps=count)))
+        for count in counts
+    ]
     exact = partial(states, switches, partial(beam_of, elements=elements))
-    knobs = [Knob(LUMPS, QUANTITIES, by_lumps, in_use.lumps, f"{elements} finite elements", exact, samples)]
+    knobs = [
+        Knob(
+            LUMPS, QUANTITIES, by_lumps, in_use.lumps, f"{elements} finite elements", exact, samples
+        )
+    ]
     usual = partial(beam_of, elements=SWITCH.coarse_elements)
     on_curves = partial(states, switches, usual)
     for name, cubic in ((STRAIGHT, False), (CUBIC, True)):
         choices = [
-            Choice(looser, partial(states, switches, usual, partial(on_tables, cubic, looser))) for looser in LOOSER
+            Choice(looser, partial(states, switches, usual, partial(on_tables, cubic, looser)))
+            for looser in LOOSER
         ]
-        knobs.append(Knob(name, QUANTITIES, choices, 1.0, "the curves themselves", on_curves, samples))
+        knobs.append(
+            Knob(name, QUANTITIES, choices, 1.0, "the curves themselves", on_curves, samples)
+        )
     yield from rows_of(knobs, progress)
 
 
@@ -72,12 +93,16 @@ def as_it_is(law: PadLaw) -> PadLaw:
 
 
 def states(switches: Sequence[Solved], beam: BeamOf, made: LawOf = as_it_is) -> Array:
-    """Release, pull-in (V) and held capacitance (fF) of switches without tilt, shape (switches, 3); NaN: no answer."""
+    """Release, pull-in (V) and held capacitance (fF) of switches without tilt, shape (switches, 3);
+    NaN: no answer.
+    """
     solutions = np.full((len(switches), 3), np.nan)
     for row, switch in zip(solutions, switches, strict=True):
         settings = switch.point.device.model_copy(update={"tilt_nm": 0.0})
         try:
-            solved, _ = with_pad(lambda law, of=settings: solve_bent(beam(of), of, made(law)), switch.pressed.law)
+            solved, _ = with_pad(
+                lambda law, of=settings: solve_bent(beam(of), of, made(law)), switch.pressed.law
+            )
         except InputError:
             continue
         row[:] = solved.release_V, solved.pull_in_V, solved.capacitance_fF

@@ -1,4 +1,6 @@
-"""Stiff and extreme switches for simulators, each judged beside finite elements or its own curves."""
+"""Stiff and extreme switches for simulators, each judged beside finite elements or its own
+curves.
+"""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -29,8 +31,8 @@ CELLS = 4
 PAIRS = 28
 """Of lumps, as usual pads need."""
 CHECK_LUMPS = (
-    "finite; areas add up to the electrode; stiff at rest; pull-in within 1 % of finite elements, release within "
-    "2 % of the hold voltage; sticks where they stick"
+    "finite; areas add up to the electrode; stiff at rest; pull-in within 1 % of finite elements,"
+    " release within 2 % of the hold voltage; sticks where they stick"
 )
 CHECK_TABLES = "no number missing, as near to the curves as allowed"
 CHECK_REFUSED = "refused in one line that says why"
@@ -41,8 +43,8 @@ def hard_cases(point: Point, contact: ContactSettings, law: PadLaw) -> list[Hard
 
     Parameters
     ----------
-    point, contact, law : of the scene: its central switch, the contact on the grid of its pads, and its own pad.
-    """
+    point, contact, law : of the scene: its central switch, the contact on the grid of its pads, and
+        its own pad."""
     scattered = Point({**point.values, RMS_SCATTER.name: 0.6}, point.gap_cutoff_nm, point.device)
     return [*hard_lumps(), *hard_tables(law), _pressed("unequal places", scattered, contact)]
 
@@ -53,15 +55,26 @@ def hard_lumps() -> Iterator[HardCase]:
         settings = DeviceSettings(**changes)
         if not settings.without_lumps:
             yield HardCase(
-                name, "as a beam of the stage answer", CHECK_LUMPS, partial(_lumps, settings, made_up_law(2.0))
+                name,
+                "as a beam of the stage answer",
+                CHECK_LUMPS,
+                partial(_lumps, settings, made_up_law(2.0)),
             )
     for adhesion_kPa in (0.0, 30.0, 300.0, 1e4):
         law = made_up_law(adhesion_kPa)
         judge = partial(_lumps, DeviceSettings(), law)
-        yield HardCase(f"adhesion of {adhesion_kPa:g} kPa", "from none to sticking", CHECK_LUMPS, judge)
+        yield HardCase(
+            f"adhesion of {adhesion_kPa:g} kPa", "from none to sticking", CHECK_LUMPS, judge
+        )
     refused: dict[str, tuple[Callable[[], Any], str]] = {
-        "odd number of lumps": (lambda: lumps_of(DeviceSettings(), 3), "even number of lumps, at least 4, not 3"),
-        "cantilever": (lambda: lumps_of(DeviceSettings(**TIP), 8), "circuits are made of beams clamped at both ends"),
+        "odd number of lumps": (
+            lambda: lumps_of(DeviceSettings(), 3),
+            "even number of lumps, at least 4, not 3",
+        ),
+        "cantilever": (
+            lambda: lumps_of(DeviceSettings(**TIP), 8),
+            "circuits are made of beams clamped at both ends",
+        ),
         "plate on a spring": (
             lambda: central_switch(DeviceSettings(spring_N_per_m=10.0), made_up_law()),
             "circuits are made of bending electrodes",
@@ -77,12 +90,21 @@ def hard_tables(law: PadLaw) -> Iterator[HardCase]:
         "own pad": ("as pressed", lambda: law),
         "one depth": ("no depths to interpolate between", lambda: shallow(law, 1)),
         "two depths": ("few depths to interpolate between", lambda: shallow(law, 2)),
-        "no attraction": ("pull is nothing, whose logarithm is not finite", lambda: attracting(law, 0.0)),
-        "one depth, no attraction": ("the same, opened once", lambda: shallow(attracting(law, 0.0), 1)),
+        "no attraction": (
+            "pull is nothing, whose logarithm is not finite",
+            lambda: attracting(law, 0.0),
+        ),
+        "one depth, no attraction": (
+            "the same, opened once",
+            lambda: shallow(attracting(law, 0.0), 1),
+        ),
         "attraction x 30": ("deep wells", lambda: attracting(law, 30.0)),
         "continued": ("closed beyond what was pressed", lambda: deepened(law)),
         "adhesion of 1 GPa": ("wells far deeper than the push", lambda: made_up_law(1e6)),
-        "six micrometres up": ("logarithms far from those of near flats", lambda: lifted(made_up_law(2.0), 6e3)),
+        "six micrometres up": (
+            "logarithms far from those of near flats",
+            lambda: lifted(made_up_law(2.0), 6e3),
+        ),
     }
     for name, (description, pad) in pads.items():
         yield HardCase(f"tables, {name}", description, CHECK_TABLES, lambda of=pad: _tables(of()))
@@ -90,7 +112,9 @@ def hard_tables(law: PadLaw) -> Iterator[HardCase]:
 
 def shallow(law: PadLaw, depths: int) -> PadLaw:
     """The pad with its first depths alone."""
-    return PadLaw(law.separation_nm, law.closing, law.depth_nm[:depths], law.opening[:depths], law.flats)
+    return PadLaw(
+        law.separation_nm, law.closing, law.depth_nm[:depths], law.opening[:depths], law.flats
+    )
 
 
 def _pressed(name: str, point: Point, contact: ContactSettings) -> HardCase:
@@ -155,7 +179,13 @@ def _tables(law: PadLaw) -> tuple[bool, str]:
             if (missed > allowed).any():
                 broken.append(f"opening from {law.depth_nm[number]:.4g} nm beside the curves")
             if well > 0.0:
-                errors.append(float((missed / well).max(initial=0.0, where=np.abs(net) < CIRCUIT.near_wells * well)))
+                errors.append(
+                    float(
+                        (missed / well).max(
+                            initial=0.0, where=np.abs(net) < CIRCUIT.near_wells * well
+                        )
+                    )
+                )
     texts = verilog_pad(law, CELLS) + spice_pad(law, CELLS)
     if "nan" in texts:
         broken.append("a number missing in the text")

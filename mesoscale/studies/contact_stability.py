@@ -1,4 +1,6 @@
-"""Stiff and extreme cases of a scene's contact, each judged by physical invariants (target `stability`)."""
+"""Stiff and extreme cases of a scene's contact, each judged by physical invariants (target
+`stability`).
+"""
 
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -16,7 +18,10 @@ from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.settings.definitions import definition
 from mesoscale.studies.driver import HardCase
 
-CHECKS = "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow settled"
+CHECKS = (
+    "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow"
+    " settled"
+)
 WITHOUT_FILM = {"h_film": 0.0, "t_film": 0.0, "k_film": 0.0, "m_film": 0.0}
 FINER = 16  # force steps of the path that judges a gain of energy, over those of the cycle
 
@@ -46,12 +51,14 @@ def violations(
 ) -> list[str]:
     """Which physical invariants a cycle breaks; empty if none.
 
-    ``start``: the surface before the cycle, for the check of volume (needs `Cycle.heights`), and to judge a gain of
-    energy on a finer path: the error of a sum over few points is unknown where asperities merge and the force jumps.
-    """
+    ``start``: the surface before the cycle, for the check of volume (needs `Cycle.heights`), and to
+    judge a gain of energy on a finer path: the error of a sum over few points is unknown where
+    asperities merge and the force jumps."""
     broken = []
     closing, opening = cycle.closing, cycle.opening
-    if not all(np.isfinite(array).all() for branch in (closing, opening) for array in vars(branch).values()):
+    if not all(
+        np.isfinite(array).all() for branch in (closing, opening) for array in vars(branch).values()
+    ):
         return ["not finite"]
     if (np.diff(closing.separation_nm) > 0).any() or (np.diff(opening.separation_nm) < 0).any():
         broken.append("separations not ordered")
@@ -70,7 +77,9 @@ def violations(
     gain, known = _energy_gain(cycle)
     if gain > known and start is not None:
         finer = replace(NUMERICS, force_steps=FINER * NUMERICS.force_steps)
-        gain, known = _energy_gain(run_cycle(inputs, settings, 0, heights=start, contact_at="lowest", numerics=finer))
+        gain, known = _energy_gain(
+            run_cycle(inputs, settings, 0, heights=start, contact_at="lowest", numerics=finer)
+        )
     if gain > known:
         broken.append(f"energy gained: {gain:.2g} of the work, known to {known:.1g}")
     if cycle.flags["unconverged_steps"]:
@@ -105,7 +114,9 @@ def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case
     carried = inputs.hardness.pressure(area) * area
     x = (np.arange(n) - n // 2) * settings.length_nm / n
     with_ = partial(replace, inputs)
-    coupled = settings.mechanics != "asperity"  # then the separation of the mean planes says when contact is full
+    coupled = (
+        settings.mechanics != "asperity"
+    )  # then the separation of the mean planes says when contact is full
     reading = settings.reading.model_copy
     cases = [
         Case("central inputs", "medians of the scene's inputs", inputs),
@@ -138,7 +149,12 @@ def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case
             inputs,
             {"reading": reading(update={"convention": "profile"})},
         ),
-        Case("one-pixel asperities", "white noise", inputs, heights=np.random.default_rng(1).normal(0, 5, (n, n))),
+        Case(
+            "one-pixel asperities",
+            "white noise",
+            inputs,
+            heights=np.random.default_rng(1).normal(0, 5, (n, n)),
+        ),
         Case("flat", "all sites touch at once", inputs, heights=np.zeros((n, n)), too_much=coupled),
         Case(
             "giant asperity",
@@ -148,7 +164,12 @@ def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case
         ),
         Case("20 cycles", "shakedown: the last cycle is elastic", inputs, cycles=20),
         *(
-            Case(f"load {share:g}", "of what the hardness of the whole cell carries", inputs, _loaded(share * carried))
+            Case(
+                f"load {share:g}",
+                "of what the hardness of the whole cell carries",
+                inputs,
+                _loaded(share * carried),
+            )
             for share in (0.01, 0.1, 0.5)
         ),
         Case(
@@ -169,26 +190,42 @@ def _loaded(force_nN: float) -> dict[str, Any]:
 
 
 def judge(case: Case, settings: ContactSettings) -> tuple[list[str], str]:
-    """Run a case, at 7 MPa unless it states a load; returns broken invariants and what else is worth knowing."""
-    chosen = settings.model_copy(update={"max_force_nN": 7e-3 * settings.length_nm**2, **case.changes})
-    heights = random_surface(case.inputs, chosen, NOMINAL_SEED) if case.heights is None else case.heights
+    """Run a case, at 7 MPa unless it states a load; returns broken invariants and what else is
+    worth knowing.
+    """
+    chosen = settings.model_copy(
+        update={"max_force_nN": 7e-3 * settings.length_nm**2, **case.changes}
+    )
+    heights = (
+        random_surface(case.inputs, chosen, NOMINAL_SEED) if case.heights is None else case.heights
+    )
     broken: list[str] = []
     losses: list[float] = []
     flags: dict[str, Any] = {}
     for number in range(case.cycles):
-        cycle = run_cycle(case.inputs, chosen, 1, heights=heights, contact_at="lowest", keep_surface=True)
-        broken += [f"cycle {number + 1}: {words}" for words in violations(cycle, case.inputs, chosen, heights)]
+        cycle = run_cycle(
+            case.inputs, chosen, 1, heights=heights, contact_at="lowest", keep_surface=True
+        )
+        broken += [
+            f"cycle {number + 1}: {words}"
+            for words in violations(cycle, case.inputs, chosen, heights)
+        ]
         losses.append(dissipated_energy(cycle)[0])
         heights, flags = cycle.heights, cycle.flags
     if flags["force_reached"] == case.too_much:
-        broken.append("force reached, though hardness cannot carry it" if case.too_much else "force not reached")
+        broken.append(
+            "force reached, though hardness cannot carry it"
+            if case.too_much
+            else "force not reached"
+        )
     if case.cycles > 1 and losses[-1] > 0.05 * losses[0]:
         broken.append("no shakedown")
     detail = f"force miss {flags['force_miss']:.1e}, no loss"
     if losses[0] > 0:
         detail = (
-            f"force miss {flags['force_miss']:.1e}, bounds on R {flags['radius_bound_events']}, "
-            f"repeated steps {flags['repeated_steps']}, loss of last to first cycle {losses[-1] / losses[0]:.2g}"
+            f"force miss {flags['force_miss']:.1e}, bounds on R {flags['radius_bound_events']},"
+            f" repeated steps {flags['repeated_steps']}, loss of last to first cycle"
+            f" {losses[-1] / losses[0]:.2g}"
         )
     return broken, detail
 

@@ -1,8 +1,9 @@
 """The one driver of the studies of all stages: error against run time, and stiff and extreme cases.
 
-Accuracy: a stage declares its numerical choices as knobs. Every value of a knob is computed on several samples:
-surfaces, points, glasses or seeds, the same for all values. Its error is the root mean square deviation from the
-reference over the samples, and the scatter between samples tells how well this error is known.
+Accuracy: a stage declares its numerical choices as knobs. Every value of a knob is computed on
+several samples: surfaces, points, glasses or seeds, the same for all values. Its error is the root
+mean square deviation from the reference over the samples, and the scatter between samples tells how
+well this error is known.
 
 Stability: a stage lists its hard cases, each with the judge that runs it. Tests run the same list.
 """
@@ -33,9 +34,10 @@ class Quantity:
     ----------
     name : of the number.
     unit : of the error: that of the number, or % of `scale`.
-    scale : what the error is divided by, in the unit of the number; None: nothing, or with % the reference itself.
-    volts : what an error of one unit moves in the release of the scene's switch, V; None: not known.
-    """
+    scale : what the error is divided by, in the unit of the number; None: nothing, or with % the
+        reference itself.
+    volts : what an error of one unit moves in the release of the scene's switch, V; None: not
+        known."""
 
     name: str
     unit: str
@@ -48,7 +50,9 @@ RELEASE = Quantity("release", "V", volts=1.0)
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one computation: wall and processor time (s), and the largest memory that the process held (MB)."""
+    """Of one computation: wall and processor time (s), and the largest memory that the process held
+    (MB).
+    """
 
     wall_s: float
     cpu_s: float
@@ -102,7 +106,8 @@ class Knob:
     choices : its values, cheapest first.
     shipped : the value in use; None: no single one is.
     reference : what the errors are against, in words.
-    best : the reference, shape (samples, quantities) or of one sample; None: the choices tell their errors themselves.
+    best : the reference, shape (samples, quantities) or of one sample; None: the choices tell their
+        errors themselves.
     samples : what the samples are, in words with their number.
     """
 
@@ -121,9 +126,15 @@ def rows_of(knobs: Sequence[Knob], progress: Progress | None = None) -> Iterator
         best = None if knob.best is None else np.atleast_2d(np.asarray(knob.best(), float))
         for choice in knob.choices:
             errors_of_choice = _errors_of(choice, best, knob.quantities)
-            errors = np.broadcast_to(np.asarray(errors_of_choice.error, float), len(knob.quantities))
-            own_errors = np.broadcast_to(np.asarray(errors_of_choice.own_error, float), len(knob.quantities))
-            for quantity, error, own_error in zip(knob.quantities, errors.tolist(), own_errors.tolist(), strict=True):
+            errors = np.broadcast_to(
+                np.asarray(errors_of_choice.error, float), len(knob.quantities)
+            )
+            own_errors = np.broadcast_to(
+                np.asarray(errors_of_choice.own_error, float), len(knob.quantities)
+            )
+            for quantity, error, own_error in zip(
+                knob.quantities, errors.tolist(), own_errors.tolist(), strict=True
+            ):
                 volts = None if quantity.volts is None else abs(quantity.volts) * error
                 yield {
                     "case": quantity.name,
@@ -163,7 +174,8 @@ def _errors_of(choice: Choice, best: Array | None, quantities: Sequence[Quantity
 
 
 def root_mean_square(deviations: ArrayLike) -> tuple[Array, Array]:
-    """Root mean square over samples, and its standard error by leaving out one sample at a time (jackknife).
+    """Root mean square over samples, and its standard error by leaving out one sample at a time
+    (jackknife).
 
     Samples without a number are left out. The standard error of a single sample is not known (NaN).
 
@@ -181,7 +193,9 @@ def root_mean_square(deviations: ArrayLike) -> tuple[Array, Array]:
             errors[column] = np.sqrt(squares.mean())
         if count > 1:
             without = np.sqrt((squares.sum() - squares) / (count - 1))
-            own_errors[column] = np.sqrt((count - 1) / count * np.sum((without - without.mean()) ** 2))
+            own_errors[column] = np.sqrt(
+                (count - 1) / count * np.sum((without - without.mean()) ** 2)
+            )
     return errors, own_errors
 
 
@@ -199,7 +213,9 @@ def _processor_s() -> float:
 
 
 def _forget_peak() -> None:
-    """Let the kernel count the peak of memory anew; where it does not, the peak is that of the process so far."""
+    """Let the kernel count the peak of memory anew; where it does not, the peak is that of the
+    process so far.
+    """
     with suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
 
@@ -221,8 +237,8 @@ class HardCase:
     ----------
     name, description : what it is, and what is hard about it.
     checks : what must hold.
-    judge : runs it; whether all held, with the numbers behind the verdict. One that raises has failed.
-    """
+    judge : runs it; whether all held, with the numbers behind the verdict. One that raises has
+        failed."""
 
     name: str
     description: str
@@ -230,7 +246,9 @@ class HardCase:
     judge: Callable[[], tuple[bool, str]]
 
 
-def stability_rows(cases: Sequence[HardCase], progress: Progress | None = None) -> Iterator[StudyRow]:
+def stability_rows(
+    cases: Sequence[HardCase], progress: Progress | None = None
+) -> Iterator[StudyRow]:
     """Rows of a stability table without the stage: every case run and timed."""
     for done, case in enumerate(cases, 1):
         verdict, cost = timed(partial(_judged, case))

@@ -1,8 +1,8 @@
 """Error of a rare probability of failure against run time.
 
-The response is that of the switches of the answer, whose pads are there: the stage presses a hundred more. All values
-are judged at the attraction with which as many switches as allowed fail by this response.
-"""
+The response is that of the switches of the answer, whose pads are there: the stage presses a
+hundred more. All values are judged at the attraction with which as many switches as allowed fail by
+this response."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -37,12 +37,18 @@ FIRST_SEED = 100
 """Beyond those of the stage."""
 TRIED = 32
 """Switches that are pressed to know the scatter between correcting ones."""
-SAMPLED, LEARNED, RUNS = "points of each level", "switches learned from", "switches that correct a probability"
+SAMPLED, LEARNED, RUNS = (
+    "points of each level",
+    "switches learned from",
+    "switches that correct a probability",
+)
 UNIT = "% of the probability"
 RATE = Quantity("probability of failure", UNIT)
 
 
-def accuracy_points(population: Population, allowed: float, progress: Progress) -> Iterator[StudyRow]:
+def accuracy_points(
+    population: Population, allowed: float, progress: Progress
+) -> Iterator[StudyRow]:
     """Rows of accuracy/failure.csv without the stage.
 
     Parameters
@@ -80,15 +86,17 @@ def response_of_answer(population: Population) -> ReserveResponse:
     known = reserves > np.log(FAILURE.least_times) + FAILURE.step
     if known.sum() < FAILURE.fewest:
         raise InputError(
-            f"pad.points: {known.sum()} of {len(z)} switches can be solved and let go; accepted for the accuracy of a "
-            f"failure rate are at least {FAILURE.fewest}; raise pad.points"
+            f"pad.points: {known.sum()} of {len(z)} switches can be solved and let go; accepted for"
+            f" the accuracy of a failure rate are at least {FAILURE.fewest}; raise pad.points"
         )
     learned = columns[known], reserves[known]
     return ReserveResponse(population, Process(*learned), len(z), *learned)
 
 
 def _logarithm(probability: float) -> float:
-    """Of the probability, in per cent: small differences are then relative ones, large ones have no bound."""
+    """Of the probability, in per cent: small differences are then relative ones, large ones have no
+    bound.
+    """
     return 100.0 * float(np.log(max(probability, LEAST)))
 
 
@@ -98,7 +106,8 @@ def _points(response: ReserveResponse, times: float) -> Knob:
 
     def probabilities(samples: int, seeds: int = SEEDS) -> Array:
         samples_of_seeds = [
-            response.sample(times, hold_V, FIRST_SEED + k, samples=samples, repeats=REPEATS) for k in range(seeds)
+            response.sample(times, hold_V, FIRST_SEED + k, samples=samples, repeats=REPEATS)
+            for k in range(seeds)
         ]
         return np.array([[_logarithm(sampled.probability)] for sampled in samples_of_seeds])
 
@@ -111,11 +120,11 @@ def _points(response: ReserveResponse, times: float) -> Knob:
 
 
 def _learned(response: ReserveResponse, sampled: Sampled, times: float, one: Cost) -> Knob:
-    """A response from random parts of the switches. It takes the time of pressing so many, each at the cost `one`.
+    """A response from random parts of the switches. It takes the time of pressing so many, each at
+    the cost `one`.
 
-    Failures by the whole response are weighed by what the other one says of them (importance sampling), which costs
-    nothing beside a search of its own.
-    """
+    Failures by the whole response are weighed by what the other one says of them (importance
+    sampling), which costs nothing beside a search of its own."""
     count = len(response.reserves)
     hold_V = response.population.hold_V
 
@@ -126,8 +135,13 @@ def _learned(response: ReserveResponse, sampled: Sampled, times: float, one: Cos
             process = Process(response.columns[chosen], response.reserves[chosen])
             mean, deviation = replace(response, process=process).moments(sampled.points, hold_V)
             chance = ndtr((np.log(times) - mean) / deviation)
-            deviations.append([_logarithm(sampled.probability * float(np.mean(chance / sampled.chance)))])
-        return Errors(*root_mean_square(np.array(deviations) - _logarithm(sampled.probability)), one.times(part))
+            deviations.append(
+                [_logarithm(sampled.probability * float(np.mean(chance / sampled.chance)))]
+            )
+        return Errors(
+            *root_mean_square(np.array(deviations) - _logarithm(sampled.probability)),
+            one.times(part),
+        )
 
     parts = [round(share * count) for share in (0.4, 0.6, 0.8)]
     choices = [Choice(part, partial(errors, part)) for part in parts]
@@ -151,7 +165,9 @@ def _runs(response: ReserveResponse, sampled: Sampled, times: float) -> Knob:
 
 
 def correcting_factors(response: ReserveResponse, sampled: Sampled, times: float) -> Array:
-    """Of switches that fail by the response: 1 over its chance where one does fail, else 0; shape (runs,)."""
+    """Of switches that fail by the response: 1 over its chance where one does fail, else 0; shape
+    (runs,).
+    """
     chosen = np.random.default_rng(FIRST_SEED).permutation(len(sampled.points))[:TRIED]
     population = response.population
     failed = population.failed(sampled.points[chosen], population.hold_V, times)
@@ -159,13 +175,19 @@ def correcting_factors(response: ReserveResponse, sampled: Sampled, times: float
 
 
 def relative_errors(factors: Array, runs: int) -> tuple[float, float]:
-    """Standard error of the mean of so many factors (%), and its own by leaving one out; NaN where none fails."""
+    """Standard error of the mean of so many factors (%), and its own by leaving one out; NaN where
+    none fails.
+    """
     if factors.size < 2 or not factors.any():
         return np.nan, np.nan
 
     def error(values: Array) -> float:
         return 100.0 * float(values.std(ddof=1) / values.mean() / np.sqrt(runs))
 
-    without = np.array([error(np.delete(factors, k)) for k in range(factors.size) if np.delete(factors, k).any()])
-    own_error = float(np.sqrt((factors.size - 1) / factors.size * ((without - without.mean()) ** 2).sum()))
+    without = np.array(
+        [error(np.delete(factors, k)) for k in range(factors.size) if np.delete(factors, k).any()]
+    )
+    own_error = float(
+        np.sqrt((factors.size - 1) / factors.size * ((without - without.mean()) ** 2).sum())
+    )
     return error(factors), own_error

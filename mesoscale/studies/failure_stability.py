@@ -1,4 +1,6 @@
-"""Rare, certain and impossible failures, each beside an exact probability or a switch that is solved (`stability`)."""
+"""Rare, certain and impossible failures, each beside an exact probability or a switch that is
+solved (`stability`).
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -17,7 +19,14 @@ from mesoscale.pad.memory import PadLaw, attracting
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_stability import made_up_law
 from mesoscale.studies.driver import Array, HardCase
-from mesoscale.uncertainty.rare_events import LEAST, Moments, Sampled, correct, rates_given, sample_event
+from mesoscale.uncertainty.rare_events import (
+    LEAST,
+    Moments,
+    Sampled,
+    correct,
+    rates_given,
+    sample_event,
+)
 
 BEAM = DeviceSettings(hold_voltage_V=80.0)
 PLATE = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)
@@ -35,7 +44,14 @@ CHECK_RESERVE = "sticks beyond its reserve and lets go before, by the whole swit
 
 def hard_cases(population: Population) -> list[HardCase]:
     """The cases; those of the population itself solve none of its switches."""
-    return [*exact_events(), *corrections(), *common_rates(), *limits(), *reserves(), *_refusals(population)]
+    return [
+        *exact_events(),
+        *corrections(),
+        *common_rates(),
+        *limits(),
+        *reserves(),
+        *_refusals(population),
+    ]
 
 
 def plane(distance: float, dimension: int = DIMENSION, deviation: float = 0.0) -> Moments:
@@ -59,7 +75,12 @@ def exact_events() -> Iterator[HardCase]:
 
     unsure = 2.0
     events: dict[str, tuple[str, Moments, int, float]] = {
-        f"probability {value:g}": (f"a plane in {DIMENSION} numbers", plane(-float(ndtri(value))), DIMENSION, value)
+        f"probability {value:g}": (
+            f"a plane in {DIMENSION} numbers",
+            plane(-float(ndtri(value))),
+            DIMENSION,
+            value,
+        )
         for value in PROBABILITIES
     } | {
         "40 numbers": ("1e-6 in many dimensions", plane(-float(ndtri(1e-6)), 40), 40, 1e-6),
@@ -85,7 +106,9 @@ def _exact(moments: Moments, dimension: int, exact: float) -> tuple[bool, str]:
     if exact == 0.0:
         return sampled.probability <= LEAST and not len(sampled.points), detail
     allowed = DEVIATIONS * max(sampled.variation, LEAST_VARIATION)
-    known = bool(np.isfinite(sampled.points).all()) and len(sampled.points) == len(sampled.chance) > 0
+    known = (
+        bool(np.isfinite(sampled.points).all()) and len(sampled.points) == len(sampled.chance) > 0
+    )
     return known and abs(np.log(max(sampled.probability, LEAST) / exact)) <= allowed, detail
 
 
@@ -103,7 +126,12 @@ def corrections() -> Iterator[HardCase]:
         "sure response that errs": ("gave each 0.999, half of them fail", half, 0.999, 5e-4),
     }
     for name, (description, happened, chance, exact) in runs.items():
-        yield HardCase(name, description, CHECK_CORRECTED, partial(_corrected, sampled, happened, chance, exact))
+        yield HardCase(
+            name,
+            description,
+            CHECK_CORRECTED,
+            partial(_corrected, sampled, happened, chance, exact),
+        )
 
 
 def _corrected(sampled: Sampled, happened: Array, chance: float, exact: float) -> tuple[bool, str]:
@@ -115,20 +143,33 @@ def _corrected(sampled: Sampled, happened: Array, chance: float, exact: float) -
 
 def common_rates() -> Iterator[HardCase]:
     """Shares that fail by what is common to all devices: all, none or half of the numbers."""
-    for name, shared in (("nothing common", 0), ("half common", DIMENSION // 2), ("all common", DIMENSION)):
+    for name, shared in (
+        ("nothing common", 0),
+        ("half common", DIMENSION // 2),
+        ("all common", DIMENSION),
+    ):
         for distance in (2.0, 5.0):
             words = f"{name}, {distance:g} deviations off"
-            yield HardCase(words, f"{shared} of {DIMENSION} numbers", CHECK_RATES, partial(_rates, shared, distance))
+            yield HardCase(
+                words,
+                f"{shared} of {DIMENSION} numbers",
+                CHECK_RATES,
+                partial(_rates, shared, distance),
+            )
 
 
 def _rates(shared: int, distance: float) -> tuple[bool, str]:
-    """Given the common part u of a plane, the share is that beyond (distance - a u) / b, with a^2 + b^2 = 1."""
+    """Given the common part u of a plane, the share is that beyond (distance - a u) / b, with a^2 +
+    b^2 = 1.
+    """
     rates = rates_given(plane(distance), np.arange(DIMENSION) < shared, 0.0, 0)
     if shared == DIMENSION:
         fail = float(ndtr(-distance))
         # binomial: so many of the draws are 1
         allowed = DEVIATIONS * np.sqrt(fail / rates.size) + 1.0 / rates.size
-        return set(rates) <= {0.0, 1.0} and abs(rates.mean() - fail) <= allowed, f"{rates.mean():.3g} of {fail:.3g}"
+        return set(rates) <= {0.0, 1.0} and abs(
+            rates.mean() - fail
+        ) <= allowed, f"{rates.mean():.3g} of {fail:.3g}"
     a, b = np.sqrt([shared / DIMENSION, 1.0 - shared / DIMENSION])
     details = []
     held = True
@@ -136,14 +177,18 @@ def _rates(shared: int, distance: float) -> tuple[bool, str]:
         exact = float(ndtr((a * ndtri(probability) - distance) / b))
         # between the order statistics that hold it, and to the error of the inner draws
         spread = DEVIATIONS * np.sqrt(probability * (1.0 - probability) / rates.size)
-        low, high = np.quantile(rates, np.clip([probability - spread, probability + spread], 0.0, 1.0))
+        low, high = np.quantile(
+            rates, np.clip([probability - spread, probability + spread], 0.0, 1.0)
+        )
         held = held and low * 0.5 <= exact <= high * 2.0
         details.append(f"{np.quantile(rates, probability):.2g} of {exact:.2g}")
     return held, ", ".join(details)
 
 
 def limits() -> Iterator[HardCase]:
-    """The last voltage with an allowed probability, on curves that allow all, none, or just the first."""
+    """The last voltage with an allowed probability, on curves that allow all, none, or just the
+    first.
+    """
     volts = np.array([70.0, 80.0, 90.0])
     rising = np.array([1e-5, 1e-3, 1e-2])
     # half of the logarithm between two voltages
@@ -160,12 +205,16 @@ def limits() -> Iterator[HardCase]:
         yield HardCase(name, f"{allowed:g} allowed", "the voltage that is known", judge)
 
 
-def _limit(values: Array, probability: Array, allowed: float, wanted: float | None) -> tuple[bool, str]:
+def _limit(
+    values: Array, probability: Array, allowed: float, wanted: float | None
+) -> tuple[bool, str]:
     furthest = furthest_allowed(values, probability, allowed)
     falling = furthest_allowed(100.0 - values, probability, allowed)
     if wanted is None or furthest is None or falling is None:
         return furthest is falling is wanted, f"{furthest}"
-    return abs(furthest - wanted) <= 1e-6 and abs(falling - (100.0 - wanted)) <= 1e-6, f"{furthest:.6g} V"
+    return abs(furthest - wanted) <= 1e-6 and abs(
+        falling - (100.0 - wanted)
+    ) <= 1e-6, f"{furthest:.6g} V"
 
 
 def reserves() -> Iterator[HardCase]:
@@ -173,22 +222,37 @@ def reserves() -> Iterator[HardCase]:
     law = made_up_law(40.0)
     for name, settings in (("beam", BEAM), ("plate", PLATE)):
         yield HardCase(
-            f"reserve of a {name}", "bisection of a yes or no", CHECK_RESERVE, partial(_reserve, settings, law)
+            f"reserve of a {name}",
+            "bisection of a yes or no",
+            CHECK_RESERVE,
+            partial(_reserve, settings, law),
         )
         slower = partial(_asks_for_more, settings, law)
-        yield HardCase(f"{name} let go in time", "a window", "no larger reserve than to let go at all", slower)
+        yield HardCase(
+            f"{name} let go in time", "a window", "no larger reserve than to let go at all", slower
+        )
     ends: dict[str, tuple[float, Callable[[float], bool]]] = {
         "a well far deeper than the spring": (
             1e6,
             lambda log_reserve: log_reserve < np.log(FAILURE.least_times) + FAILURE.step,
         ),
-        "no adhesion": (0.0, lambda log_reserve: log_reserve > np.log(FAILURE.most_times) - FAILURE.step),
+        "no adhesion": (
+            0.0,
+            lambda log_reserve: log_reserve > np.log(FAILURE.most_times) - FAILURE.step,
+        ),
     }
     for name, (adhesion_kPa, holds) in ends.items():
         judge = partial(_at_the_end, made_up_law(adhesion_kPa), holds)
-        yield HardCase(name, "the reserve is beyond what is tried", "the end of what is tried", judge)
+        yield HardCase(
+            name, "the reserve is beyond what is tried", "the end of what is tried", judge
+        )
     narrow = PLATE.model_copy(update={"gap_um": 0.02})
-    yield HardCase("gap of 20 nm", "rests in its own pad", "told, or refused in one line", partial(_told, narrow, law))
+    yield HardCase(
+        "gap of 20 nm",
+        "rests in its own pad",
+        "told, or refused in one line",
+        partial(_told, narrow, law),
+    )
 
 
 def _reserve(settings: DeviceSettings, law: PadLaw) -> tuple[bool, str]:
@@ -198,7 +262,10 @@ def _reserve(settings: DeviceSettings, law: PadLaw) -> tuple[bool, str]:
         scaled = attracting(law, float(np.exp(logarithm)))
         if settings.bends:
             return solve_beam(settings, scaled).release_V == 0.0
-        return solve_on_pad(plate_from_settings(settings), scaled, settings.hold_voltage_V).release_V == 0.0
+        return (
+            solve_on_pad(plate_from_settings(settings), scaled, settings.hold_voltage_V).release_V
+            == 0.0
+        )
 
     held = sticks(reserve + FAILURE.step) and not sticks(reserve - FAILURE.step)
     return held, f"just sticks with {np.exp(reserve):.3g} times the attraction"
@@ -229,8 +296,15 @@ def _refusals(population: Population) -> Iterator[HardCase]:
 
     unpressed = replace(population, press=refused, solved=(population.solved[0][:0], []))
     words = "none of its pads can be pressed"
-    yield HardCase("own switches unpressed, learned", words, "refused in one line", partial(_unlearned, unpressed))
-    yield HardCase("own switches unpressed", words, "all count as failed", partial(_all_failed, unpressed))
+    yield HardCase(
+        "own switches unpressed, learned",
+        words,
+        "refused in one line",
+        partial(_unlearned, unpressed),
+    )
+    yield HardCase(
+        "own switches unpressed", words, "all count as failed", partial(_all_failed, unpressed)
+    )
 
 
 def _unlearned(population: Population) -> tuple[bool, str]:

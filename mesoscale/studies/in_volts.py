@@ -12,10 +12,13 @@ CHANGE_PERCENT = 5.0
 """Of an input, up and down: well above the noise of a release, and nearly linear."""
 
 
-def volts_per_percent(point: Point, releases: Callable[[Point], Array], names: Iterable[str]) -> dict[str, float]:
+def volts_per_percent(
+    point: Point, releases: Callable[[Point], Array], names: Iterable[str]
+) -> dict[str, float]:
     """Change of the release when an input grows by 1 %, V, for the inputs that the point has.
 
-    Central differences on the same pads. An input whose change leaves no pad with an answer is left out.
+    Central differences on the same pads. An input whose change leaves no pad with an answer is left
+    out.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
-"""Numerical errors that every run tells of itself: of its contact and of its switch, at little cost.
+"""Numerical errors that every run tells of itself: of its contact and of its switch, at little
+cost.
 
-Each choice in use is compared with one finer, so that the rows are those of an accuracy table with one value. The
-targets `accuracy` and `stability` tell more.
-"""
+Each choice in use is compared with one finer, so that the rows are those of an accuracy table with
+one value. The targets `accuracy` and `stability` tell more."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -19,7 +19,13 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.memory import PadLaw
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings
-from mesoscale.studies.contact_accuracy import FORCE_STEPS, PIXELS, SEEDS, cycle_outputs, law_quantities
+from mesoscale.studies.contact_accuracy import (
+    FORCE_STEPS,
+    PIXELS,
+    SEEDS,
+    cycle_outputs,
+    law_quantities,
+)
 from mesoscale.studies.driver import RELEASE, Array, Choice, Knob, StudyRow, rows_of
 
 STEPS, SITES, ELEMENTS = "steps of separation, nm", "sites a side", "elements of the beam"
@@ -28,8 +34,8 @@ STEPS, SITES, ELEMENTS = "steps of separation, nm", "sites a side", "elements of
 def of_contact(inputs: ContactInputs, settings: ContactSettings) -> Iterator[StudyRow]:
     """Rows of a cycle at central inputs, by its steps of force and by its grid.
 
-    The finer grid shows the same surface. It is left out where attraction deforms the contact: there it takes minutes.
-    """
+    The finer grid shows the same surface. It is left out where attraction deforms the contact:
+    there it takes minutes."""
     outputs = partial(cycle_outputs, inputs)
     waves = settings.model_copy(update={"q1_per_nm": shared_wave(settings)})
     usual = outputs(waves, NUMERICS)
@@ -37,20 +43,35 @@ def of_contact(inputs: ContactInputs, settings: ContactSettings) -> Iterator[Stu
     compared = [(FORCE_STEPS, NUMERICS.force_steps, "four times as many", (waves, finer_path))]
     if settings.mechanics != "adhesive":
         finer_grid = waves.model_copy(update={"pixels": 2 * settings.pixels})
-        compared.append((PIXELS, settings.pixels, "twice as many, the same waves", (finer_grid, NUMERICS)))
+        compared.append(
+            (PIXELS, settings.pixels, "twice as many, the same waves", (finer_grid, NUMERICS))
+        )
     for name, value, words, finer in compared:
         choices = [Choice(value, lambda: usual)]
         samples = f"{len(SEEDS)} surfaces"
         yield from rows_of(
-            [Knob(name, law_quantities(inputs), choices, value, words, partial(outputs, *finer), samples)]
+            [
+                Knob(
+                    name,
+                    law_quantities(inputs),
+                    choices,
+                    value,
+                    words,
+                    partial(outputs, *finer),
+                    samples,
+                )
+            ]
         )
 
 
-def of_switch(point: Point, contact: ContactSettings, cells: int, central: PadLaw) -> Iterator[StudyRow]:
-    """Rows of the switch at central inputs, by the grid and the steps of its pad and by the elements of its beam.
+def of_switch(
+    point: Point, contact: ContactSettings, cells: int, central: PadLaw
+) -> Iterator[StudyRow]:
+    """Rows of the switch at central inputs, by the grid and the steps of its pad and by the
+    elements of its beam.
 
-    Twice as many sites take eight times as long. So the waves are limited to those that half of the sites hold, and
-    half is compared with all: the error of two sites a wave, as the pad has them.
+    Twice as many sites take eight times as long. So the waves are limited to those that half of the
+    sites hold, and half is compared with all: the error of two sites a wave, as the pad has them.
 
     Parameters
     ----------
@@ -59,12 +80,21 @@ def of_switch(point: Point, contact: ContactSettings, cells: int, central: PadLa
     central : the scene's own pad at the point, for the beam.
     """
 
-    def release(settings: ContactSettings = contact, step_nm: float | None = None, at: Point = point) -> float:
+    def release(
+        settings: ContactSettings = contact, step_nm: float | None = None, at: Point = point
+    ) -> float:
         pad = press_pad(at, settings, cells, surfaces_of(0), step_nm=step_nm)
         return release_or_nan_V(point.device, pad.law)
 
     def knob(name: str, value: float, words: str, in_use: float, finer: float) -> Knob:
-        return Knob(name, [RELEASE], [Choice(value, lambda: _sample(in_use))], value, words, lambda: _sample(finer))
+        return Knob(
+            name,
+            [RELEASE],
+            [Choice(value, lambda: _sample(in_use))],
+            value,
+            words,
+            lambda: _sample(finer),
+        )
 
     half = contact.model_copy(update={"pixels": contact.pixels // 2})
     shortest = shared_wave(half)
@@ -81,7 +111,9 @@ def of_switch(point: Point, contact: ContactSettings, cells: int, central: PadLa
         knob(STEPS, usual_step, "half as long", release(), release(step_nm=0.5 * usual_step)),
     ]
     if point.device.bends:
-        in_use, finer = (release_or_nan_V(point.device, central, factor * SWITCH.elements) for factor in (1, 2))
+        in_use, finer = (
+            release_or_nan_V(point.device, central, factor * SWITCH.elements) for factor in (1, 2)
+        )
         knobs.append(knob(ELEMENTS, SWITCH.elements, "twice as many", in_use, finer))
     yield from rows_of(knobs)
 

@@ -1,8 +1,8 @@
 """Error of the release on a pad against run time, one numerical choice at a time.
 
-Cells, steps, depths and sites are judged by the release at central inputs on pads of several surfaces, which are the
-same for all values of a choice. The number of points is judged by the quantiles of the release over all points.
-"""
+Cells, steps, depths and sites are judged by the release at central inputs on pads of several
+surfaces, which are the same for all values of a choice. The number of points is judged by the
+quantiles of the release over all points."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -41,7 +41,8 @@ PADS = 4
 CELL_PADS = 6
 """The same for the number of cells: its error is chance, which few pads do not tell."""
 FIRST_PAD = 200_000
-"""Number of the first of these pads, beyond those of the points of an answer and of a failure rate."""
+"""Number of the first of these pads, beyond those of the points of an answer and of a failure rate.
+"""
 STEPS, DEPTHS, SITES = "steps of separation, nm", "depths", "sites of the shortest wave"
 CELLS, POINTS = "cells of a point's pad", "points"
 RESAMPLES = 400
@@ -89,7 +90,9 @@ class SamplePad:
         """Its separations, opened from so many depths."""
         device = pressing(self.point.device)
         wanted = pressure_to_compute(device)
-        return plan_grid(self.inputs, self.settings, self.cells, wanted, presser(device), depths=depths)
+        return plan_grid(
+            self.inputs, self.settings, self.cells, wanted, presser(device), depths=depths
+        )
 
     def release_V(self, grid: PadGrid, settings: ContactSettings | None = None) -> float:
         """Release of the point's switch on it (V); NaN where it has no answer."""
@@ -105,12 +108,19 @@ def _pads(point: Point, contact: ContactSettings, cells: int, count: int) -> lis
     inputs, settings = point.contact_of(contact)
     on_pad = point.device.pad_um2 * 1e6 / settings.length_nm**2
     seeds = [surfaces_of(FIRST_PAD + number) for number in range(count)]
-    return [SamplePad(point, inputs, settings, sample_cells(inputs, cells, seed, on_pad)) for seed in seeds]
+    return [
+        SamplePad(point, inputs, settings, sample_cells(inputs, cells, seed, on_pad))
+        for seed in seeds
+    ]
 
 
-def _releases(pads: Sequence[SamplePad], grids: Sequence[PadGrid], settings: ContactSettings | None = None) -> Array:
+def _releases(
+    pads: Sequence[SamplePad], grids: Sequence[PadGrid], settings: ContactSettings | None = None
+) -> Array:
     """Releases on pads, each at its separations, shape (pads, 1)."""
-    return np.array([[pad.release_V(grid, settings)] for pad, grid in zip(pads, grids, strict=True)])
+    return np.array(
+        [[pad.release_V(grid, settings)] for pad, grid in zip(pads, grids, strict=True)]
+    )
 
 
 def _cells(model: PadModel, contact: ContactSettings, cells: int) -> Knob:
@@ -132,11 +142,15 @@ def _cells(model: PadModel, contact: ContactSettings, cells: int) -> Knob:
         return np.array([[release_or_nan_V(point.device, law, SWITCH.coarse_elements)]])
 
     choices = [Choice(count, partial(releases, count, CELL_PADS)) for count in counts]
-    return Knob(CELLS, [RELEASE], choices, cells, f"a pad of {many} cells", best, f"{CELL_PADS} pads")
+    return Knob(
+        CELLS, [RELEASE], choices, cells, f"a pad of {many} cells", best, f"{CELL_PADS} pads"
+    )
 
 
 def _steps(pads: Sequence[SamplePad], rms_nm: float) -> Knob:
-    """Longer steps, beside half of that in use, at separations from which the pads are opened in any case."""
+    """Longer steps, beside half of that in use, at separations from which the pads are opened in
+    any case.
+    """
     step = PAD.step_nm(rms_nm)
     grids = [pad.grid() for pad in pads]
 
@@ -147,7 +161,9 @@ def _steps(pads: Sequence[SamplePad], rms_nm: float) -> Knob:
         return _releases(pads, [halved(grid) for grid in grids])
 
     choices = [Choice(merged * step, partial(releases, merged)) for merged in (4, 2, 1)]
-    return Knob(STEPS, [RELEASE], choices, step, f"steps of {0.5 * step:.3g} nm", best, f"{PADS} pads")
+    return Knob(
+        STEPS, [RELEASE], choices, step, f"steps of {0.5 * step:.3g} nm", best, f"{PADS} pads"
+    )
 
 
 def thinned(grid: PadGrid, merged: int) -> PadGrid:
@@ -168,7 +184,9 @@ def halved(grid: PadGrid) -> PadGrid:
 
 def _depths(pads: Sequence[SamplePad]) -> Knob:
     """Fewer or more depths from which the pads are opened, at loads in even ratios."""
-    most = 4 * (PAD.depths - 1) + 1  # holds the depths in use, those between them, and those between these
+    most = (
+        4 * (PAD.depths - 1) + 1
+    )  # holds the depths in use, those between them, and those between these
     grids = [pad.grid(most) for pad in pads]
 
     def releases(count: int) -> Array:
@@ -187,11 +205,11 @@ def opened_from(grid: PadGrid, count: int) -> PadGrid:
 
 
 def _sites(point: Point, contact: ContactSettings, cells: int) -> Iterator[Knob]:
-    """Sites for a wave, on surfaces without the shortest waves: half of the sites then hold what is left.
+    """Sites for a wave, on surfaces without the shortest waves: half of the sites then hold what is
+    left.
 
-    All grids show these same surfaces. Twice as many sites a side take eight times as long, and twenty times where
-    asperities are coupled: these are not tried on more than the scene has.
-    """
+    All grids show these same surfaces. Twice as many sites a side take eight times as long, and
+    twenty times where asperities are coupled: these are not tried on more than the scene has."""
     half = contact.pixels // 2
     if contact.pixels % 2 or half < 32:
         return
@@ -220,7 +238,9 @@ def with_waves(pad: SamplePad, cutoff_per_nm: float) -> SamplePad:
 
 
 def _points(model: PadModel, contact: ContactSettings, cells: int) -> Iterator[Knob]:
-    """Fewer or more points: standard errors of quantiles of the release, by drawing so many of the solved points."""
+    """Fewer or more points: standard errors of quantiles of the release, by drawing so many of the
+    solved points.
+    """
     release = model.states("release_V") if model.points else np.empty(0)
     if release.size < 2 * GROUPS:
         return
@@ -237,7 +257,9 @@ def _points(model: PadModel, contact: ContactSettings, cells: int) -> Iterator[K
     counts = [round(factor * release.size) for factor in (0.25, 0.5, 1, 2, 4)]
     choices = [Choice(count, partial(errors, count)) for count in counts]
     words = f"quantiles of all {release.size} solved points"
-    yield Knob(POINTS, quantities, choices, release.size, words, samples=f"{RESAMPLES} draws of them")
+    yield Knob(
+        POINTS, quantities, choices, release.size, words, samples=f"{RESAMPLES} draws of them"
+    )
 
 
 def quantile_errors(values: NDArray[np.float64], count: int) -> Array:

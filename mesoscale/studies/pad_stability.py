@@ -1,4 +1,6 @@
-"""Stiff and extreme pads around a scene's inputs, each judged by physical invariants (target `stability`)."""
+"""Stiff and extreme pads around a scene's inputs, each judged by physical invariants (target
+`stability`).
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -30,14 +32,18 @@ MOST_STEPS = 4000
 CARRIED_GPa = 5e-3
 """Pressure of a usual switch on its pad."""
 CELL = Cell(PAD.first_seed, 0.0, 0.0, 1.0)
-CHECK_CYCLE = "in contact; plastic: energy lost, elastic: all given back; two flats beyond the curves"
+CHECK_CYCLE = (
+    "in contact; plastic: energy lost, elastic: all given back; two flats beyond the curves"
+)
 CHECK_PAD = (
-    "finite, pushes and pulls of the right sign, opening starts where closing ended and never pushes harder, no gain "
-    "of energy, flow settled; or refused in one line"
+    "finite, pushes and pulls of the right sign, opening starts where closing ended and never"
+    " pushes harder, no gain of energy, flow settled; or refused in one line"
 )
 WITHOUT_FILM = {"h_film": 0.0, "t_film": 0.0, "k_film": 0.0, "m_film": 0.0}
 
-SMOOTH = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.018, hurst=0.75, rms=2.2)
+SMOOTH = ContactInputs(
+    hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.018, hurst=0.75, rms=2.2
+)
 SOFT_FILM = "soft film"
 SOFT = FilmInputs(
     hamaker=0.23430521548187047,
@@ -60,7 +66,9 @@ SOFT_CONTACT = ContactSettings(
     q1_per_nm=0.3394476182237757,
     gap_cutoff_nm=0.27372814778958604,
 )
-"""Cells whose touching sites change by one in a step that has settled: the matrix at hand was once of other sites."""
+"""Cells whose touching sites change by one in a step that has settled: the matrix at hand was once
+of other sites.
+"""
 
 
 def hard_cases(inputs: ContactInputs, contact: ContactSettings) -> list[HardCase]:
@@ -94,7 +102,11 @@ def _pads(inputs: ContactInputs, contact: ContactSettings) -> Iterator[HardCase]
     extreme = replace(inputs, rms=10.0 * inputs.rms)
     cases: dict[str, tuple[str, ContactInputs, dict[str, Any]]] = {
         "central inputs": ("medians of the scene's inputs", inputs, {}),
-        "stiffest": ("E* = 2000 GPa: yields at once", replace(inputs, e_star=definition("e_star").high), {}),
+        "stiffest": (
+            "E* = 2000 GPa: yields at once",
+            replace(inputs, e_star=definition("e_star").high),
+            {},
+        ),
         "E* / 1000": ("soft: never yields", replace(inputs, e_star=1e-3 * inputs.e_star), {}),
         "hard": ("H = 1e6 GPa: elastic", replace(inputs, h_macro=1e6, **WITHOUT_FILM), {}),
         "H' = 0": ("constant hardness", replace(inputs, h_prime=0.0, **WITHOUT_FILM), {}),
@@ -104,26 +116,39 @@ def _pads(inputs: ContactInputs, contact: ContactSettings) -> Iterator[HardCase]
         "H 0.99": ("smoothest of Table 1", replace(inputs, hurst=0.99), {}),
         "A_H x 100": ("strong attraction", replace(inputs, hamaker=100.0 * inputs.hamaker), {}),
         "gap cut-off 1e-3 nm": ("attraction near its singularity", inputs, {"gap_cutoff_nm": 1e-3}),
-        "unequal places": ("places differ as much as those of measured films", FilmInputs(**scattered), {}),
+        "unequal places": (
+            "places differ as much as those of measured films",
+            FilmInputs(**scattered),
+            {},
+        ),
     }
     for name, (description, changed, changes) in cases.items():
         judge = partial(_pad, changed, contact.model_copy(update=changes))
         yield HardCase(name, description, CHECK_PAD, judge)
     other = "coupled" if contact.mechanics == "asperity" else "asperity"
     settings = contact.model_copy(update={"mechanics": other})
-    yield HardCase(f"{other} cells", "another mechanics", CHECK_PAD, partial(_pad, inputs, settings))
+    yield HardCase(
+        f"{other} cells", "another mechanics", CHECK_PAD, partial(_pad, inputs, settings)
+    )
 
 
 def _planned() -> Iterator[HardCase]:
     """Pads of inputs of their own, whose separations are hard to find."""
     words = "smooth film at 200 MPa, whose asperities merge"
     refused = partial(_refused, SMOOTH, ContactSettings(mechanics="asperity", pixels=64))
-    yield HardCase("merging asperities", words, "refused in one line that names coupled mechanics", refused)
+    yield HardCase(
+        "merging asperities", words, "refused in one line that names coupled mechanics", refused
+    )
     coupled = ContactSettings(mechanics="coupled", pixels=64)
     pressed = partial(_carries, SMOOTH, coupled, 4, PAD.first_seed, 0.2)
     yield HardCase("merging asperities, coupled", words, "carries what is asked for", pressed)
     soft = partial(_carries, SOFT, SOFT_CONTACT, 64, 5_000_017_001_000, 0.04)
-    yield HardCase(SOFT_FILM, "touching sites change by one in a settled step", "carries what is asked for", soft)
+    yield HardCase(
+        SOFT_FILM,
+        "touching sites change by one in a settled step",
+        "carries what is asked for",
+        soft,
+    )
 
 
 def own_separations(inputs: ContactInputs, contact: ContactSettings) -> PadGrid:
@@ -137,14 +162,18 @@ def own_separations(inputs: ContactInputs, contact: ContactSettings) -> PadGrid:
 
 
 def work_J_m2(separation_nm: Array, curve: Array, contact: ContactSettings) -> float:
-    """Work that a cell does from its deepest closing outwards (forces in nN, shape (2, n)); positive: pushed."""
+    """Work that a cell does from its deepest closing outwards (forces in nN, shape (2, n));
+    positive: pushed.
+    """
     return float(-np.trapezoid(curve.sum(axis=0), separation_nm)) / contact.length_nm**2
 
 
 def _cycle(inputs: ContactInputs, contact: ContactSettings) -> tuple[bool, str]:
     grid = own_separations(inputs, contact)
     (cell,) = close_cells(inputs, contact, grid, [CELL])
-    spent, returned = (work_J_m2(grid.separation_nm, curve, contact) for curve in (cell.closing, cell.opening[0]))
+    spent, returned = (
+        work_J_m2(grid.separation_nm, curve, contact) for curve in (cell.closing, cell.opening[0])
+    )
     broken = []
     if not cell.closing[0, -1] > 0.0:
         broken.append("not in contact")
@@ -153,10 +182,14 @@ def _cycle(inputs: ContactInputs, contact: ContactSettings) -> tuple[bool, str]:
     if contact.model != "elastic" and not returned < spent:
         broken.append("plastic, but no work was lost")
     broken += _flats(inputs, contact, _law(inputs, contact, grid, cell))
-    return not broken, "; ".join([*broken, f"spent {1e3 * spent:.4g} mJ/m^2, returned {1e3 * returned:.4g} mJ/m^2"])
+    return not broken, "; ".join(
+        [*broken, f"spent {1e3 * spent:.4g} mJ/m^2, returned {1e3 * returned:.4g} mJ/m^2"]
+    )
 
 
-def _law(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cell: Displacement) -> PadLaw:
+def _law(
+    inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cell: Displacement
+) -> PadLaw:
     return law_of(assemble(inputs, contact, grid, [CELL], [cell]), flats_of(inputs, contact))
 
 
@@ -191,7 +224,9 @@ def _pad(inputs: ContactInputs, contact: ContactSettings) -> tuple[bool, str]:
     if gaining:
         broken.append(f"{gaining} of 2 cells gain energy")
     carried = 1e3 * float(pad.mean(pad.closing)[0, -1])
-    return not broken, "; ".join([*broken, f"{carried:.4g} MPa, {pad.grid.separation_nm.size} separations"])
+    return not broken, "; ".join(
+        [*broken, f"{carried:.4g} MPa, {pad.grid.separation_nm.size} separations"]
+    )
 
 
 def violations(pad: PadCells) -> list[str]:
@@ -219,12 +254,13 @@ def violations(pad: PadCells) -> list[str]:
     return broken
 
 
-def gains_energy(inputs: ContactInputs, contact: ContactSettings, cell: Cell, grid: PadGrid) -> bool:
+def gains_energy(
+    inputs: ContactInputs, contact: ContactSettings, cell: Cell, grid: PadGrid
+) -> bool:
     """Whether a cell gives back more work than it took, beyond what the sums of both leave open.
 
-    Between two separations the force may have jumped anywhere, as sites touch, flow or let go. So each step leaves open
-    half of its length times the change of the force.
-    """
+    Between two separations the force may have jumped anywhere, as sites touch, flow or let go. So
+    each step leaves open half of its length times the change of the force."""
     heights = surface_of(inputs, contact, cell)
     last = grid.separation_nm.size - 1
     finer = max(min(FINER, MOST_STEPS // last), 1)
@@ -233,8 +269,12 @@ def gains_energy(inputs: ContactInputs, contact: ContactSettings, cell: Cell, gr
     closed = close_by_separation(inputs, contact, heights, fine + float(heights.mean()), depths)
     for depth, opening in zip(depths.tolist(), closed.opening, strict=True):
         way = slice(0, depth + 1)
-        gain = work_J_m2(fine[way], opening[:, way], contact) - work_J_m2(fine[way], closed.closing[:, way], contact)
-        changes = [np.abs(np.diff(curve[:, way].sum(axis=0))) for curve in (opening, closed.closing)]
+        gain = work_J_m2(fine[way], opening[:, way], contact) - work_J_m2(
+            fine[way], closed.closing[:, way], contact
+        )
+        changes = [
+            np.abs(np.diff(curve[:, way].sum(axis=0))) for curve in (opening, closed.closing)
+        ]
         unknown = 0.5 * float(-np.diff(fine[way]) @ np.add(*changes)) / contact.length_nm**2
         if gain > unknown:
             return True
@@ -246,13 +286,25 @@ def _refused(inputs: ContactInputs, contact: ContactSettings) -> tuple[bool, str
         plan_grid(inputs, contact, sample_cells(inputs, 4), _constant(0.2))
     except InputError as error:
         line = str(error)
-        return "asperities merge" in line and line.endswith("take mechanics: coupled") and "\n" not in line, line
+        return (
+            "asperities merge" in line
+            and line.endswith("take mechanics: coupled")
+            and "\n" not in line,
+            line,
+        )
     return False, "planned"
 
 
 def _carries(
-    inputs: ContactInputs, contact: ContactSettings, count: int, first_seed: int, pressure_GPa: float
+    inputs: ContactInputs,
+    contact: ContactSettings,
+    count: int,
+    first_seed: int,
+    pressure_GPa: float,
 ) -> tuple[bool, str]:
     cells = sample_cells(inputs, count, first_seed, 6e4)
     deep_nm = plan_grid(inputs, contact, cells, _constant(pressure_GPa)).depth_nm
-    return deep_nm.size > 0, f"opened from {deep_nm.size} depths, {deep_nm[-1]:.4g} .. {deep_nm[0]:.4g} nm"
+    return (
+        deep_nm.size > 0,
+        f"opened from {deep_nm.size} depths, {deep_nm[-1]:.4g} .. {deep_nm[0]:.4g} nm",
+    )

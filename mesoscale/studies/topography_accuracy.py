@@ -1,7 +1,8 @@
-"""Error of q0, slope and RMS height against the processor time of an analysis of scans, one choice at a time.
+"""Error of q0, slope and RMS height against the processor time of an analysis of scans, one choice
+at a time.
 
-Synthetic scans have a known truth. What is told are the deviations of the analysis from it over several surfaces.
-"""
+Synthetic scans have a known truth. What is told are the deviations of the analysis from it over
+several surfaces."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache, partial, reduce
@@ -48,20 +49,26 @@ MISSED = 1.0
 Estimates = dict[str, float]
 Analysis = Callable[[list[Scan]], Estimates]
 Tried = tuple[Any, ScanSet, tuple[int, int], Analysis]
-"""Value of a knob, the surfaces, how many small and large scans are used, and the analysis of cleaned scans."""
+"""Value of a knob, the surfaces, how many small and large scans are used, and the analysis of
+cleaned scans.
+"""
 
 
 def accuracy_points(
-    settings: TopographySettings, volts: dict[str, float] | None = None, progress: Progress | None = None
+    settings: TopographySettings,
+    volts: dict[str, float] | None = None,
+    progress: Progress | None = None,
 ) -> Iterator[StudyRow]:
     """Rows of accuracy/topography.csv without the stage.
 
     Parameters
     ----------
     settings : of the scene; its synthetic scans say how many there are, and of how many pixels.
-    volts : what an error of 1 % of q0, slope or RMS height moves in the release of the scene's switch, V.
-    """
-    quantities = [Quantity(name, "%", volts=(volts or {}).get(name)) for name in ("q0", "slope", "rms")]
+    volts : what an error of 1 % of q0, slope or RMS height moves in the release of the scene's
+        switch, V."""
+    quantities = [
+        Quantity(name, "%", volts=(volts or {}).get(name)) for name in ("q0", "slope", "rms")
+    ]
     cleaned = cache(partial(_cleaned, settings))  # most knobs are tried on the same scans
     yield from rows_of(list(_knobs(settings, quantities, cleaned)), progress)
 
@@ -75,7 +82,9 @@ def _cleaned(settings: TopographySettings, truth: ScanSet, surface: int) -> list
     return [timed(partial(clean, item.scan, settings)) for item in synthetic_scans(seeded)]
 
 
-def _knobs(settings: TopographySettings, quantities: Sequence[Quantity], cleaned: Cleaned) -> Iterator[Knob]:
+def _knobs(
+    settings: TopographySettings, quantities: Sequence[Quantity], cleaned: Cleaned
+) -> Iterator[Knob]:
     base = ScanSet(**settings.synthetic.model_dump(), rms_variation=0.0)
     truth = _counted(base.model_copy(update={"pixels": min(base.pixels, MOST_PIXELS)}), MOST)
     usual = partial(estimates, settings)
@@ -88,23 +97,40 @@ def _knobs(settings: TopographySettings, quantities: Sequence[Quantity], cleaned
 
     def knob(name: str, shipped: Any, values: Sequence[Tried]) -> Knob:
         choices = [Choice(value, partial(_errors, cleaned, *tried)) for value, *tried in values]
-        return Knob(name, quantities, choices, shipped, "truth of the synthetic scans", samples=f"{SURFACES} surfaces")
+        return Knob(
+            name,
+            quantities,
+            choices,
+            shipped,
+            "truth of the synthetic scans",
+            samples=f"{SURFACES} surfaces",
+        )
 
     pixels = [count for count in PIXELS if count <= base.pixels]
-    yield knob("pixels a side", base.pixels, [(count, few(pixels=count), FEW, usual) for count in pixels])
+    yield knob(
+        "pixels a side", base.pixels, [(count, few(pixels=count), FEW, usual) for count in pixels]
+    )
     counts = [(sum(used), truth, used, usual) for used in SCANS]
     yield knob("scans", base.small_scans + base.large_scans, counts)
     sections = [(count, truth, FEW, partial(usual, sections=count)) for count in SECTIONS]
     yield knob("sections", 25, sections)
     # side lobes of the window cover steep spectra first
     steep = few(slope=3.8, tip_radius_nm=1.0)
-    windows = [(flat, steep, FEW, partial(estimates, with_tip(1.0), flat=flat)) for flat in FLAT_SHARES]
+    windows = [
+        (flat, steep, FEW, partial(estimates, with_tip(1.0), flat=flat)) for flat in FLAT_SHARES
+    ]
     yield knob("flat share of the window, steep spectrum", 0.0, windows)
-    yield knob("bins a decade", 12, [(count, truth, FEW, partial(usual, bins=count)) for count in BINS])
-    radii = [(radius, few(tip_radius_nm=radius), FEW, partial(estimates, with_tip(radius))) for radius in TIPS_NM]
+    yield knob(
+        "bins a decade", 12, [(count, truth, FEW, partial(usual, bins=count)) for count in BINS]
+    )
+    radii = [
+        (radius, few(tip_radius_nm=radius), FEW, partial(estimates, with_tip(radius)))
+        for radius in TIPS_NM
+    ]
     yield knob("tip radius, nm", base.tip_radius_nm, radii)
     told_over_true = [
-        (ratio, truth, FEW, partial(estimates, with_tip(ratio * truth.tip_radius_nm))) for ratio in TOLD_OVER_TRUE
+        (ratio, truth, FEW, partial(estimates, with_tip(ratio * truth.tip_radius_nm)))
+        for ratio in TOLD_OVER_TRUE
     ]
     yield knob("told over true tip radius", 1.0, told_over_true)
 
@@ -124,7 +150,9 @@ def _errors(cleaned: Cleaned, truth: ScanSet, used: tuple[int, int], analysis: A
         every = cleaned(truth, surface)
         parts = [*every[:small], *every[truth.small_scans : truth.small_scans + large]]
         estimated, cost = timed(partial(analysis, [scan for scan, _ in parts]))
-        deviations.append([100 * _relative(estimated.get(name), value) for name, value in true_values.items()])
+        deviations.append(
+            [100 * _relative(estimated.get(name), value) for name, value in true_values.items()]
+        )
         costs += [cost, *(of_cleaning for _, of_cleaning in parts)]
     return Errors(*root_mean_square(deviations), reduce(Cost.__add__, costs).times(1 / SURFACES))
 
@@ -136,9 +164,14 @@ def _relative(estimate: float | None, true_value: float) -> float:
 
 
 def estimates(
-    settings: TopographySettings, scans: list[Scan], sections: int = 25, flat: float = 0.0, bins: int | None = None
+    settings: TopographySettings,
+    scans: list[Scan],
+    sections: int = 25,
+    flat: float = 0.0,
+    bins: int | None = None,
 ) -> Estimates:
-    """Estimates of q0 (1/nm), slope and RMS height (nm) of a set of cleaned scans, where they are identifiable.
+    """Estimates of q0 (1/nm), slope and RMS height (nm) of a set of cleaned scans, where they are
+    identifiable.
 
     Parameters
     ----------
@@ -146,14 +179,19 @@ def estimates(
     bins : of a decade, which share a discrepancy in the fit; None: the usual ones.
     """
     radius_nm = settings.tip_nm
-    spectra = [trusted_range(scan.name, hann_spectrum(scan, sections, flat), radius_nm, scan.rms_nm) for scan in scans]
+    spectra = [
+        trusted_range(scan.name, hann_spectrum(scan, sections, flat), radius_nm, scan.rms_nm)
+        for scan in scans
+    ]
     result = analyse(spectra, settings)
     if bins is not None and result.likelihood is not None:
         return _with_bins(spectra, result.likelihood.q0, result.cutoff, bins)
     return {name: estimate.value for name, estimate in result.estimates.items()}
 
 
-def _with_bins(spectra: Sequence[TrustedSpectrum], knee: float, cutoff: float, bins: int) -> Estimates:
+def _with_bins(
+    spectra: Sequence[TrustedSpectrum], knee: float, cutoff: float, bins: int
+) -> Estimates:
     """The estimates of the likelihood with so many bins a decade."""
     fitted = fit(skip_blurred_shells(spectra, knee), knee, per_decade=bins)
     if fitted is None:

@@ -1,4 +1,6 @@
-"""Hard cases of the topography stage as files: read right, or refused in one line (target `stability`)."""
+"""Hard cases of the topography stage as files: read right, or refused in one line (target
+`stability`).
+"""
 
 import json
 import tempfile
@@ -49,7 +51,9 @@ def _line(seed: int) -> np.ndarray:
     return line
 
 
-def _text(folder: Path, head: str = "x (nm), z (nm)", factor: float = 1.0, lines: int = 6) -> list[Path]:
+def _text(
+    folder: Path, head: str = "x (nm), z (nm)", factor: float = 1.0, lines: int = 6
+) -> list[Path]:
     paths = [folder / f"line_{k}.csv" for k in range(lines)]
     for k, path in enumerate(paths):
         np.savetxt(path, factor * _line(k), delimiter=",", header=head, comments="", fmt="%.9g")
@@ -121,22 +125,55 @@ def _level(line: np.ndarray) -> np.ndarray:
 CODE = "surfaces: [{topographies: []}]\nrun: !!python/object/apply:os.system ['true']\n"
 FILE_CASES = (
     FileCase("profiles", "six lines of 4 um as text, nothing else", _text),
-    FileCase("profiles in um", "the same with the unit um in the heads", partial(_text, head="x/um,z/um", factor=1e-3)),
+    FileCase(
+        "profiles in um",
+        "the same with the unit um in the heads",
+        partial(_text, head="x/um,z/um", factor=1e-3),
+    ),
     FileCase("uneven profiles", "half of the points of each line, at random", _uneven),
-    FileCase("unit by scene", "text without a head", partial(_text, head="", factor=1e-3), unit="um"),
+    FileCase(
+        "unit by scene", "text without a head", partial(_text, head="", factor=1e-3), unit="um"
+    ),
     FileCase("mixed", "four lines of 4 um and two maps of 1 um", _mixed),
     FileCase("container", "a container of one line", _container),
-    FileCase("no unit", "text without a head and without a unit in the scene", partial(_text, head=""), "length unit"),
-    FileCase("two films", "two maps whose heights differ by a factor of 100", _films, "cannot be one surface"),
-    FileCase("code", "a container whose list calls the system", partial(_container, meta=CODE), "nothing was executed"),
     FileCase(
-        "bomb", "a container that unpacks to 64 MB", partial(_container, line=b"0" * BOMB_MB * 2**20), "cannot be read"
+        "no unit",
+        "text without a head and without a unit in the scene",
+        partial(_text, head=""),
+        "length unit",
+    ),
+    FileCase(
+        "two films",
+        "two maps whose heights differ by a factor of 100",
+        _films,
+        "cannot be one surface",
+    ),
+    FileCase(
+        "code",
+        "a container whose list calls the system",
+        partial(_container, meta=CODE),
+        "nothing was executed",
+    ),
+    FileCase(
+        "bomb",
+        "a container that unpacks to 64 MB",
+        partial(_container, line=b"0" * BOMB_MB * 2**20),
+        "cannot be read",
     ),
     FileCase("two surfaces", "a container of two surfaces", _two_surfaces, "holds 2 surfaces"),
-    FileCase("hole", "a line with a hole of a quarter", partial(_changed, change=_with_hole), "a hole of"),
+    FileCase(
+        "hole", "a line with a hole of a quarter", partial(_changed, change=_with_hole), "a hole of"
+    ),
     FileCase("huge", "a line of 4 km", partial(_changed, change=_huge), "another unit"),
-    FileCase("level", "a line without heights", partial(_changed, change=_level), "all heights are equal"),
-    FileCase("short", "a line of 20 points", partial(_changed, change=lambda line: line[:20]), "a line of 20 points"),
+    FileCase(
+        "level", "a line without heights", partial(_changed, change=_level), "all heights are equal"
+    ),
+    FileCase(
+        "short",
+        "a line of 20 points",
+        partial(_changed, change=lambda line: line[:20]),
+        "a line of 20 points",
+    ),
 )
 
 
@@ -154,8 +191,12 @@ def hard_cases() -> list[HardCase]:
 
 
 def check_files(case: FileCase) -> tuple[bool, str]:
-    """Do the files give the RMS height of the surface, or their refusal? With the answer in words."""
-    instrument = InstrumentSettings.model_validate({"files": "*", "tip_radius_nm": 0, "unit": case.unit})
+    """Do the files give the RMS height of the surface, or their refusal? With the answer in
+    words.
+    """
+    instrument = InstrumentSettings.model_validate(
+        {"files": "*", "tip_radius_nm": 0, "unit": case.unit}
+    )
     settings = TopographySettings(scans=("files",), instruments=(instrument,))
     with tempfile.TemporaryDirectory() as name:
         try:
@@ -165,7 +206,9 @@ def check_files(case: FileCase) -> tuple[bool, str]:
                     label = measured.data.name
                     arrays[label], attributes[label] = record(measured, settings)
             refuse_different_films(
-                overlaps([trusted_record(key, data, attributes[key]) for key, data in arrays.items()])
+                overlaps(
+                    [trusted_record(key, data, attributes[key]) for key, data in arrays.items()]
+                )
             )
             pooled = pool(arrays, attributes, settings, LENGTH)
         except InputError as error:
@@ -177,4 +220,7 @@ def check_files(case: FileCase) -> tuple[bool, str]:
     error = rms / TRUTH.rms_nm - 1
     # a single line of 4 um knows the RMS height of its surface to a fifth
     allowed = WITHIN if len(arrays) > 1 else 0.3
-    return abs(error) <= allowed, f"RMS {rms:.3g} nm, error {error:+.1%}; described by {pooled.choice.name}"
+    return (
+        abs(error) <= allowed,
+        f"RMS {rms:.3g} nm, error {error:+.1%}; described by {pooled.choice.name}",
+    )

@@ -1,4 +1,6 @@
-"""Hard cases of the topography stage: each recovers known truth, doubts or refuses (target `stability`)."""
+"""Hard cases of the topography stage: each recovers known truth, doubts or refuses (target
+`stability`).
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -18,7 +20,13 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.synthetic_scans import ScanSet, surface_patch, synthetic_scans
 
 TRUTH = ScanSet.model_validate(
-    {"pixels": 256, "small_scans": 3, "large_scans": 3, "large_length_nm": 4000.0, "rms_variation": 0.0}
+    {
+        "pixels": 256,
+        "small_scans": 3,
+        "large_scans": 3,
+        "large_length_nm": 4000.0,
+        "rms_variation": 0.0,
+    }
 )
 WITHIN = {"q0": 0.25, "slope": 0.25, "rms": 0.1}  # coarse: a few scans of 256 x 256 pixels
 
@@ -32,9 +40,8 @@ def trusted_scan(scan: Scan, settings: TopographySettings) -> TrustedSpectrum:
 class Case:
     """Scans, what they show, and what the analysis must answer.
 
-    `expected` is "recovers" (known truth within `WITHIN`), "doubts" (the gate fails, with `word` among the
-    reasons) or "refuses" (an input error with `word` in it).
-    """
+    `expected` is "recovers" (known truth within `WITHIN`), "doubts" (the gate fails, with `word`
+    among the reasons) or "refuses" (an input error with `word` in it)."""
 
     name: str
     description: str
@@ -58,7 +65,11 @@ def _alone(heights: np.ndarray, length_nm: float = 1000.0) -> list[Scan]:
 
 
 def _tilted(heights: np.ndarray) -> np.ndarray:
-    return heights + 3.0 * np.arange(heights.shape[0])[:, None] - 1.5 * np.arange(heights.shape[1])[None, :]
+    return (
+        heights
+        + 3.0 * np.arange(heights.shape[0])[:, None]
+        - 1.5 * np.arange(heights.shape[1])[None, :]
+    )
 
 
 def _spiked(heights: np.ndarray) -> np.ndarray:
@@ -132,10 +143,21 @@ CASES = (
     Case("spike", "one spike of 2 um in each scan", lambda: _edit(_spiked), "recovers"),
     Case("holes", "1 % missing pixels and a hole", lambda: _edit(_holed), "recovers"),
     Case("lost lines", "two scan lines missing", lambda: _edit(_lost_lines), "recovers"),
-    Case("half missing", "half of each scan missing", lambda: _edit(_half_missing), "refuses", "missing"),
+    Case(
+        "half missing",
+        "half of each scan missing",
+        lambda: _edit(_half_missing),
+        "refuses",
+        "missing",
+    ),
     Case("streaks", "scan lines offset by 4 nm", lambda: _edit(_streaked), "recovers"),
     Case("not square", "scans of 256 x 192 pixels", lambda: _standard(_wide), "recovers"),
-    Case("oblong pixels", "pixels twice as long across the lines", lambda: _standard(_thinned), "recovers"),
+    Case(
+        "oblong pixels",
+        "pixels twice as long across the lines",
+        lambda: _standard(_thinned),
+        "recovers",
+    ),
     Case(
         "one size",
         "large scans only",
@@ -148,12 +170,26 @@ CASES = (
     Case(
         "many pixels",
         "one scan of 2048 x 2048 pixels over 8 um",
-        lambda: _standard(pixels=2048, small_scans=0, large_scans=1, large_length_nm=8000, tip_radius_nm=2.0),
+        lambda: _standard(
+            pixels=2048, small_scans=0, large_scans=1, large_length_nm=8000, tip_radius_nm=2.0
+        ),
         "recovers",
     ),
     Case("steps", "a terrace edge of 60 nm in each scan", lambda: _edit(_stepped), "doubts"),
-    Case("saturated", "heights cut off at 0.3 of their RMS", lambda: _edit(_saturated), "refuses", "cut off"),
-    Case("constant", "all heights equal", lambda: _alone(np.zeros((256, 256))), "doubts", "identifiable"),
+    Case(
+        "saturated",
+        "heights cut off at 0.3 of their RMS",
+        lambda: _edit(_saturated),
+        "refuses",
+        "cut off",
+    ),
+    Case(
+        "constant",
+        "all heights equal",
+        lambda: _alone(np.zeros((256, 256))),
+        "doubts",
+        "identifiable",
+    ),
     Case(
         "white noise",
         "no surface, only noise",
@@ -161,17 +197,36 @@ CASES = (
         "doubts",
         "identifiable",
     ),
-    Case("no plateau", "roll-off far below the scan", lambda: _alone(_rough(2.8, 1e-3)), "doubts", "plateau"),
+    Case(
+        "no plateau",
+        "roll-off far below the scan",
+        lambda: _alone(_rough(2.8, 1e-3)),
+        "doubts",
+        "plateau",
+    ),
     Case("no power law", "one wavelength of 61 nm", lambda: _alone(_one_wave()), "doubts"),
-    Case("H above 1", "slope 4.6, as grainy films have", lambda: _alone(_rough(4.6, 0.05)), "doubts", "H ="),
+    Case(
+        "H above 1",
+        "slope 4.6, as grainy films have",
+        lambda: _alone(_rough(4.6, 0.05)),
+        "doubts",
+        "H =",
+    ),
     Case("H below 0", "slope 0.8", lambda: _alone(_rough(0.8, 0.05)), "doubts"),
 )
 
 
 def hard_cases(settings: TopographySettings) -> list[HardCase]:
-    """The scans with their judges; the analysis has the scene's settings, the scans are the same in all scenes."""
+    """The scans with their judges; the analysis has the scene's settings, the scans are the same in
+    all scenes.
+    """
     return [
-        HardCase(case.name, case.description, _must(case.expected, case.word), partial(check, case, settings))
+        HardCase(
+            case.name,
+            case.description,
+            _must(case.expected, case.word),
+            partial(check, case, settings),
+        )
         for case in CASES
     ]
 

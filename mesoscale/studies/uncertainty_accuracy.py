@@ -1,4 +1,5 @@
-"""Error of the law's mean and of its responses against run time: direct runs, surfaces at the nodes, degree.
+"""Error of the law's mean and of its responses against run time: direct runs, surfaces at the
+nodes, degree.
 
 The scene's own runs are used. Errors are in per cent of the standard deviation of single cells.
 """
@@ -39,7 +40,9 @@ from mesoscale.uncertainty.runs import compute_rows
 from mesoscale.uncertainty.surrogate import evaluate
 
 FEWEST = 50
-"""Direct runs of the smallest choice: each half still determines the linear terms of a dozen inputs."""
+"""Direct runs of the smallest choice: each half still determines the linear terms of a dozen
+inputs.
+"""
 SPLITS = 4
 """Random halvings of the runs of a choice."""
 DEGREES = (1, 2, 3)
@@ -95,12 +98,13 @@ def _percent_of_deviation(names: Sequence[str]) -> list[Quantity]:
     return [Quantity(name, "% of deviation") for name in names]
 
 
-def _runs(direct: Direct, table: InputTable, settings: UncertaintySettings, deviation: Array, cycle: Cost) -> Knob:
+def _runs(
+    direct: Direct, table: InputTable, settings: UncertaintySettings, deviation: Array, cycle: Cost
+) -> Knob:
     """The mean by the responses, by the number of direct runs.
 
-    The runs of a choice are halved at random. Half the difference of the means by the halves is an estimate of the
-    error of the mean by all of them.
-    """
+    The runs of a choice are halved at random. Half the difference of the means by the halves is an
+    estimate of the error of the mean by all of them."""
     x, y = direct
     ranges = table.ranges()
 
@@ -126,16 +130,21 @@ def _runs(direct: Direct, table: InputTable, settings: UncertaintySettings, devi
     choices = [Choice(count, partial(errors, count)) for count in counts]
     quantities = _percent_of_deviation(MEANS)
     return Knob(
-        "direct runs", quantities, choices, len(x), "half the difference of two halves", None, f"{SPLITS} splits"
+        "direct runs",
+        quantities,
+        choices,
+        len(x),
+        "half the difference of two halves",
+        None,
+        f"{SPLITS} splits",
     )
 
 
 def _degree(direct: Direct, again: Array, table: InputTable) -> Knob:
     """Responses of each degree against runs that they have not seen.
 
-    The mean square deviation includes the scatter between surfaces. Pairs of surfaces at equal inputs tell this
-    scatter, and it is subtracted.
-    """
+    The mean square deviation includes the scatter between surfaces. Pairs of surfaces at equal
+    inputs tell this scatter, and it is subtracted."""
     x, y = direct
     ranges = table.ranges()
     deviation = np.nanstd(y, axis=0)
@@ -168,7 +177,8 @@ def _degree(direct: Direct, again: Array, table: InputTable) -> Knob:
 
     choices = [Choice(degree, partial(errors, degree)) for degree in DEGREES]
     reference = (
-        f"{len(x)} direct runs that the response has not seen, less the scatter of {len(again)} pairs of surfaces"
+        f"{len(x)} direct runs that the response has not seen, less the scatter of {len(again)}"
+        " pairs of surfaces"
     )
     names = [f"{row.short} on {branch}" for branch in BRANCHES for row in LAW]
     return Knob("degree of the responses", _percent_of_deviation(names), choices, DEGREE, reference)
@@ -181,11 +191,16 @@ def _mean_and_error(values: Array) -> tuple[Array, Array]:
 
 
 def _seeds(nodes: NodeOutputs, table: InputTable, deviation: Array, cycle: Cost) -> Knob:
-    """The mean by the paper's linear responses, by the number of surfaces: standard errors by their scatter."""
+    """The mean by the paper's linear responses, by the number of surfaces: standard errors by their
+    scatter.
+    """
     samples = table.sample(MEAN_SAMPLES, SAMPLE_SEED)
     ranges = table.ranges()
     means = np.array(
-        [to_paper_outputs(linear_outputs(values, ranges, samples)).mean(axis=0) for values in nodes.values]
+        [
+            to_paper_outputs(linear_outputs(values, ranges, samples)).mean(axis=0)
+            for values in nodes.values
+        ]
     )
     known = np.isfinite(means).sum(axis=0)
     scatter = 100 * np.nanstd(means, axis=0, ddof=1) / deviation
@@ -205,5 +220,11 @@ def _seeds(nodes: NodeOutputs, table: InputTable, deviation: Array, cycle: Cost)
     choices = [Choice(count, partial(errors, count)) for count in counts]
     quantities = _percent_of_deviation(MEANS)
     return Knob(
-        "surfaces at the nodes", quantities, choices, in_use, "scatter between surfaces", None, f"{in_use} surfaces"
+        "surfaces at the nodes",
+        quantities,
+        choices,
+        in_use,
+        "scatter between surfaces",
+        None,
+        f"{in_use} surfaces",
     )

@@ -1,4 +1,6 @@
-"""Unusual inputs and outputs of the propagation: each gives the known answer or says that there is none."""
+"""Unusual inputs and outputs of the propagation: each gives the known answer or says that there is
+none.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -9,7 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.errors import InputError
-from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
+from mesoscale.inputs.distributions import (
+    Distribution,
+    InputTable,
+    UncertainInput,
+    correlation_matrix,
+)
 from mesoscale.law.fit import fit_branch
 from mesoscale.law.parameters import FITTED, OUTPUTS
 from mesoscale.settings import ContactSettings, UncertaintySettings
@@ -28,7 +35,8 @@ Function = Callable[[Array], Array]
 SETTINGS = UncertaintySettings(direct_runs=200)
 UNIFORM = Distribution("uniform", 0.0, 1.0)
 MIDDLE = {
-    "hamaker": 0.215, "e_star": 91.0, "h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75, "rms": 8.5
+    "hamaker": 0.215, "e_star": 91.0, "h_macro": 1.95, "h_prime": 8.375, "q0": 0.025,
+    "hurst": 0.75, "rms": 8.5
 }  # fmt: skip
 
 
@@ -48,7 +56,10 @@ class Answer:
 
 
 def _table(*distributions: Distribution, correlation: Array | None = None) -> InputTable:
-    rows = tuple(UncertainInput(f"x{k}", "1", given, "literature", "") for k, given in enumerate(distributions))
+    rows = tuple(
+        UncertainInput(f"x{k}", "1", given, "literature", "")
+        for k, given in enumerate(distributions)
+    )
     return InputTable(rows, np.eye(len(rows)) if correlation is None else correlation)
 
 
@@ -61,7 +72,8 @@ def _answer(
     place: int = 0,
     **changes: Any,
 ) -> Answer:
-    """Propagate an engine that is a plain function of the inputs; a share `missing` of its runs fails.
+    """Propagate an engine that is a plain function of the inputs; a share `missing` of its runs
+    fails.
 
     `place` 0 is an output whose response is fitted as it is, 1 one fitted in logarithm.
     """
@@ -69,7 +81,9 @@ def _answer(
     rng = np.random.default_rng(5)
     x_nodes = to_values(nodes(len(table.rows)), table.ranges())
     of_every_seed = np.tile(function(x_nodes), (seeds, 1))
-    given = NodeOutputs(list(range(seeds)), np.repeat(of_every_seed[..., None], len(FITTED), axis=2))
+    given = NodeOutputs(
+        list(range(seeds)), np.repeat(of_every_seed[..., None], len(FITTED), axis=2)
+    )
     given.values[rng.random(given.values.shape[:2]) < missing] = np.nan
     x = table.sample(runs, 11)
     y = np.repeat(function(x)[:, None], len(FITTED), axis=1)
@@ -117,7 +131,9 @@ def _count_of_inputs(inputs: int) -> list[str]:
 def _heavy_input() -> list[str]:
     values = np.sort(np.exp(1.5 * np.random.default_rng(3).normal(size=2000)))
     answer = _answer(
-        lambda x: 10 + x[:, 0] + x[:, 1], _table(Distribution("samples", values=values), UNIFORM), runs=400
+        lambda x: 10 + x[:, 0] + x[:, 1],
+        _table(Distribution("samples", values=values), UNIFORM),
+        runs=400,
     )
     return _unless(
         mean=_close(answer.output["response_mean"], 10.5 + values.mean(), 0.1),
@@ -139,14 +155,19 @@ def _heavy_output() -> list[str]:
 
 
 def _failing_runs(share: float) -> list[str]:
-    answer = _answer(lambda x: 10 + x @ np.array([1.0, 2.0]), _table(UNIFORM, UNIFORM), missing=share, seeds=8)
+    answer = _answer(
+        lambda x: 10 + x @ np.array([1.0, 2.0]), _table(UNIFORM, UNIFORM), missing=share, seeds=8
+    )
     counted = answer.validation["missing"]
     if share == 1.0:
         return _unless(
             all_counted=counted == 200,
             no_seed_used=answer.output["seeds_used"] == 0,
             no_response=answer.responses == 0,
-            no_number=all(np.isnan(answer.output[key]) for key in ("mean", "dev", "response_mean", "response_dev")),
+            no_number=all(
+                np.isnan(answer.output[key])
+                for key in ("mean", "dev", "response_mean", "response_dev")
+            ),
         )
     return _unless(
         counted=bool(0 < counted < 200) and answer.output["missing"] > 0,
@@ -168,7 +189,9 @@ def _failing_engine() -> list[str]:
 
 
 def _not_smooth() -> list[str]:
-    answer = _answer(lambda x: 10 + np.where(x[:, 0] > 0.37, 5.0, 0.0), _table(UNIFORM, UNIFORM), runs=400)
+    answer = _answer(
+        lambda x: 10 + np.where(x[:, 0] > 0.37, 5.0, 0.0), _table(UNIFORM, UNIFORM), runs=400
+    )
     return _unless(
         validation_says_so=answer.validation["q2"] < 0.9,
         quantiles_of_cells=(answer.output["cell_q05"], answer.output["cell_q50"]) == (10.0, 15.0),
@@ -178,7 +201,8 @@ def _not_smooth() -> list[str]:
 def _tiny_sample() -> list[str]:
     answer = _answer(lambda x: 10 + x[:, 0], _table(UNIFORM, UNIFORM), runs=3, seeds=1)
     return _unless(
-        no_response_from_three_runs=answer.responses == 0 and np.isnan(answer.output["response_mean"]),
+        no_response_from_three_runs=answer.responses == 0
+        and np.isnan(answer.output["response_mean"]),
         paper_method_still_there=_close(answer.output["mean"], 10.5, 0.1),
         no_scatter_from_one_seed=np.isnan(answer.output["mean_seed_sd"]),
     )
@@ -197,8 +221,13 @@ def _not_identifiable() -> list[str]:
     h = np.linspace(10.0, 40.0, 60)
     repulsion = 200.0 * np.maximum(30.0 - h, 0.0)
     fit = fit_branch(h, repulsion, -np.ones_like(h), 1e6, 0.215, 30.0)
-    row = {name: "" if np.isnan(value) else value for name, value in zip(FITTED, [*fit.parameters] * 2, strict=True)}
-    _, y = direct_runs_of_rows([{"x0": "0", **{key: str(value) for key, value in row.items()}}], ["x0"], 1)
+    row = {
+        name: "" if np.isnan(value) else value
+        for name, value in zip(FITTED, [*fit.parameters] * 2, strict=True)
+    }
+    _, y = direct_runs_of_rows(
+        [{"x0": "0", **{key: str(value) for key, value in row.items()}}], ["x0"], 1
+    )
     repulsion = [name for name in FITTED if name.endswith(("_C_r_GPa", "_rho_r_nm"))]
     return _unless(
         status_says_so=fit.status.startswith("not_identifiable"),
@@ -209,10 +238,14 @@ def _not_identifiable() -> list[str]:
 
 def _correlated() -> list[str]:
     rank = -0.8
-    table = _table(UNIFORM, UNIFORM, correlation=correlation_matrix(["x0", "x1"], {("x0", "x1"): rank}))
+    table = _table(
+        UNIFORM, UNIFORM, correlation=correlation_matrix(["x0", "x1"], {("x0", "x1"): rank})
+    )
     answer = _answer(lambda x: 10 + x.sum(axis=1), table)
     # Spearman's rank correlation of uniform inputs is their correlation
-    return _unless(deviation_of_the_sum=_close(answer.output["response_dev"], np.sqrt((2 + 2 * rank) / 12)))
+    return _unless(
+        deviation_of_the_sum=_close(answer.output["response_dev"], np.sqrt((2 + 2 * rank) / 12))
+    )
 
 
 def _contradiction() -> list[str]:
@@ -224,7 +257,9 @@ def _contradiction() -> list[str]:
 
 
 def _eighth_input() -> list[str]:
-    runs = [Run(k, -1, 0, {**MIDDLE, "gap_cutoff": cutoff}) for k, cutoff in enumerate((0.165, 0.3))]
+    runs = [
+        Run(k, -1, 0, {**MIDDLE, "gap_cutoff": cutoff}) for k, cutoff in enumerate((0.165, 0.3))
+    ]
     near, far = compute_rows(runs, ContactSettings(mechanics="asperity", pixels=128))
     return _unless(
         attraction_falls=float(near["closing_C_a_GPa_nm"]) > 1.5 * float(far["closing_C_a_GPa_nm"]),
@@ -244,7 +279,11 @@ CASES: Sequence[tuple[str, str, Callable[[], list[str]]]] = (
     ("not smooth", "a step", _not_smooth),
     ("tiny sample", "three runs, one seed", _tiny_sample),
     ("all equal", "a constant output", _all_equal),
-    ("not identifiable", "a straight repulsion: C_r and rho_r are not determined", _not_identifiable),
+    (
+        "not identifiable",
+        "a straight repulsion: C_r and rho_r are not determined",
+        _not_identifiable,
+    ),
     ("correlated inputs", "rank correlation -0.8", _correlated),
     ("contradicting correlations", "0.95, 0.95, -0.95", _contradiction),
     ("eighth input", "D0 0.165 and 0.3 nm through the contact model", _eighth_input),
@@ -253,7 +292,10 @@ CASES: Sequence[tuple[str, str, Callable[[], list[str]]]] = (
 
 def hard_cases() -> list[HardCase]:
     """The cases with their judges; they are the same in all scenes."""
-    return [HardCase(name, description, CHECKS, partial(_verdict, case)) for name, description, case in CASES]
+    return [
+        HardCase(name, description, CHECKS, partial(_verdict, case))
+        for name, description, case in CASES
+    ]
 
 
 def _verdict(case: Callable[[], list[str]]) -> tuple[bool, str]:

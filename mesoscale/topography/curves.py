@@ -1,4 +1,6 @@
-"""The curves of figure 10: all spectra pooled, what is fitted to them, and the one spectrum with its band."""
+"""The curves of figure 10: all spectra pooled, what is fitted to them, and the one spectrum with
+its band.
+"""
 
 from collections.abc import Sequence
 
@@ -26,12 +28,23 @@ Curves = dict[str, np.ndarray]
 
 
 def result_curves(pooled: Pooled, typical: RoughSpectrum | None) -> dict[str, Curves]:
-    """Groups of curves over q for spectra.h5; `typical` is the truth of synthetic scans, which need no band."""
-    groups = {"pooled": _pooled([item.spectrum for item in pooled.spectra]), "fits": _fits(pooled, typical)}
+    """Groups of curves over q for spectra.h5; `typical` is the truth of synthetic scans, which need
+    no band.
+    """
+    groups = {
+        "pooled": _pooled([item.spectrum for item in pooled.spectra]),
+        "fits": _fits(pooled, typical),
+    }
     one = pooled.one
     if one is not None and typical is None:
         low, high = one.band()
-        curves = {"q": one.q, "psd": one.psd, "band_low": low, "band_high": high, "measurements": one.count}
+        curves = {
+            "q": one.q,
+            "psd": one.psd,
+            "band_low": low,
+            "band_high": high,
+            "measurements": one.count,
+        }
         groups["one_spectrum"] = {key: values[one.q >= one.first] for key, values in curves.items()}
     return groups
 
@@ -41,8 +54,13 @@ def _pooled(spectra: Sequence[Spectrum]) -> Curves:
     per_decade = 12
     binned = [log_bins(spectrum, per_decade) for spectrum in spectra]
     q, psd = (np.concatenate([getattr(item, key) for item in binned]) for key in ("q", "psd"))
-    _, index, count = np.unique(np.floor(np.log10(q) * per_decade), return_inverse=True, return_counts=True)
-    return {key: np.exp(np.bincount(index, np.log(values)) / count) for key, values in (("q", q), ("psd", psd))}
+    _, index, count = np.unique(
+        np.floor(np.log10(q) * per_decade), return_inverse=True, return_counts=True
+    )
+    return {
+        key: np.exp(np.bincount(index, np.log(values)) / count)
+        for key, values in (("q", q), ("psd", psd))
+    }
 
 
 def _fits(pooled: Pooled, typical: RoughSpectrum | None) -> Curves:
@@ -53,7 +71,11 @@ def _fits(pooled: Pooled, typical: RoughSpectrum | None) -> Curves:
     if pooled.topography.likelihood is not None:
         curves["likelihood"] = pooled.topography.likelihood.spectrum(end).psd(q)
     if line is not None:
-        for name, slope in (("lines", line.slope), ("shallow_bound", line.slope_low), ("steep_bound", line.slope_high)):
+        for name, slope in (
+            ("lines", line.slope),
+            ("shallow_bound", line.slope_low),
+            ("steep_bound", line.slope_high),
+        ):
             curves[name] = RoughSpectrum(line.plateau, line.q0, slope, end).psd(q)
         curves["plateau_low"] = np.where(q <= line.q0, line.plateau_low, np.nan)
         curves["plateau_high"] = np.where(q <= line.q0, line.plateau_high, np.nan)

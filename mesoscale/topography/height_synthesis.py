@@ -1,11 +1,11 @@
 """Random surfaces with a measured spectrum and measured heights: tall grains, deep pits.
 
-A Gaussian surface g is carried to other heights point by point, z = F(g) (a translation process, Grigoriu 1998,
-doi:10.1061/(ASCE)0733-9399(1998)124:2(121)). Unlike heights dealt out by rank, which give every surface the very same
-summit, the highest point is then as random as that of g, and grows with the area. F changes the correlation: with the
-Hermite coefficients c_n of F, a correlation r of g becomes R = sum c_n^2 r^n / sum c_n^2. So g is drawn with the
-correlation whose R is the wanted one.
-"""
+A Gaussian surface g is carried to other heights point by point, z = F(g) (a translation process,
+Grigoriu 1998, doi:10.1061/(ASCE)0733-9399(1998)124:2(121)). Unlike heights dealt out by rank, which
+give every surface the very same summit, the highest point is then as random as that of g, and grows
+with the area. F changes the correlation: with the Hermite coefficients c_n of F, a correlation r of
+g becomes R = sum c_n^2 r^n / sum c_n^2. So g is drawn with the correlation whose R is the wanted
+one."""
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -30,11 +30,13 @@ def synthesize_heights(
     seed: int,
     q1: float | None = None,
 ) -> Array:
-    """Periodic surface of an isotropic spectrum C(q), nm^4 of 1/nm, whose heights are distributed as stated.
+    """Periodic surface of an isotropic spectrum C(q), nm^4 of 1/nm, whose heights are distributed
+    as stated.
 
     Parameters
     ----------
-    heights : height in units of the RMS at each normal variable of `Z`, not falling; peaks are positive.
+    heights : height in units of the RMS at each normal variable of `Z`, not falling; peaks are
+        positive.
 
     The rest is as in `synthesis.synthesize_spectrum`; the same seed gives the same noise.
 
@@ -47,25 +49,40 @@ def synthesize_heights(
     InputError : as `synthesize_spectrum`, or heights that are no distribution.
     """
     table = np.asarray(heights, dtype=float)
-    if table.shape != Z.shape or not np.isfinite(table).all() or np.any(np.diff(table) < 0) or table[0] == table[-1]:
-        raise InputError(f"heights: accepted are {len(Z)} values that do not fall, in units of the RMS height")
+    if (
+        table.shape != Z.shape
+        or not np.isfinite(table).all()
+        or np.any(np.diff(table) < 0)
+        or table[0] == table[-1]
+    ):
+        raise InputError(
+            f"heights: accepted are {len(Z)} values that do not fall, in units of the RMS height"
+        )
     squared, step = squared_waves(pixels, length_nm, q1)
     wanted = np.concatenate([[0.0], psd(step * np.sqrt(squared))])
     if not np.isfinite(wanted).all() or not wanted.any():
-        raise InputError("the spectrum has no power on this surface; accepted are spectra between its waves")
+        raise InputError(
+            "the spectrum has no power on this surface; accepted are spectra between its waves"
+        )
     amplitude = np.sqrt(_gaussian_power(pixels, wanted, tuple(map(float, heights))))
     gaussian = filtered_noise(pixels, amplitude, 1.0, seed)
     surface = np.interp(gaussian, Z, table)
     beyond = gaussian > Z[-1]
     if beyond.any():
-        surface[beyond] = table[-1] + (gaussian[beyond] - Z[-1]) * (table[-1] - table[-2]) / (Z[-1] - Z[-2])
+        surface[beyond] = table[-1] + (gaussian[beyond] - Z[-1]) * (table[-1] - table[-2]) / (
+            Z[-1] - Z[-2]
+        )
     surface -= surface.mean()
     return surface * (rms / np.sqrt(np.mean(surface**2)))
 
 
 def _gaussian_power(pixels: int, wanted: Array, heights: tuple[float, ...]) -> Array:
-    """Spectrum by squared wave number of the Gaussian surface that F carries to the wanted one; scale arbitrary."""
-    number = np.fft.fftfreq(pixels, 1 / pixels)[:, None] ** 2 + np.arange(pixels // 2 + 1)[None, :] ** 2
+    """Spectrum by squared wave number of the Gaussian surface that F carries to the wanted one;
+    scale arbitrary.
+    """
+    number = (
+        np.fft.fftfreq(pixels, 1 / pixels)[:, None] ** 2 + np.arange(pixels // 2 + 1)[None, :] ** 2
+    )
     number = np.rint(number).astype(np.int64)
     inside = number < len(wanted)
     grid = np.zeros(number.shape)
@@ -88,7 +105,10 @@ def _carried_correlation(heights: tuple[float, ...]) -> tuple[Array, Array]:
     x, weight = np.polynomial.hermite_e.hermegauss(160)
     weight = weight / weight.sum()
     values = np.interp(x, Z, np.asarray(heights))
-    previous, current = np.zeros_like(x), np.ones_like(x)  # normalised Hermite polynomials by recursion
+    previous, current = (
+        np.zeros_like(x),
+        np.ones_like(x),
+    )  # normalised Hermite polynomials by recursion
     squares, terms = [], 24
     for n in range(terms):
         previous, current = current, (x * current - np.sqrt(n) * previous) / np.sqrt(n + 1)

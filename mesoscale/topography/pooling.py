@@ -1,4 +1,6 @@
-"""From the records of all measurements to the parameters, the description and the curves of the surface."""
+"""From the records of all measurements to the parameters, the description and the curves of the
+surface.
+"""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -20,7 +22,14 @@ from mesoscale.topography.description.cell import (
 from mesoscale.topography.description.choice import Choice, choose, description_doubts
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import compare_heights, not_gaussian
-from mesoscale.topography.description.inputs import cutoff_row, middle, rms_before, rms_scatter_row, rows_of, surface_of
+from mesoscale.topography.description.inputs import (
+    cutoff_row,
+    middle,
+    rms_before,
+    rms_scatter_row,
+    rows_of,
+    surface_of,
+)
 from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
 from mesoscale.topography.description.overlaps import Overlap, overlaps, refuse_different_films
 from mesoscale.topography.description.parameters import Topography, analyse
@@ -47,7 +56,8 @@ class Pooled:
     one : the spectrum over all scales; None where there is not enough for one.
     pairs : measurements that see common bands.
     surface, rows : entries of `contact.surface`, distributions of q0, hurst, rms and q1.
-    film : distributions of q0, hurst and rms of the typical place, and of the scatter of ln RMS between places.
+    film : distributions of q0, hurst and rms of the typical place, and of the scatter of ln RMS
+        between places.
     cell_nm : side of the cells that the contact is computed on.
     doubts : those that touch what is used.
     """
@@ -78,10 +88,12 @@ def pool(
     Parameters
     ----------
     arrays, attributes : records by name (`records.record`).
-    cell_nm : side of the surfaces that the contact model will make; None: the one that suits (`suited_cell`).
+    cell_nm : side of the surfaces that the contact model will make; None: the one that suits
+        (`suited_cell`).
     cut_off : they end at the measured cut-off; the RMS height is then that of the waves before it.
     electrode_nm : side of a square of the electrode's area.
-    pixels : grid points a side of these surfaces. Where they end at the cut-off, a side that is chosen grows with them
+    pixels : grid points a side of these surfaces. Where they end at the cut-off, a side that is
+        chosen grows with them
         (`grown_cell`).
 
     Raises
@@ -105,7 +117,9 @@ def pool(
     if settings.scans:
         refuse_different_films(pairs)
     quantiles = {name: data["quantiles"] for name, data in arrays.items() if "quantiles" in data}
-    topography, spectra, lifted = parameters_of(images, quantiles if not_gaussian(tests) else {}, settings)
+    topography, spectra, lifted = parameters_of(
+        images, quantiles if not_gaussian(tests) else {}, settings
+    )
     grows = cell_nm is None and cut_off
     cell_nm = suited_cell(spectra, electrode_nm) if cell_nm is None else cell_nm
     refuse_coarse_measurements(spectra, cell_nm)
@@ -121,7 +135,9 @@ def pool(
             return share_on_cells(topography, used, side_nm)[0]
 
         shortest_nm = 2.0 * np.pi / max(cutoff["a"], cutoff.get("b", 0.0))
-        cell_nm = grown_cell(cell_nm, held, shortest_nm, pixels, min(electrode_nm, longest_nm(attributes)))
+        cell_nm = grown_cell(
+            cell_nm, held, shortest_nm, pixels, min(electrode_nm, longest_nm(attributes))
+        )
     charts = list(quantiles.values()) if choice.name == "measured_heights" else []
     surface = surface_of(topography, used, charts, settings, cell_nm)
     typical = settings.model_copy(update={"ranges": "interval"})
@@ -139,7 +155,9 @@ def pool(
         doubts += several_surfaces(images, pairs, files)
         doubts += description_doubts(topography, choice.name, one, attributes, tests, cell_nm)
         if one is not None:
-            doubts += finer_waves_doubt(SpectrumTable(*one.carried_on(one.psd)).psd, spectra, cell_nm)
+            doubts += finer_waves_doubt(
+                SpectrumTable(*one.carried_on(one.psd)).psd, spectra, cell_nm
+            )
     if settings.scans and rows:
         heights = {name: _levelled(arrays[name], values) for name, values in attributes.items()}
         doubts += unlike_measured(middle(rows["rms"]), heights, cell_nm)
@@ -147,12 +165,17 @@ def pool(
             doubts += unseen_doubt(rows["rms"], longest_nm(attributes), cell_nm)
     doubts += lift_doubt(images, spectra, lifted)
     if alike:
-        text = f"{', '.join(f'{name} is a copy of {other}' for name, other in alike.items())}: it counts once"
+        text = (
+            f"{', '.join(f'{name} is a copy of {other}' for name, other in alike.items())}: it"
+            " counts once"
+        )
         doubts.append(Doubt("copies", text, "measure other places of the surface", "rms"))
     return Pooled(spectra, topography, one, pairs, choice, surface, rows, film, doubts, cell_nm)
 
 
-def _levelled(arrays: Mapping[str, np.ndarray], attributes: Mapping[str, Any]) -> tuple[np.ndarray, tuple[float, ...]]:
+def _levelled(
+    arrays: Mapping[str, np.ndarray], attributes: Mapping[str, Any]
+) -> tuple[np.ndarray, tuple[float, ...]]:
     """Levelled heights (nm), thinned, with their lengths (nm)."""
     if is_profile(attributes):
         return arrays["line"], (float(attributes["length_x_nm"]),)
@@ -160,9 +183,12 @@ def _levelled(arrays: Mapping[str, np.ndarray], attributes: Mapping[str, Any]) -
 
 
 def parameters_of(
-    images: Sequence[TrustedSpectrum], quantiles: Mapping[str, np.ndarray], settings: TopographySettings
+    images: Sequence[TrustedSpectrum],
+    quantiles: Mapping[str, np.ndarray],
+    settings: TopographySettings,
 ) -> tuple[Topography, list[TrustedSpectrum], float]:
-    """Parameters with intervals that hold the tips' errors, spectra without the tips' lift, and the error it leaves.
+    """Parameters with intervals that hold the tips' errors, spectra without the tips' lift, and the
+    error it leaves.
 
     Parameters
     ----------

@@ -1,22 +1,24 @@
 """From the spectrum along a line to the two-dimensional one of an isotropic surface.
 
-A line across an isotropic surface of spectrum C(q) has the spectrum (Nayak 1971, doi:10.1115/1.3451608; Jacobs, Junge
-and Pastewka 2017, doi:10.1088/2051-672X/aa51f8)
+A line across an isotropic surface of spectrum C(q) has the spectrum (Nayak 1971,
+doi:10.1115/1.3451608; Jacobs, Junge and Pastewka 2017, doi:10.1088/2051-672X/aa51f8)
 
-    C1(k) = integral of C(sqrt(k^2 + p^2)) over all p = 2 integral_k^inf C(q) q dq / sqrt(q^2 - k^2),
+    C1(k) = integral of C(sqrt(k^2 + p^2)) over all p = 2 integral_k^inf C(q) q dq / sqrt(q^2 -
+    k^2),
 
-nm^3 at k in 1/nm. Its inverse takes a derivative of noisy data, and what a power law turns into, a factor, fails on a
-plateau. So C is sought instead whose C1 fits: straight between nodes in log q and log C, by Whittle's (Gamma)
-likelihood, with changes of the logarithmic slope from node to node held small.
-"""
+nm^3 at k in 1/nm. Its inverse takes a derivative of noisy data, and what a power law turns into, a
+factor, fails on a plateau. So C is sought instead whose C1 fits: straight between nodes in log q
+and log C, by Whittle's (Gamma) likelihood, with changes of the logarithmic slope from node to node
+held small."""
 
 import numpy as np
 
 from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.spectrum import FLOOR, Spectrum
 
-# sine tapers (Riedel and Sidorenko 1995, doi:10.1109/78.365298): n of them give 2 n/(2 n + 1) independent modes per
-# wave number, and spread each over a variance of (n + 1)(2 n + 1)/24 wave numbers
+# sine tapers (Riedel and Sidorenko 1995, doi:10.1109/78.365298): n of them give 2 n/(2 n + 1)
+# independent modes per wave number, and spread each over a variance of (n + 1)(2 n + 1)/24 wave
+# numbers
 TAPERS = 3
 COVER = 2 * TAPERS / (2 * TAPERS + 1)
 SPREAD = np.sqrt((TAPERS + 1) * (2 * TAPERS + 1) / 24)
@@ -28,7 +30,9 @@ def line_spectrum(profile: Profile) -> tuple[np.ndarray, np.ndarray]:
     The sum of C1 2 pi / L over positive and negative k is the mean square height.
     """
     n = len(profile.heights_nm)
-    tapers = np.sqrt(2) * np.sin(np.pi * np.arange(1, TAPERS + 1)[:, None] * (np.arange(n) + 0.5) / n)
+    tapers = np.sqrt(2) * np.sin(
+        np.pi * np.arange(1, TAPERS + 1)[:, None] * (np.arange(n) + 0.5) / n
+    )
     z = np.fft.rfft((profile.heights_nm - profile.heights_nm.mean()) * tapers)
     c1 = np.mean(np.abs(z) ** 2, axis=0) * profile.step_nm**2 / (2 * np.pi * profile.length_nm)
     k = 2 * np.pi * np.fft.rfftfreq(n, profile.step_nm)
@@ -45,7 +49,8 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
 
     Returns
     -------
-    spectrum : at nodes even in log q between these; `modes` is what its error is worth, the smoothing's share of
+    spectrum : at nodes even in log q between these; `modes` is what its error is worth, the
+        smoothing's share of
         the information left out.
     """
     measured = binned_line(*line_spectrum(profile), low, high)
@@ -56,33 +61,46 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     nodes = np.log(bins[0]) + distance * np.arange(count + 15)
     heights, covariance = _solve(nodes, measured)
     keep = (nodes >= np.log(low) - 1e-9) & (nodes <= np.log(high) + 1e-9)
-    # errors of neighbouring nodes go together: sums have their error where each node has that of its row's sum
+    # errors of neighbouring nodes go together: sums have their error where each node has that of
+    # its row's sum
     apart = np.abs(nodes[keep][:, None] - nodes[keep])
     variance = np.sum(covariance[np.ix_(keep, keep)] * (apart < 0.5 * np.log(10)), axis=1)
-    # neighbouring nodes, which the smoothing ties, have together no more than the wave numbers that they lie among
+    # neighbouring nodes, which the smoothing ties, have together no more than the wave numbers that
+    # they lie among
     near = np.abs(nodes[keep][:, None] - np.log(bins)) < 0.2 * np.log(10)
-    worth = np.minimum(1 / np.maximum(variance, 1e-3), near @ modes / (apart < 0.2 * np.log(10)).sum(axis=1))
-    # error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60 lines each)
+    worth = np.minimum(
+        1 / np.maximum(variance, 1e-3), near @ modes / (apart < 0.2 * np.log(10)).sum(axis=1)
+    )
+    # error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60
+    # lines each)
     worth /= 1 + worth * 0.25**2
     nyquist = np.pi / profile.step_nm
-    return Spectrum(np.exp(nodes[keep]), np.exp(heights[keep]), worth, measured.spacing, nyquist, sharp=True)
+    return Spectrum(
+        np.exp(nodes[keep]), np.exp(heights[keep]), worth, measured.spacing, nyquist, sharp=True
+    )
 
 
 def binned_line(k: np.ndarray, c1: np.ndarray, low: float, high: float) -> Spectrum:
-    """C1 (nm^3) of a line's wave vectors k from `low` to `high` (1/nm) on bins, as the tapers spread it (`spread`)."""
+    """C1 (nm^3) of a line's wave vectors k from `low` to `high` (1/nm) on bins, as the tapers
+    spread it (`spread`).
+    """
     inside = (k >= low) & (k <= high)
     bins, modes, means = _binned(k[inside], c1[inside])
     return Spectrum(bins, means, modes, float(k[0]), float(k[-1]))
 
 
 def spread(k: np.ndarray, step: np.ndarray | float) -> np.ndarray:
-    """(2, m) wave vectors in 1/nm that stand for those over which tapers average at k (m,); `step` is 2 pi / L."""
+    """(2, m) wave vectors in 1/nm that stand for those over which tapers average at k (m,); `step`
+    is 2 pi / L.
+    """
     away = SPREAD * np.asarray(step)
     return np.stack([np.maximum(k - away, 0.1 * k), k + away])
 
 
 def projected(q: np.ndarray, psd: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """C1 (nm^3) at k (1/nm) of a spectrum given by points (q in 1/nm, C in nm^4), zero beyond the last."""
+    """C1 (nm^3) at k (1/nm) of a spectrum given by points (q in 1/nm, C in nm^4), zero beyond the
+    last.
+    """
     at, weight = _points(k, float(q[-1]))
     return np.sum(weight * np.exp(np.interp(np.log(at), np.log(q), np.log(psd))), axis=1)
 
@@ -117,7 +135,8 @@ def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarra
     # standard deviation of the change of slope times the node distance, from node to node
     bends = np.diff(np.eye(len(nodes)), 2, axis=0) / 0.35
     rise = np.diff(np.eye(len(nodes)), axis=0) / (nodes[1] - nodes[0])
-    # the logarithmic slope is -0.75 +- 1.5 where a line hardly determines it (its plateau); five nodes share one
+    # the logarithmic slope is -0.75 +- 1.5 where a line hardly determines it (its plateau); five
+    # nodes share one
     prior = bends.T @ bends + rise.T @ rise / (1.5**2 * 5)
     pull = rise.sum(axis=0) * -0.75 / (1.5**2 * 5)
     rows = np.repeat(np.arange(len(k)), at.shape[1])
@@ -154,6 +173,7 @@ def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarra
             break
     information = slope.T @ (modes[:, None] * slope) + prior
     covariance = np.linalg.inv(information + 1e-9 * np.eye(len(y)))
-    # what few modes allow is skewed: its mean is above the most likely value by 1 / 2n for n of them
+    # what few modes allow is skewed: its mean is above the most likely value by 1 / 2n for n of
+    # them
     skewed = slope.T @ (modes * np.einsum("ki,ij,kj->k", slope, covariance, slope))
     return y + 0.5 * covariance @ skewed, covariance

@@ -1,4 +1,6 @@
-"""What the analysis of one measurement leaves for the pooling of all: arrays with their units, and attributes."""
+"""What the analysis of one measurement leaves for the pooling of all: arrays with their units, and
+attributes.
+"""
 
 import math
 from collections.abc import Mapping
@@ -49,16 +51,26 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
         )
         share, skewness = alignment_effect(data, settings)
         attributes = {"length_y_nm": length_y, "pixels_y": pixels[1], "form": limits.form}
-        attributes |= {"alignment_share": share, "alignment_skewness": skewness, "treatment": limits.treatment}
+        attributes |= {
+            "alignment_share": share,
+            "alignment_skewness": skewness,
+            "treatment": limits.treatment,
+        }
         arrays["heights"] = _thinned(cleaned.heights_nm, 256)
         if cleaned.rms_nm > 0:
             arrays["quantiles"] = height_quantiles(cleaned.heights_nm)
     else:
         cleaned = clean_profile(data, settings)
-        limits, length_x, pixels = trusted_profile(cleaned, measured), data.length_nm, data.heights_nm.shape
+        limits, length_x, pixels = (
+            trusted_profile(cleaned, measured),
+            data.length_nm,
+            data.heights_nm.shape,
+        )
         arrays["profile_q"], arrays["profile_psd"] = line_spectrum(cleaned)
         arrays["line"] = _thinned(cleaned.heights_nm, 2000)
-    attributes["parabola"] = any("quadratic" in step or "parabola" in step for step in cleaned.steps)
+    attributes["parabola"] = any(
+        "quadratic" in step or "parabola" in step for step in cleaned.steps
+    )
     spectrum = limits.spectrum
     arrays |= {"q": spectrum.q, "psd": spectrum.psd, "modes": spectrum.modes}
     return arrays, attributes | {
@@ -91,15 +103,21 @@ def _thinned(heights: np.ndarray, most: int) -> np.ndarray:
     return heights[(slice(None, None, stride),) * heights.ndim].astype(np.float32)
 
 
-def in_order(arrays: Mapping[str, Arrays], attributes: Mapping[str, Mapping[str, Any]]) -> dict[str, Arrays]:
+def in_order(
+    arrays: Mapping[str, Arrays], attributes: Mapping[str, Mapping[str, Any]]
+) -> dict[str, Arrays]:
     """Records from the smallest measurement to the largest, as `pool` takes them."""
-    return dict(sorted(arrays.items(), key=lambda item: (attributes[item[0]]["length_x_nm"], item[0])))
+    return dict(
+        sorted(arrays.items(), key=lambda item: (attributes[item[0]]["length_x_nm"], item[0]))
+    )
 
 
 def copies(
     arrays: Mapping[str, Mapping[str, np.ndarray]], attributes: Mapping[str, Mapping[str, Any]]
 ) -> dict[str, str]:
-    """Measurements of files of the same bytes that hold what an earlier one holds, with the name of that."""
+    """Measurements of files of the same bytes that hold what an earlier one holds, with the name of
+    that.
+    """
     first: dict[tuple[str, bytes], str] = {}
     alike = {}
     for name, data in arrays.items():
@@ -109,18 +127,25 @@ def copies(
     return alike
 
 
-def trusted_record(name: str, arrays: Mapping[str, np.ndarray], attributes: Mapping[str, Any]) -> TrustedSpectrum:
+def trusted_record(
+    name: str, arrays: Mapping[str, np.ndarray], attributes: Mapping[str, Any]
+) -> TrustedSpectrum:
     """Spectrum and trusted range of a recorded measurement."""
     line = is_profile(attributes)
     ends = attributes["spacing"], attributes["nyquist"]
     spectrum = Spectrum(arrays["q"], arrays["psd"], arrays["modes"], *ends, sharp=line)
     low, high, radius, rms, reach = (
-        float(attributes[key]) for key in ("trusted_low", "trusted_high", "tip_radius_nm", "unfiltered_rms_nm", "reach")
+        float(attributes[key])
+        for key in ("trusted_low", "trusted_high", "tip_radius_nm", "unfiltered_rms_nm", "reach")
     )
-    result = TrustedSpectrum(name, spectrum, low, high, str(attributes["limit"]), radius, rms, reach)
+    result = TrustedSpectrum(
+        name, spectrum, low, high, str(attributes["limit"]), radius, rms, reach
+    )
     result = replace(result, parabola=bool(attributes["parabola"]))
     if line:
-        return replace(result, line=binned_line(arrays["profile_q"], arrays["profile_psd"], low, high))
+        return replace(
+            result, line=binned_line(arrays["profile_q"], arrays["profile_psd"], low, high)
+        )
     side = float(np.sqrt(attributes["length_x_nm"] * attributes["length_y_nm"]))
     return replace(result, side_nm=side, form=float(attributes["form"]))
 
@@ -132,4 +157,7 @@ def is_profile(attributes: Mapping[str, Any]) -> bool:
 
 def longest_nm(attributes: Mapping[str, Mapping[str, Any]]) -> float:
     """Side of the largest map, or length of a longer line."""
-    return max(min(values["length_x_nm"], values.get("length_y_nm", math.inf)) for values in attributes.values())
+    return max(
+        min(values["length_x_nm"], values.get("length_y_nm", math.inf))
+        for values in attributes.values()
+    )

@@ -55,26 +55,32 @@ class RoughSpectrum:
 
     @property
     def rms_slope(self) -> float:
-        """RMS gradient of the heights; above about 1 a single-valued height map is hard to believe."""
-        gradient = self.q0**4 / 4 + self.q0**self.slope * _power_integral(3 - self.slope, self.q0, self.q1)
+        """RMS gradient of the heights; above about 1 a single-valued height map is hard to
+        believe.
+        """
+        gradient = self.q0**4 / 4 + self.q0**self.slope * _power_integral(
+            3 - self.slope, self.q0, self.q1
+        )
         return float(np.sqrt(2 * np.pi * self.plateau * gradient))
 
 
 class SpectrumTable:
-    """A spectrum given by points, for instance a measured one: straight between them in log q and log C.
+    """A spectrum given by points, for instance a measured one: straight between them in log q and
+    log C.
 
     Below the first point it stays at the first value, above the last it is zero.
 
     Parameters
     ----------
-    q, psd : (m,) wave vectors (1/nm) and C (nm^4), at least two points of positive values in rising order of q.
-    """
+    q, psd : (m,) wave vectors (1/nm) and C (nm^4), at least two points of positive values in rising
+        order of q."""
 
     def __init__(self, q: Sequence[float] | np.ndarray, psd: Sequence[float] | np.ndarray):
         self.q, self.values = np.asarray(q, dtype=float), np.asarray(psd, dtype=float)
         if self.q.ndim != 1 or len(self.q) < 2 or self.q.shape != self.values.shape:
             raise InputError(
-                "spectrum: accepted are two lists of one length, q (1/nm) and C (nm^4), of two values or more"
+                "spectrum: accepted are two lists of one length, q (1/nm) and C (nm^4), of two"
+                " values or more"
             )
         finite = np.isfinite(self.q).all() and np.isfinite(self.values).all()
         if not finite or self.q[0] <= 0 or np.any(np.diff(self.q) <= 0) or np.any(self.values <= 0):
@@ -87,7 +93,9 @@ class SpectrumTable:
         return np.where(q <= self.q[-1], values, 0.0)
 
     def scaled(self, rms_nm: float, q1: float) -> "SpectrumTable":
-        """The same shape for an RMS height that the integral of 2 pi q C(q) from zero to q1 gives."""
+        """The same shape for an RMS height that the integral of 2 pi q C(q) from zero to q1
+        gives.
+        """
         return SpectrumTable(self.q, self.values * rms_nm**2 / self.mean_square(q1))
 
     def mean_square(self, q1: float) -> float:

@@ -1,9 +1,10 @@
-"""Power spectral density of scans: equations 7 and 8 of the paper, sections, windows, radial averages.
+"""Power spectral density of scans: equations 7 and 8 of the paper, sections, windows, radial
+averages.
 
-All spectra are two-dimensional, C(q) in nm^4, normalised so that the sum of C (2 pi / L)^2 over all wave
-vectors is the mean square height (Parseval).  Averaging C over directions gives the isotropic spectrum;
-its slope is the physical quantity from which either convention of the Hurst exponent follows.
-"""
+All spectra are two-dimensional, C(q) in nm^4, normalised so that the sum of C (2 pi / L)^2 over all
+wave vectors is the mean square height (Parseval).  Averaging C over directions gives the isotropic
+spectrum; its slope is the physical quantity from which either convention of the Hurst exponent
+follows."""
 
 from dataclasses import dataclass, replace
 
@@ -23,7 +24,8 @@ class Spectrum:
     ----------
     q : (m,) mean wave vector of each shell, 1/nm.
     psd : (m,) mean of C over the shell, nm^4.
-    modes : (m,) number of independent complex amplitudes behind each mean (not an integer: overlapping
+    modes : (m,) number of independent complex amplitudes behind each mean (not an integer:
+        overlapping
         sections and windows count for the area they really cover).
     spacing : width of a shell, 1/nm.
     nyquist : largest wave vector that the pixels resolve along both axes, 1/nm.
@@ -39,7 +41,8 @@ class Spectrum:
 
 
 def flat_window(n: int, flat: float) -> np.ndarray:
-    """Window of n points, one over the central share `flat`, falling to zero as a half cosine at the ends.
+    """Window of n points, one over the central share `flat`, falling to zero as a half cosine at
+    the ends.
 
     `flat = 0` is the Hann window.
     """
@@ -48,7 +51,9 @@ def flat_window(n: int, flat: float) -> np.ndarray:
     edge = (1 - flat) / 2
     if edge <= 0:
         return np.ones(n)
-    return np.where(distance >= edge, 1.0, 0.5 * (1 - np.cos(np.pi * np.minimum(distance / edge, 1))))
+    return np.where(
+        distance >= edge, 1.0, 0.5 * (1 - np.cos(np.pi * np.minimum(distance / edge, 1)))
+    )
 
 
 def section_starts(pixels: int, section: int, count: int) -> np.ndarray:
@@ -65,10 +70,11 @@ def section_pixels(pixels: int, fraction: float) -> int:
 def hann_spectrum(cleaned: Scan, sections: int = 25, flat: float = 0.0) -> Spectrum:
     """The spectrum of a cleaned scan that the fits use, without what line offsets disturb.
 
-    Sections have the paper's side (section 4.2). With a Hann window they overlap more than its 100 nearly flat ones:
-    more than 25 add nothing.
-    """
-    return radial_spectrum(cleaned.heights_nm, cleaned.lengths_nm, sections, 0.75, flat, skip_lines=True)
+    Sections have the paper's side (section 4.2). With a Hann window they overlap more than its 100
+    nearly flat ones: more than 25 add nothing."""
+    return radial_spectrum(
+        cleaned.heights_nm, cleaned.lengths_nm, sections, 0.75, flat, skip_lines=True
+    )
 
 
 def radial_spectrum(
@@ -88,7 +94,8 @@ def radial_spectrum(
     fraction : side of a section over side of the scan.
     flat : flat share of the window; 0.99 is the paper's, 0 the Hann window, whose side lobes do not
         cover steep spectra.
-    skip_lines : leave out the two lowest wave numbers along the fast direction, where offsets between
+    skip_lines : leave out the two lowest wave numbers along the fast direction, where offsets
+        between
         scan lines (and their alignment) act.
     """
     nx, ny = heights.shape
@@ -130,7 +137,9 @@ def radial_spectrum(
         mean_q = (np.bincount(index, weight * q[inside], count + 1)[1:] / modes)[known]
         mean_psd = (np.bincount(index, weight * psd[inside], count + 1)[1:] / modes)[known]
     area = _covered(nx, xs, wx) / mx * _covered(ny, ys, wy) / my
-    return Spectrum(mean_q, np.maximum(mean_psd, FLOOR), modes[known] * area, float(spacing), float(nyquist))
+    return Spectrum(
+        mean_q, np.maximum(mean_psd, FLOOR), modes[known] * area, float(spacing), float(nyquist)
+    )
 
 
 def _covered(pixels: int, starts: np.ndarray, window: np.ndarray) -> float:

@@ -15,7 +15,9 @@ from mesoscale.topography.roughness_spectrum import hurst_from_slope
 
 
 def measurement_lines(content: Mapping[str, Any]) -> Iterator[str]:
-    """What each measurement shows, as lines of a table; `content` is that of topography/parameters.json."""
+    """What each measurement shows, as lines of a table; `content` is that of
+    topography/parameters.json.
+    """
     heads = ("measurement", "size (nm)", "points", "RMS (nm)", "trusted q (1/nm)", "ends by")
     rows = [heads, *(_cells(row) for row in content["scans"])]
     widths = [max(len(row[k]) for row in rows) for k in range(len(heads))]
@@ -28,7 +30,14 @@ def _cells(row: Mapping[str, Any]) -> tuple[str, ...]:
     if len(name) > longest:  # so that the table fits on 80 columns
         name = f"{name[: longest // 2 - 1]}…{name[-longest // 2 :]}"
     pixels = row["pixels"].replace(" ", "")
-    return name, f"{row['length_nm']:.4g}", pixels, f"{row['rms_heights_nm']:.3g}", ends, row["limit"]
+    return (
+        name,
+        f"{row['length_nm']:.4g}",
+        pixels,
+        f"{row['rms_heights_nm']:.3g}",
+        ends,
+        row["limit"],
+    )
 
 
 def doubt_lines(content: Mapping[str, Any]) -> Iterator[str]:
@@ -45,8 +54,12 @@ def _scan(item: TrustedSpectrum, loaded: Mapping[str, Any]) -> dict[str, Any]:
         "name": item.name,
         "file": loaded["file"],
         "sha256": loaded["sha256"],
-        "length_nm": loaded["length_x_nm"] if line else min(loaded["length_x_nm"], loaded["length_y_nm"]),
-        "pixels": f"{loaded['pixels_x']}" if line else f"{loaded['pixels_x']} x {loaded['pixels_y']}",
+        "length_nm": loaded["length_x_nm"]
+        if line
+        else min(loaded["length_x_nm"], loaded["length_y_nm"]),
+        "pixels": f"{loaded['pixels_x']}"
+        if line
+        else f"{loaded['pixels_x']} x {loaded['pixels_y']}",
         "rms_heights_nm": loaded["rms_nm"],
         "trusted_low": item.low,
         "trusted_high": item.high,
@@ -85,7 +98,8 @@ def parameters(
             else "eq. 9, for comparison; inputs have the measured spectrum, in cells of cell_nm"
         ),
         "estimates": {
-            name: {**estimate.plain(), "unit": units[name]} for name, estimate in topography.estimates.items()
+            name: {**estimate.plain(), "unit": units[name]}
+            for name, estimate in topography.estimates.items()
         },
         "q1": {"value": topography.q1, "unit": "1/nm", "instrument_limited": topography.q1_limited},
         "likelihood": _likelihood(topography.likelihood, topography.cutoff),
@@ -114,9 +128,22 @@ def parameters(
 def _likelihood(fitted: LikelihoodFit | None, cutoff: float) -> dict[str, Any] | None:
     if fitted is None:
         return None
-    names = ("q0", "slope", "covariance", "amplitude_sd", "dispersion", "misfit", "plateau_gain", "power_gain")
+    names = (
+        "q0",
+        "slope",
+        "covariance",
+        "amplitude_sd",
+        "dispersion",
+        "misfit",
+        "plateau_gain",
+        "power_gain",
+    )
     spectrum = fitted.spectrum(cutoff)
-    roughness = {"plateau_nm4": fitted.plateau, "rms_nm": spectrum.rms_nm, "rms_slope": spectrum.rms_slope}
+    roughness = {
+        "plateau_nm4": fitted.plateau,
+        "rms_nm": spectrum.rms_nm,
+        "rms_slope": spectrum.rms_slope,
+    }
     return roughness | {name: getattr(fitted, name) for name in names}
 
 

@@ -61,32 +61,40 @@ def synthesize(
     # (q/q0)^(-s/2) for q > q0, as exp/log: NumPy has fast vector code for these but not for power
     decay = np.log(squared * (step / q0) ** 2)
     np.exp(
-        np.minimum(decay, np.inf, out=decay).clip(min=0.0) * (-0.25 * slope_from_hurst(hurst, convention)),
+        np.minimum(decay, np.inf, out=decay).clip(min=0.0)
+        * (-0.25 * slope_from_hurst(hurst, convention)),
         out=amplitude[1:],
     )
     return filtered_noise(pixels, amplitude, rms, seed)
 
 
 def synthesize_spectrum(
-    pixels: int, length_nm: float, psd: Callable[[Array], Array], rms: float, seed: int, q1: float | None = None
+    pixels: int,
+    length_nm: float,
+    psd: Callable[[Array], Array],
+    rms: float,
+    seed: int,
+    q1: float | None = None,
 ) -> Array:
     """Periodic Gaussian surface with the shape of any isotropic spectrum C(q), nm^4 at q in 1/nm.
 
-    `RoughSpectrum.psd` and `SpectrumTable.psd` are such functions, their sum the spectrum of two rough surfaces.
-    The rest is as in `synthesize`; the same seed gives the same noise.
-    """
+    `RoughSpectrum.psd` and `SpectrumTable.psd` are such functions, their sum the spectrum of two
+    rough surfaces. The rest is as in `synthesize`; the same seed gives the same noise."""
     squared, step = squared_waves(pixels, length_nm, q1)
     amplitude = np.concatenate([[0.0], np.sqrt(psd(step * np.sqrt(squared)))])
     if not np.isfinite(amplitude).all() or not amplitude.any():
         raise InputError(
-            f"the spectrum has no power on a surface of {length_nm:g} nm with {pixels} pixels a side; accepted are "
-            f"spectra that reach between {step:g} and {np.pi * pixels / length_nm:g} 1/nm"
+            f"the spectrum has no power on a surface of {length_nm:g} nm with {pixels} pixels a"
+            f" side; accepted are spectra that reach between {step:g} and"
+            f" {np.pi * pixels / length_nm:g} 1/nm"
         )
     return filtered_noise(pixels, amplitude, rms, seed)
 
 
 def squared_waves(pixels: int, length_nm: float, q1: float | None) -> tuple[Array, float]:
-    """Squared wave numbers 1, 2, ... up to the cut-off, and the wave vector of wave number 1 (1/nm)."""
+    """Squared wave numbers 1, 2, ... up to the cut-off, and the wave vector of wave number 1
+    (1/nm).
+    """
     check_number("length_nm", length_nm, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
     if isinstance(pixels, bool) or not isinstance(pixels, Integral) or pixels < 3:
         raise InputError(f"pixels = {pixels!r}: accepted is a whole number >= 3")
@@ -103,12 +111,16 @@ def squared_waves(pixels: int, length_nm: float, q1: float | None) -> tuple[Arra
 
 
 def filtered_noise(pixels: int, amplitude: Array, rms: float, seed: int) -> Array:
-    """The surface whose waves of squared wave number n have noise times `amplitude[n]`, scaled to `rms`."""
+    """The surface whose waves of squared wave number n have noise times `amplitude[n]`, scaled to
+    `rms`.
+    """
     check_seed(seed)
     check_number("rms", rms, 1e-5, 1e6, "nm", zero=True)
     highest = (pixels - 1) // 2
     modes = 2 * highest * (highest + 1)
-    normals = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed))).standard_normal(2 * modes)
+    normals = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed))).standard_normal(
+        2 * modes
+    )
     spectrum = np.zeros((pixels, pixels // 2 + 1), dtype=complex)
     power = _fill_spectrum(spectrum, normals, amplitude, highest)
     spectrum *= rms * pixels**2 / np.sqrt(power)

@@ -1,4 +1,6 @@
-"""A synthetic AFM: surfaces of known spectrum, scanned with tip, noise, tilt, drift and digital steps."""
+"""A synthetic AFM: surfaces of known spectrum, scanned with tip, noise, tilt, drift and digital
+steps.
+"""
 
 import math
 from collections.abc import Iterator
@@ -14,7 +16,9 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum
 
 
 class ScanSet(SyntheticScanSettings):
-    """A set of synthetic scans: what a scene says of them, and what is fixed, the surface and the artefacts."""
+    """A set of synthetic scans: what a scene says of them, and what is fixed, the surface and the
+    artefacts.
+    """
 
     seed: int = 1
     small_length_nm: float = 1000.0
@@ -23,7 +27,9 @@ class ScanSet(SyntheticScanSettings):
     q1: float = Field(default=3.2, description="1/nm, end of the power law")
     slope: float = Field(default=2.84, description="C ~ q^-slope, the paper's H of 0.92 as 2H+1")
     rms_nm: float = Field(default=6.0, description="of a typical place")
-    rms_variation: float = Field(default=0.4, description="standard deviation of ln RMS; the paper has 1.8 to 14 nm")
+    rms_variation: float = Field(
+        default=0.4, description="standard deviation of ln RMS; the paper has 1.8 to 14 nm"
+    )
     tip_radius_nm: float = Field(default=5.0, description="of a paraboloid")
     noise_nm: float = Field(default=0.03, description="white, of each pixel")
     line_noise_nm: float = Field(default=0.3, description="random offset of each scan line")
@@ -48,24 +54,31 @@ def synthetic_scans(settings: ScanSet) -> Iterator[SyntheticScan]:
     ):
         for number in range(count):
             key = 0 if size == "small" else 1
-            rng = np.random.default_rng(np.random.SeedSequence(settings.seed, spawn_key=(key, number)))
+            rng = np.random.default_rng(
+                np.random.SeedSequence(settings.seed, spawn_key=(key, number))
+            )
             rms = settings.rms_nm * math.exp(settings.rms_variation * rng.standard_normal())
             truth = RoughSpectrum.from_rms(rms, settings.q0, settings.slope, settings.q1)
             # the tip meets the surface on pixels of 5 nm, or twice as fine as the scan's
             finer = 2 if settings.tip_radius_nm > 0 and length / settings.pixels > 5.0 else 1
             surface = surface_patch(truth, finer * settings.pixels, length, rng)
-            surface = dilate(surface, settings.tip_radius_nm, length / len(surface))[::finer, ::finer]
+            surface = dilate(surface, settings.tip_radius_nm, length / len(surface))[
+                ::finer, ::finer
+            ]
             name = f"{size}_{number + 1:02d}"
             yield SyntheticScan(measure(surface, length, settings, rng, name), truth)
 
 
-def surface_patch(truth: RoughSpectrum, pixels: int, length_nm: float, rng: np.random.Generator) -> np.ndarray:
+def surface_patch(
+    truth: RoughSpectrum, pixels: int, length_nm: float, rng: np.random.Generator
+) -> np.ndarray:
     """Heights (pixels, pixels) in nm of a Gaussian surface sampled at points, not periodic.
 
-    The spectrum is folded at the Nyquist wave vector as point sampling folds it, so that a coarse scan of a
-    surface that is rough below its pixels is exact, RMS included.
-    """
-    wanted = math.ceil(1.25 * pixels)  # the periodic surface is larger, so that scans are not periodic
+    The spectrum is folded at the Nyquist wave vector as point sampling folds it, so that a coarse
+    scan of a surface that is rough below its pixels is exact, RMS included."""
+    wanted = math.ceil(
+        1.25 * pixels
+    )  # the periodic surface is larger, so that scans are not periodic
     n = scipy.fft.next_fast_len(wanted, True) or wanted
     step = length_nm / pixels
     qx = 2 * np.pi * np.fft.fftfreq(n, step)
@@ -76,7 +89,9 @@ def surface_patch(truth: RoughSpectrum, pixels: int, length_nm: float, rng: np.r
     return surface[:pixels, :pixels]
 
 
-def _folded_psd(truth: RoughSpectrum, qx: np.ndarray, qy: np.ndarray, sampling: float) -> np.ndarray:
+def _folded_psd(
+    truth: RoughSpectrum, qx: np.ndarray, qy: np.ndarray, sampling: float
+) -> np.ndarray:
     """Sum of C over the images of each wave vector at multiples of the sampling wave vector."""
     images = min(12, math.ceil(truth.q1 / sampling + 0.5))
     # the images vary slowly over the grid: a coarse one and linear interpolation do
@@ -85,9 +100,13 @@ def _folded_psd(truth: RoughSpectrum, qx: np.ndarray, qy: np.ndarray, sampling: 
     for i in range(-images, images + 1):
         for j in range(-images, images + 1):
             if (i, j) != (0, 0):
-                far += truth.psd(np.hypot(nodes[:, None] + i * sampling, nodes[None, :] + j * sampling))
+                far += truth.psd(
+                    np.hypot(nodes[:, None] + i * sampling, nodes[None, :] + j * sampling)
+                )
     unit = np.eye(33)
-    along_x, along_y = (np.stack([np.interp(q, nodes, row) for row in unit], axis=1) for q in (qx, qy))
+    along_x, along_y = (
+        np.stack([np.interp(q, nodes, row) for row in unit], axis=1) for q in (qx, qy)
+    )
     return truth.psd(np.hypot(qx[:, None], qy[None, :])) + along_x @ far @ along_y.T
 
 
@@ -98,14 +117,18 @@ def measure(
     rng: np.random.Generator,
     name: str,
 ) -> Scan:
-    """Scan what the tip traces (pixels, pixels; nm): tilt, drift, line offsets, noise, digital steps."""
+    """Scan what the tip traces (pixels, pixels; nm): tilt, drift, line offsets, noise, digital
+    steps.
+    """
     pixels = surface.shape[0]
     position = np.linspace(-0.5, 0.5, pixels)
     tilt = np.tan(np.radians(settings.tilt_deg * rng.uniform(-1, 1, 2))) * length_nm
     heights = surface + tilt[0] * position[:, None] + tilt[1] * position[None, :]
     # drift acts in time, that is along the slow axis: a smooth curve of three random cosines
     phases = rng.uniform(0, 2 * np.pi, 3)
-    drift = sum(np.cos(np.pi * (k + 1) * position + phase) / (k + 1) for k, phase in enumerate(phases))
+    drift = sum(
+        np.cos(np.pi * (k + 1) * position + phase) / (k + 1) for k, phase in enumerate(phases)
+    )
     heights += settings.drift_nm / 2 * np.asarray(drift)[None, :]
     heights += settings.line_noise_nm * rng.standard_normal(pixels)[None, :]
     heights += settings.noise_nm * rng.standard_normal((pixels, pixels))
@@ -117,8 +140,8 @@ def measure(
 def dilate(surface: np.ndarray, tip_radius_nm: float, step_nm: float) -> np.ndarray:
     """What a paraboloidal tip of the given radius traces: max over u of h(x+u) - u^2 / 2R.
 
-    A paraboloid separates into one pass per axis. What lies below the pixels does not touch the tip.
-    """
+    A paraboloid separates into one pass per axis. What lies below the pixels does not touch the
+    tip."""
     if tip_radius_nm <= 0:
         return surface.copy()
     reach = math.sqrt(2 * tip_radius_nm * np.ptp(surface)) / step_nm

@@ -1,9 +1,9 @@
 """Regression of outputs of which some are known only to lie below zero.
 
-The likelihood of Tobin (Econometrica 26, 24, 1958, doi 10.2307/1907382): a normal density for each known value, the
-probability of lying below zero for each other one. It is concave in the coefficients over the scatter and in one over
-the scatter (Olsen, Econometrica 46, 1211, 1978, doi 10.2307/1911445), so it has one maximum.
-"""
+The likelihood of Tobin (Econometrica 26, 24, 1958, doi 10.2307/1907382): a normal density for each
+known value, the probability of lying below zero for each other one. It is concave in the
+coefficients over the scatter and in one over the scatter (Olsen, Econometrica 46, 1211, 1978, doi
+10.2307/1911445), so it has one maximum."""
 
 from dataclasses import dataclass
 
@@ -32,9 +32,10 @@ class Censored:
     Attributes
     ----------
     coefficients, covariance : of the terms, and their error, shapes (t,) and (t, t).
-    scatter : standard deviation about them; each term takes one of the known values, as in least squares.
-    values : known ones, and the expected ones of the others, shape (m,); least squares of these give the coefficients.
-    """
+    scatter : standard deviation about them; each term takes one of the known values, as in least
+        squares.
+    values : known ones, and the expected ones of the others, shape (m,); least squares of these
+        give the coefficients."""
 
     coefficients: Array
     covariance: Array
@@ -42,7 +43,9 @@ class Censored:
     values: Array
 
 
-def censored_chaos(x: Array, y: Array, below: NDArray[np.bool_], ranges: Array) -> tuple[Surrogate, float]:
+def censored_chaos(
+    x: Array, y: Array, below: NDArray[np.bool_], ranges: Array
+) -> tuple[Surrogate, float]:
     """Sparse Legendre expansion up to degree 2, and the standard deviation about it.
 
     Terms are selected once, from values that a linear fit expects in place of the unknown ones.
@@ -98,12 +101,16 @@ def most_likely(matrix: Array, y: Array, below: NDArray[np.bool_]) -> Censored:
 
 
 def _hazard(z: Array) -> Array:
-    """Normal density over distribution at z: how far below -z, in deviations, values below it are on average."""
+    """Normal density over distribution at z: how far below -z, in deviations, values below it are
+    on average.
+    """
     return np.exp(-0.5 * z**2 - 0.5 * np.log(2 * np.pi) - log_ndtr(z))
 
 
 def _maximum(known: Array, unknown: Array, values: Array) -> tuple[Array, float]:
-    """Most likely coefficients over the scatter, and one over the scatter, by the terms of known and unknown values."""
+    """Most likely coefficients over the scatter, and one over the scatter, by the terms of known
+    and unknown values.
+    """
     from scipy.optimize import minimize  # slow to import
 
     count = len(values)
@@ -118,7 +125,9 @@ def _maximum(known: Array, unknown: Array, values: Array) -> tuple[Array, float]
         smooth = 0.5 * count * (LEAST_SCATTER * precision) ** 2
         value = 0.5 * misfit @ misfit - log_ndtr(margin).sum() - count * np.log(precision) + smooth
         slope = -known.T @ misfit + unknown.T @ _hazard(margin)
-        slope_of_precision = values @ misfit - count / precision + count * LEAST_SCATTER**2 * precision
+        slope_of_precision = (
+            values @ misfit - count / precision + count * LEAST_SCATTER**2 * precision
+        )
         return float(value), np.append(slope, slope_of_precision)
 
     def curvature(point: Array) -> Array:
@@ -136,7 +145,7 @@ def _maximum(known: Array, unknown: Array, values: Array) -> tuple[Array, float]
     best = minimize(cost, start, jac=True, hess=curvature, method="trust-exact", options=options)
     if not best.success:
         raise InputError(
-            f"pad.points: the fit of {count} voltages beside {len(unknown)} switches that stick did not settle in "
-            f"{best.nit} steps; raise pad.points, or narrow the inputs"
+            f"pad.points: the fit of {count} voltages beside {len(unknown)} switches that stick did"
+            f" not settle in {best.nit} steps; raise pad.points, or narrow the inputs"
         )
     return best.x[:-1], float(best.x[-1])

@@ -3,9 +3,13 @@
 from mesoscale.settings import UncertaintySettings
 
 CHUNK_RUNS = 200
-"""Contact cycles per job and file: jobs of some seconds to minutes, of which an interruption loses one."""
+"""Contact cycles per job and file: jobs of some seconds to minutes, of which an interruption loses
+one.
+"""
 MOST_REPEATED = 100
-"""Direct runs that are repeated on a second surface: they tell scatter between surfaces from what inputs explain."""
+"""Direct runs that are repeated on a second surface: they tell scatter between surfaces from what
+inputs explain.
+"""
 
 
 def collocation_run_count(inputs: int, settings: UncertaintySettings) -> int:
@@ -20,5 +24,7 @@ def chunk_bounds(runs: int, chunk_runs: int = CHUNK_RUNS) -> dict[str, tuple[int
 
 
 def full_chunks(runs: int) -> dict[str, tuple[int, int]]:
-    """As `chunk_bounds`, the last of several chunks filled up, so that more runs leave every chunk as it is."""
+    """As `chunk_bounds`, the last of several chunks filled up, so that more runs leave every chunk
+    as it is.
+    """
     return chunk_bounds(runs if runs <= CHUNK_RUNS else -(-runs // CHUNK_RUNS) * CHUNK_RUNS)

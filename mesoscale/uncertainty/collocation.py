@@ -1,4 +1,6 @@
-"""The paper's sparse-grid collocation of level 1: its nodes, its linear response and its elementary effects."""
+"""The paper's sparse-grid collocation of level 1: its nodes, its linear response and its elementary
+effects.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,14 +11,18 @@ Array = NDArray[np.float64]
 
 
 def nodes(inputs: int) -> Array:
-    """Nodes in [-1, 1]^n, shape (2n + 1, n); row 0 is the centre, rows 2k+1, 2k+2 the ends of axis k."""
+    """Nodes in [-1, 1]^n, shape (2n + 1, n); row 0 is the centre, rows 2k+1, 2k+2 the ends of axis
+    k.
+    """
     rows, axes = np.zeros((2 * inputs + 1, inputs)), np.arange(inputs)
     rows[2 * axes + 1, axes], rows[2 * axes + 2, axes] = -1.0, 1.0
     return rows
 
 
 def to_values(u: Array, ranges: Array) -> Array:
-    """Scaled points (m, n) in [-1, 1] to values of the inputs; the centre is the middle of each range."""
+    """Scaled points (m, n) in [-1, 1] to values of the inputs; the centre is the middle of each
+    range.
+    """
     low, high = ranges[:, 0], ranges[:, 1]
     return low + (u + 1) / 2 * (high - low)
 
@@ -39,8 +45,9 @@ def level1_response(y: Array, ranges: Array) -> Surrogate:
 
 
 def elementary_effects(y: Array) -> Array:
-    """mu* per input, shape (n,): mean size of the elementary effects between neighbouring nodes, inputs on [0, 1].
+    """mu* per input, shape (n,): mean size of the elementary effects between neighbouring nodes,
+    inputs on [0, 1].
 
-    With the nodes y0 in the middle, y1 and y2 at the ends, half the range apart: mu* = abs(y0 - y1) + abs(y2 - y0).
-    """
+    With the nodes y0 in the middle, y1 and y2 at the ends, half the range apart: mu* = abs(y0 - y1)
+    + abs(y2 - y0)."""
     return np.abs(y[0] - y[1::2]) + np.abs(y[2::2] - y[0])

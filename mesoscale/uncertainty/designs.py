@@ -50,7 +50,11 @@ def collocation_runs(table: InputTable, first: int, last: int) -> list[Run]:
 
 
 def random_runs(
-    table: InputTable, first: int, last: int, seed: int = SAMPLE_SEED, first_surface: int = FIRST_RANDOM_SEED
+    table: InputTable,
+    first: int,
+    last: int,
+    seed: int = SAMPLE_SEED,
+    first_surface: int = FIRST_RANDOM_SEED,
 ) -> list[Run]:
     """Direct runs first .. last-1: every run has its own inputs and its own surface."""
     units = [

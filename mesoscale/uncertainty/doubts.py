@@ -1,4 +1,6 @@
-"""Which outputs of the law are not to be trusted: those that responses explain too little, or against physics."""
+"""Which outputs of the law are not to be trusted: those that responses explain too little, or
+against physics.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -20,11 +22,14 @@ SHARES = np.array([0.1, 0.25, 0.5, 1.0])
 """Of the largest pressure of the fits, at which curves are compared."""
 
 
-def explained(first: Array, second: Array, predicted: Array, rng: np.random.Generator) -> dict[str, Any]:
-    """What a response explains of what the inputs can explain, by runs at equal inputs on two surfaces each.
+def explained(
+    first: Array, second: Array, predicted: Array, rng: np.random.Generator
+) -> dict[str, Any]:
+    """What a response explains of what the inputs can explain, by runs at equal inputs on two
+    surfaces each.
 
-    The covariance of a pair about the mean is the variance that the inputs explain; about the prediction it is the
-    mean square error of the response. Scatter between surfaces is in neither.
+    The covariance of a pair about the mean is the variance that the inputs explain; about the
+    prediction it is the mean square error of the response. Scatter between surfaces is in neither.
 
     Parameters
     ----------
@@ -38,20 +43,29 @@ def explained(first: Array, second: Array, predicted: Array, rng: np.random.Gene
     explicables, wrongs = explicable[picks].mean(axis=1), wrong[picks].mean(axis=1)
     known = np.quantile(explicables, 0.05) > 0.0
     shares = 1.0 - wrongs / np.where(explicables > 0.0, explicables, np.nan)
-    row: dict[str, Any] = {"surface_share": 1.0 - explicable.mean() / variance if variance > 0 else np.nan, "doubt": ""}
+    row: dict[str, Any] = {
+        "surface_share": 1.0 - explicable.mean() / variance if variance > 0 else np.nan,
+        "doubt": "",
+    }
     row["explained"] = 1.0 - wrong.mean() / explicable.mean() if known else np.nan
     if not known:
-        row["doubt"] = f"nothing but scatter between surfaces is seen in {len(first)} pairs at equal inputs"
+        row["doubt"] = (
+            f"nothing but scatter between surfaces is seen in {len(first)} pairs at equal inputs"
+        )
     elif np.nanquantile(shares, 0.95) < 0.8:  # of runs left out; less than it with 95 % fails
-        row["doubt"] = f"the response explains {max(row['explained'], 0.0):.0%} of what the inputs explain"
+        row["doubt"] = (
+            f"the response explains {max(row['explained'], 0.0):.0%} of what the inputs explain"
+        )
     return row
 
 
-def against_physics(responses: Sequence[Response | None], table: InputTable, most_GPa: float) -> dict[str, str]:
+def against_physics(
+    responses: Sequence[Response | None], table: InputTable, most_GPa: float
+) -> dict[str, str]:
     """Outputs whose response contradicts physics, by name, each with a line that says how.
 
-    On closing, the repulsion at equal separation rises with E* and hardness, and the attraction goes with the Hamaker
-    constant. At equal separation opening presses no harder than closing.
+    On closing, the repulsion at equal separation rises with E* and hardness, and the attraction
+    goes with the Hamaker constant. At equal separation opening presses no harder than closing.
 
     Parameters
     ----------
@@ -63,7 +77,12 @@ def against_physics(responses: Sequence[Response | None], table: InputTable, mos
     low, high = (table.ranges()[:, k] for k in (0, 1))
     base = np.clip(base, low, high)
     reasons = {}
-    for name, symbol in {"e_star": "E*", "h_macro": "H_macro", "h_prime": "H′", "h_film": "H_film"}.items():
+    for name, symbol in {
+        "e_star": "E*",
+        "h_macro": "H_macro",
+        "h_prime": "H′",
+        "h_film": "H_film",
+    }.items():
         if name not in table.names:
             continue
         k = table.names.index(name)
@@ -75,19 +94,29 @@ def against_physics(responses: Sequence[Response | None], table: InputTable, mos
         course = np.array([_repulsion(law, at).mean(axis=0) for law in laws]) / (SHARES * most_GPa)
         fall = float((np.maximum.accumulate(course) - course).max())
         if fall > TOLERANCE:
-            line = f"on closing, the pressure at equal separation falls by {fall:.0%} where {symbol} rises"
+            line = (
+                f"on closing, the pressure at equal separation falls by {fall:.0%} where {symbol}"
+                " rises"
+            )
             reasons |= {"C_r_GPa": line, "rho_r_nm": line}
     if "hamaker" in table.names and high[k := table.names.index("hamaker")] > low[k]:
-        least, most = (evaluate(responses, _moved(base, k, end[k]))[:, CLOSING][:, 1].mean() for end in (low, high))
+        least, most = (
+            evaluate(responses, _moved(base, k, end[k]))[:, CLOSING][:, 1].mean()
+            for end in (low, high)
+        )
         rise, due = most / least - 1.0, high[k] / low[k] - 1.0
         if abs((1.0 + rise) / (1.0 + due) - 1.0) > TOLERANCE:
-            reasons["C_a_GPa_nm"] = f"it changes by {rise:.0%} where the Hamaker constant rises by {due:.0%}"
+            reasons["C_a_GPa_nm"] = (
+                f"it changes by {rise:.0%} where the Hamaker constant rises by {due:.0%}"
+            )
     both = evaluate(responses, base)
     closing, opening = both[:, CLOSING], both[:, OPENING]
     at = _separations(closing, most_GPa)
     harder = (_repulsion(opening, at) > (1.0 + TOLERANCE) * SHARES * most_GPa).any(axis=1).mean()
     if harder > TOLERANCE:
-        line = f"opening presses harder than closing at equal separation at {harder:.0%} of the inputs"
+        line = (
+            f"opening presses harder than closing at equal separation at {harder:.0%} of the inputs"
+        )
         reasons |= {"delta_C_r_GPa": line, "delta_rho_r_nm": line}
     return reasons
 
@@ -99,7 +128,9 @@ def _moved(base: Array, k: int, value: float) -> Array:
 
 
 def _separations(laws: Array, most_GPa: float) -> Array:
-    """Separations (nm) at which laws (m, 4) repel with shares of a pressure, shape (m, len(SHARES))."""
+    """Separations (nm) at which laws (m, 4) repel with shares of a pressure, shape (m,
+    len(SHARES)).
+    """
     d_c, _, C_r, rho_r = laws.T[:, :, None]
     return d_c - rho_r * np.log1p(SHARES * most_GPa / C_r)
 

@@ -16,9 +16,13 @@ from mesoscale.uncertainty.surrogate import Below, Response, Surrogate, evaluate
 
 Array = NDArray[np.float64]
 Direct = tuple[Array, Array]
-"""Inputs (m, n) of direct runs, and their closing and opening parameters (m, len(FITTED)), NaN where missing."""
+"""Inputs (m, n) of direct runs, and their closing and opening parameters (m, len(FITTED)), NaN
+where missing.
+"""
 SAMPLES = 10_000
-"""Samples of the inputs sent through the responses: their quantiles are then known to 0.5 % in probability."""
+"""Samples of the inputs sent through the responses: their quantiles are then known to 0.5 % in
+probability.
+"""
 
 
 @dataclass(frozen=True)
@@ -27,8 +31,8 @@ class NodeOutputs:
 
     Attributes
     ----------
-    values : shape (seeds, nodes, len(FITTED)): the closing parameters, then the opening ones; NaN where missing.
-    """
+    values : shape (seeds, nodes, len(FITTED)): the closing parameters, then the opening ones; NaN
+        where missing."""
 
     seeds: list[int]
     values: Array
@@ -40,7 +44,9 @@ class NodeOutputs:
 
 
 def to_paper_outputs(parameters: Array) -> Array:
-    """Closing and opening parameters (..., len(FITTED)) to closing parameters and their change, same shape."""
+    """Closing and opening parameters (..., len(FITTED)) to closing parameters and their change,
+    same shape.
+    """
     closing, opening = parameters[..., CLOSING], parameters[..., OPENING]
     return np.concatenate([closing, opening - closing], axis=-1)
 
@@ -59,7 +65,9 @@ def nodes_of_rows(rows: Iterable[Mapping[str, str]]) -> NodeOutputs:
     return NodeOutputs(seeds, values)
 
 
-def exported_responses(direct: Direct, ranges: Array, settings: UncertaintySettings) -> list[Response | None]:
+def exported_responses(
+    direct: Direct, ranges: Array, settings: UncertaintySettings
+) -> list[Response | None]:
     """The regressions behind samples, Sobol' indices and surrogate.json, one per entry of FITTED.
 
     Returns
@@ -68,7 +76,9 @@ def exported_responses(direct: Direct, ranges: Array, settings: UncertaintySetti
     """
     x, y = direct
     signs = [row.any_sign for row in LAW] * 2
-    responses: list[Response | None] = [_regression(x, y[:, k], ranges, any_sign) for k, any_sign in enumerate(signs)]
+    responses: list[Response | None] = [
+        _regression(x, y[:, k], ranges, any_sign) for k, any_sign in enumerate(signs)
+    ]
     first, last = FITTED.index("closing_d_c_nm"), FITTED.index("opening_d_c_nm")
     above = responses[first]
     if settings.opening_contact == "below_closing" and isinstance(above, Surrogate):
@@ -79,14 +89,19 @@ def exported_responses(direct: Direct, ranges: Array, settings: UncertaintySetti
     return responses
 
 
-def output_responses(exported: Sequence[Response | None], direct: Direct, ranges: Array) -> list[Response | None]:
-    """Responses of the outputs of Table 2, behind indices and elementary effects, from the exported ones.
+def output_responses(
+    exported: Sequence[Response | None], direct: Direct, ranges: Array
+) -> list[Response | None]:
+    """Responses of the outputs of Table 2, behind indices and elementary effects, from the exported
+    ones.
 
-    A change on opening has a response of its own: as a small difference of two large numbers it would inherit the
-    errors of both.
-    """
+    A change on opening has a response of its own: as a small difference of two large numbers it
+    would inherit the errors of both."""
     changes = to_paper_outputs(direct[1])[:, OPENING]
-    return [*exported[CLOSING], *(_regression(direct[0], change, ranges, any_sign=True) for change in changes.T)]
+    return [
+        *exported[CLOSING],
+        *(_regression(direct[0], change, ranges, any_sign=True) for change in changes.T),
+    ]
 
 
 def _regression(x: Array, y: Array, ranges: Array, any_sign: bool) -> Surrogate | None:
@@ -105,10 +120,13 @@ class Propagation:
     Attributes
     ----------
     samples : samples of the inputs, shape (m, n).
-    outputs : closing and opening parameters of every sample through the exported responses, shape (m, len(FITTED)).
+    outputs : closing and opening parameters of every sample through the exported responses, shape
+        (m, len(FITTED)).
     responses : one per entry of FITTED; None where too few direct runs determine it.
-    by_seed : mean and deviation of the outputs of Table 2 of every seed's own response, shape (seeds, 2, len(OUTPUTS)).
-    variances : var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses, shape (2,
+    by_seed : mean and deviation of the outputs of Table 2 of every seed's own response, shape
+        (seeds, 2, len(OUTPUTS)).
+    variances : var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses,
+        shape (2,
         len(OUTPUTS)).
     """
 
@@ -120,12 +138,16 @@ class Propagation:
 
     @property
     def seed_share(self) -> Array:
-        """Share of the variance of each output of Table 2 that is scatter between seeds, shape (len(OUTPUTS),)."""
+        """Share of the variance of each output of Table 2 that is scatter between seeds, shape
+        (len(OUTPUTS),).
+        """
         with np.errstate(invalid="ignore", divide="ignore"):
             return self.variances[1] / self.variances.sum(axis=0)
 
 
-def propagate(nodes: NodeOutputs, table: InputTable, settings: UncertaintySettings, direct: Direct) -> Propagation:
+def propagate(
+    nodes: NodeOutputs, table: InputTable, settings: UncertaintySettings, direct: Direct
+) -> Propagation:
     """Send samples of the inputs through every seed's linear response and through the regressions.
 
     A seed with a missing node has no linear response for that output; nothing is filled in.
@@ -152,13 +174,16 @@ def propagate(nodes: NodeOutputs, table: InputTable, settings: UncertaintySettin
 
 
 def linear_outputs(values: Array, ranges: Array, x: Array) -> Array:
-    """Closing and opening parameters at inputs x (m, n) by the paper's linear responses, shape (m, len(FITTED)).
+    """Closing and opening parameters at inputs x (m, n) by the paper's linear responses, shape (m,
+    len(FITTED)).
 
     Parameters
     ----------
-    values : the parameters at the nodes, shape (2n + 1, len(FITTED)); one that a node lacks is NaN everywhere.
-    """
-    return evaluate([level1_response(y, ranges) if np.isfinite(y).all() else None for y in values.T], x)
+    values : the parameters at the nodes, shape (2n + 1, len(FITTED)); one that a node lacks is NaN
+        everywhere."""
+    return evaluate(
+        [level1_response(y, ranges) if np.isfinite(y).all() else None for y in values.T], x
+    )
 
 
 def output_rows(
@@ -168,11 +193,11 @@ def output_rows(
     paper: Mapping[str, tuple[float, float]],
     paper_exchanged: Mapping[str, tuple[float, float]],
 ) -> list[dict[str, Any]]:
-    """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of seeds.
+    """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of
+    seeds.
 
-    mean and dev are the paper's method; response_* are those of the exported responses, averaged over random
-    surfaces; cell_* those of the direct runs, each a cell of its own.
-    """
+    mean and dev are the paper's method; response_* are those of the exported responses, averaged
+    over random surfaces; cell_* those of the direct runs, each a cell of its own."""
     y = nodes.paper_outputs
     propagated, cells = to_paper_outputs(result.outputs), to_paper_outputs(direct[1])
     rows = []
@@ -180,19 +205,33 @@ def output_rows(
         complete = np.isfinite(result.by_seed[:, 0, k])
         mean, dev = (_center_and_scatter(result.by_seed[complete, j, k]) for j in (0, 1))
         centre = _center_and_scatter(y[complete, 0, k])
-        row: dict[str, Any] = {"output": output.name, "unit": output.unit, "response_mean": propagated[:, k].mean()}
+        row: dict[str, Any] = {
+            "output": output.name,
+            "unit": output.unit,
+            "response_mean": propagated[:, k].mean(),
+        }
         for name, (value, scatter) in {"mean": mean, "dev": dev, "centre": centre}.items():
             row |= {name: value, f"{name}_seed_sd": scatter}
         for label, tables in (("", paper), ("_exchanged", paper_exchanged)):
             known = tables.get(output.short, (np.nan, np.nan))
-            for name, (value, scatter), theirs in zip(("mean", "dev"), (mean, dev), known, strict=True):
+            for name, (value, scatter), theirs in zip(
+                ("mean", "dev"), (mean, dev), known, strict=True
+            ):
                 row[f"paper_{name}{label}"] = theirs
-                row[f"{name}_difference_in_seed_sd{label}"] = (value - theirs) / scatter if scatter else np.nan
+                row[f"{name}_difference_in_seed_sd{label}"] = (
+                    (value - theirs) / scatter if scatter else np.nan
+                )
         single = cells[np.isfinite(cells[:, k]), k]
-        for name, values in (("response", propagated[:, k]), ("cell", single if single.size else np.array([np.nan]))):
+        for name, values in (
+            ("response", propagated[:, k]),
+            ("cell", single if single.size else np.array([np.nan])),
+        ):
             row[f"{name}_dev"] = values.std()
             quantiles = np.quantile(values, [0.05, 0.5, 0.95])
-            row |= {f"{name}_{q}": value for q, value in zip(("q05", "q50", "q95"), quantiles, strict=True)}
+            row |= {
+                f"{name}_{q}": value
+                for q, value in zip(("q05", "q50", "q95"), quantiles, strict=True)
+            }
         row |= {
             "seed_share": result.seed_share[k],
             "seeds_used": int(complete.sum()),
@@ -211,7 +250,9 @@ def _center_and_scatter(values: Array) -> tuple[float, float]:
     return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else np.nan
 
 
-def surrogate_json(result: Propagation, table: InputTable, law: Mapping[str, float]) -> dict[str, Any]:
+def surrogate_json(
+    result: Propagation, table: InputTable, law: Mapping[str, float]
+) -> dict[str, Any]:
     """Content of uq/surrogate.json: usable without this code (docs/uncertainty.md)."""
     inputs = [
         {
@@ -231,9 +272,15 @@ def surrogate_json(result: Propagation, table: InputTable, law: Mapping[str, flo
         if response is not None
     ]
     return {
-        "about": "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x - low) / "
-        "(high - low) - 1; valid for low <= x <= high; the mean over random surfaces"
-        + ("; with `below`: the output of that name less this" if any("below" in output for output in outputs) else ""),
+        "about": (
+            "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x -"
+            " low) / (high - low) - 1; valid for low <= x <= high; the mean over random surfaces"
+            + (
+                "; with `below`: the output of that name less this"
+                if any("below" in output for output in outputs)
+                else ""
+            )
+        ),
         "inputs": inputs,
         "law": dict(law),
         "outputs": outputs,

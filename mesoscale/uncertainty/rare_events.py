@@ -1,17 +1,16 @@
 """Probabilities of rare events, down to one in a million, from few runs of a model.
 
-The model gives a reserve: the event happens where it is not above a threshold. A Gaussian process learns the reserve
-where the event is likely. With its mean m and deviation d at a point z, the event happens there with the chance
-pi = Phi((threshold - m) / d). Then, exactly,
+The model gives a reserve: the event happens where it is not above a threshold. A Gaussian process
+learns the reserve where the event is likely. With its mean m and deviation d at a point z, the
+event happens there with the chance pi = Phi((threshold - m) / d). Then, exactly,
 
     p = E[pi] x E_h[event / pi],   h proportional to pi times the distribution of z
 
-Subset simulation (Au and Beck, Prob. Eng. Mech. 16 (2001) 263) gives the first factor and points from h. One run of it
-states half of its own scatter, because the points of its chains are alike; so several independent runs are made, and
-the scatter between them counts. Runs of the model at points from h give the second factor, which corrects the process
-(Dubourg, Sudret and Deheeger, Prob. Eng. Mech. 33 (2013) 47). It is near 1 with a small scatter where the process is
-good.
-"""
+Subset simulation (Au and Beck, Prob. Eng. Mech. 16 (2001) 263) gives the first factor and points
+from h. One run of it states half of its own scatter, because the points of its chains are alike; so
+several independent runs are made, and the scatter between them counts. Runs of the model at points
+from h give the second factor, which corrects the process (Dubourg, Sudret and Deheeger, Prob. Eng.
+Mech. 33 (2013) 47). It is near 1 with a small scatter where the process is good."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -26,7 +25,9 @@ from mesoscale.extras import needs
 Array = NDArray[np.float64]
 
 SAMPLES, REPEATS = 2000, 8
-"""Points of each level of subset simulation, and its independent runs: a probability of 1e-6 is then known to 16 %."""
+"""Points of each level of subset simulation, and its independent runs: a probability of 1e-6 is
+then known to 16 %.
+"""
 CONFIDENCE = 0.95
 LEAST = 1e-10
 """Smallest probability that is looked for."""
@@ -49,11 +50,14 @@ class Process:
         self.sample, count = ot.Sample, int((self.width > 0).sum())
         kernel = ot.MaternModel([2.0] * count, [1.0], 2.5)
         kernel.activateNuggetFactor(True)
-        # a likelihood that is flat in some input ends by its number of calls; runs of the model judge the process
+        # a likelihood that is flat in some input ends by its number of calls; runs of the model
+        # judge the process
         ot.Log.Show(0)
         fitted = self._fitted(x, y, kernel)
         kernel = fitted.getCovarianceModel()
-        if kernel.getAmplitude()[0] == 1.0:  # OpenTURNS 1.27 may leave it as given; the likeliest is this one
+        if (
+            kernel.getAmplitude()[0] == 1.0
+        ):  # OpenTURNS 1.27 may leave it as given; the likeliest is this one
             scaled = self._scaled(x)
             left = y - np.array(fitted.getMetaModel()(scaled))[:, 0]
             square = left @ np.linalg.solve(np.array(kernel.discretize(scaled)), left) / y.size
@@ -106,18 +110,26 @@ class Sampled:
 
     @property
     def variation(self) -> float:
-        """Coefficient of variation of the probability, from the scatter between the runs; 0 of one run."""
+        """Coefficient of variation of the probability, from the scatter between the runs; 0 of one
+        run.
+        """
         if self.estimates.size < 2 or not self.estimates.any():
             return 0.0
-        return float(self.estimates.std(ddof=1) / self.estimates.mean() / np.sqrt(self.estimates.size))
+        return float(
+            self.estimates.std(ddof=1) / self.estimates.mean() / np.sqrt(self.estimates.size)
+        )
 
     def interval(self, confidence: float = CONFIDENCE) -> tuple[float, float]:
         """Interval of the probability by the response."""
         return _interval(self.probability, self.variation, self.estimates.size - 1, confidence)
 
 
-def _interval(value: float, variation: float, freedom: int, confidence: float) -> tuple[float, float]:
-    """Interval of a lognormal estimate whose coefficient of variation was found with so many degrees of freedom."""
+def _interval(
+    value: float, variation: float, freedom: int, confidence: float
+) -> tuple[float, float]:
+    """Interval of a lognormal estimate whose coefficient of variation was found with so many
+    degrees of freedom.
+    """
     from scipy.special import stdtrit  # Student's quantile
 
     factor = stdtrit(max(freedom, 1), 0.5 + 0.5 * confidence)
@@ -130,16 +142,25 @@ Moments = Callable[[Array], tuple[Array, Array]]
 
 
 def sample_event(
-    moments: Moments, dimension: int, threshold: float, seed: int, samples: int = SAMPLES, repeats: int = REPEATS
+    moments: Moments,
+    dimension: int,
+    threshold: float,
+    seed: int,
+    samples: int = SAMPLES,
+    repeats: int = REPEATS,
 ) -> Sampled:
-    """Subset simulation of the event that mean + deviation x (a standard normal number) is not above the threshold.
+    """Subset simulation of the event that mean + deviation x (a standard normal number) is not
+    above the threshold.
 
     Parameters
     ----------
     samples : points of each level.
     repeats : independent runs.
     """
-    runs = [_simulate(moments, dimension, threshold, seed * REPEATS + k, samples) for k in range(repeats)]
+    runs = [
+        _simulate(moments, dimension, threshold, seed * REPEATS + k, samples)
+        for k in range(repeats)
+    ]
     estimates = np.array([probability for probability, _ in runs])
     if not estimates.any():
         return Sampled(estimates, np.empty((0, dimension)), np.empty(0))
@@ -147,14 +168,22 @@ def sample_event(
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0x5A]))
     counts = [round(samples * share) for share in (estimates / estimates.sum()).tolist()]
     points = np.concatenate(
-        [rng.choice(likely, count) for (_, likely), count in zip(runs, counts, strict=True) if count and len(likely)]
+        [
+            rng.choice(likely, count)
+            for (_, likely), count in zip(runs, counts, strict=True)
+            if count and len(likely)
+        ]
     )
     mean, deviation = moments(points)
     return Sampled(estimates, points, ndtr((threshold - mean) / deviation))
 
 
-def _simulate(moments: Moments, dimension: int, threshold: float, seed: int, samples: int) -> tuple[float, Array]:
-    """Probability and points of one run of subset simulation; 0 and none where the event is not met."""
+def _simulate(
+    moments: Moments, dimension: int, threshold: float, seed: int, samples: int
+) -> tuple[float, Array]:
+    """Probability and points of one run of subset simulation; 0 and none where the event is not
+    met.
+    """
     with needs("uncertainty"):
         import openturns as ot
 
@@ -166,7 +195,9 @@ def _simulate(moments: Moments, dimension: int, threshold: float, seed: int, sam
     ot.RandomGenerator.SetSeed(seed)
     inputs = ot.RandomVector(ot.Normal(dimension + 1))
     function = ot.PythonFunction(dimension + 1, 1, func_sample=reserve)
-    event = ot.ThresholdEvent(ot.CompositeRandomVector(function, inputs), ot.LessOrEqual(), threshold)
+    event = ot.ThresholdEvent(
+        ot.CompositeRandomVector(function, inputs), ot.LessOrEqual(), threshold
+    )
     subset = ot.SubsetSampling(event)
     subset.setMaximumOuterSampling(4)
     subset.setBlockSize(samples // 4)
@@ -179,18 +210,27 @@ def _simulate(moments: Moments, dimension: int, threshold: float, seed: int, sam
             raise
         return 0.0, np.empty((0, dimension))
     last = subset.getStepsNumber() - 1
-    points = np.array(subset.getInputSample(last, ot.SubsetSampling.EVENT1)).reshape(-1, dimension + 1)[:, :-1]
+    points = np.array(subset.getInputSample(last, ot.SubsetSampling.EVENT1)).reshape(
+        -1, dimension + 1
+    )[:, :-1]
     return float(subset.getResult().getProbabilityEstimate()), points
 
 
 def rates_given(
-    moments: Moments, common: NDArray[np.bool_], threshold: float, seed: int, draws: int = 400, inner: int = 100
+    moments: Moments,
+    common: NDArray[np.bool_],
+    threshold: float,
+    seed: int,
+    draws: int = 400,
+    inner: int = 100,
 ) -> Array:
-    """Probability of the event by what is common to all devices, for so many draws of it, shape (draws,).
+    """Probability of the event by what is common to all devices, for so many draws of it, shape
+    (draws,).
 
-    The error of the response is one unknown for all devices too: each draw has its own, mean + deviation x (a standard
-    normal number). The numbers of each device are drawn about the likeliest event, which planes through their reserves
-    find, and count with their likelihood (importance sampling; Rackwitz and Fiessler, Comput. Struct. 9 (1978) 489).
+    The error of the response is one unknown for all devices too: each draw has its own, mean +
+    deviation x (a standard normal number). The numbers of each device are drawn about the likeliest
+    event, which planes through their reserves find, and count with their likelihood (importance
+    sampling; Rackwitz and Fiessler, Comput. Struct. 9 (1978) 489).
 
     Parameters
     ----------
@@ -203,7 +243,9 @@ def rates_given(
     def reserve(x: Array) -> Array:
         z = np.tile(shared, (1, x.shape[1], 1))
         z[..., ~common] = x
-        mean, deviation = (part.reshape(x.shape[:2]) for part in moments(z.reshape(-1, common.size)))
+        mean, deviation = (
+            part.reshape(x.shape[:2]) for part in moments(z.reshape(-1, common.size))
+        )
         return mean + deviation * error - threshold
 
     if common.all():
@@ -215,7 +257,9 @@ def rates_given(
         level, *slope = np.moveaxis((plane @ reserve(likeliest + x)[..., None])[..., 0], 1, 0)
         slope = np.stack(slope, axis=-1)[:, None]
         steepness = np.maximum(np.linalg.norm(slope, axis=-1), 1e-9)
-        distance = (level[:, None] - (slope * likeliest).sum(axis=-1)) / steepness  # of the plane from the middle
+        distance = (
+            level[:, None] - (slope * likeliest).sum(axis=-1)
+        ) / steepness  # of the plane from the middle
         # further than 6.5 deviations, an event is rarer than `LEAST`
         likeliest = -(np.clip(distance, 0.0, 6.5) / steepness)[..., None] * slope
     x = likeliest + rng.normal(size=(draws, 4 * inner, likeliest.shape[2]))
@@ -223,13 +267,17 @@ def rates_given(
     return np.minimum((weight * (reserve(x) <= 0.0)).mean(axis=1), 1.0)
 
 
-def quantiles_of(rates: Array, probabilities: Sequence[float] = (0.05, 0.5, 0.95)) -> dict[str, dict[str, float]]:
+def quantiles_of(
+    rates: Array, probabilities: Sequence[float] = (0.05, 0.5, 0.95)
+) -> dict[str, dict[str, float]]:
     """Quantiles of rates, each between the order statistics that hold it with 95 %."""
     spread = 1.96 * np.sqrt([q * (1.0 - q) / rates.size for q in probabilities])
     return {
         f"{q:g}": dict(
             zip(
-                ("value", "low", "high"), np.quantile(rates, np.clip([q, q - e, q + e], 0.0, 1.0)).tolist(), strict=True
+                ("value", "low", "high"),
+                np.quantile(rates, np.clip([q, q - e, q + e], 0.0, 1.0)).tolist(),
+                strict=True,
             )
         )
         for q, e in zip(probabilities, spread.tolist(), strict=True)
@@ -257,12 +305,15 @@ class Corrected:
     events: int
 
 
-def correct(sampled: Sampled, happened: NDArray[np.bool_], chance: Array, confidence: float = CONFIDENCE) -> Corrected:
+def correct(
+    sampled: Sampled, happened: NDArray[np.bool_], chance: Array, confidence: float = CONFIDENCE
+) -> Corrected:
     """The probability from runs of the model at points from h.
 
     Parameters
     ----------
-    happened : whether the event happened at each, shape (m,); an event by a response that is not met has no runs.
+    happened : whether the event happened at each, shape (m,); an event by a response that is not
+        met has no runs.
     chance : pi of the runs, shape (m,).
     """
     if not happened.size:
@@ -271,7 +322,9 @@ def correct(sampled: Sampled, happened: NDArray[np.bool_], chance: Array, confid
     mean = float(factors.mean())
     runs, events = happened.size, int(happened.sum())
     if not events:  # fewer than three times one in so many runs, by 95 %
-        return Corrected(0.0, 0.0, 3.0 / runs * sampled.probability, 0.0, sampled.probability, runs, 0)
+        return Corrected(
+            0.0, 0.0, 3.0 / runs * sampled.probability, 0.0, sampled.probability, runs, 0
+        )
     # one more run that differs keeps the scatter of few runs from being none
     scatter = float(np.std(np.append(factors, 0.0), ddof=1)) / mean / np.sqrt(runs)
     variation = float(np.hypot(scatter, sampled.variation))

@@ -9,11 +9,14 @@ from mesoscale.uncertainty.surrogate import Surrogate, basis_matrix, scaled
 Array = NDArray[np.float64]
 
 MEAN = 10.0
-"""Mean of what LARS selects terms for, in deviations. At a mean of 0 rounding alone gives the sign of the constant
-term, by which LARS takes one way or another. Far from 0 the constant enters first."""
+"""Mean of what LARS selects terms for, in deviations. At a mean of 0 rounding alone gives the sign
+of the constant term, by which LARS takes one way or another. Far from 0 the constant enters
+first."""
 
 
-def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity", degree: int = 3) -> Surrogate:
+def sparse_chaos(
+    x: Array, y: Array, ranges: Array, transform: str = "identity", degree: int = 3
+) -> Surrogate:
     """Sparse Legendre expansion of y, averaged over the scatter that x does not explain.
 
     Linear terms of all inputs are kept, if the runs allow it; those of higher degree are selected.
@@ -23,9 +26,11 @@ def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity",
     x : inputs of the runs, shape (m, n); values outside `ranges` are clipped to them.
     y : outputs, shape (m,); runs with NaN (and, for `log`, without positive value) are left out.
     ranges : shape (n, 2).
-    transform : log fits ln y, then scales the response so that its mean over the runs is theirs (it would be
+    transform : log fits ln y, then scales the response so that its mean over the runs is theirs (it
+        would be
         too low by the scatter that x does not explain).
-    degree : highest total degree; 1 to 3 differ by less than the study can tell (evidence uncertainty.work_precision).
+    degree : highest total degree; 1 to 3 differ by less than the study can tell (evidence
+        uncertainty.work_precision).
         Terms of many inputs are thinned by the hyperbolic norm.
 
     Raises
@@ -38,7 +43,9 @@ def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity",
     usable = np.isfinite(y) & ((y > 0) | (transform == "identity"))
     inputs = x.shape[1]
     if usable.sum() < 2 * inputs:
-        raise ValueError(f"{int(usable.sum())} usable runs for {inputs} inputs; at least {2 * inputs} are needed")
+        raise ValueError(
+            f"{int(usable.sum())} usable runs for {inputs} inputs; at least {2 * inputs} are needed"
+        )
     u = np.clip(scaled(x[usable], ranges), -1.0, 1.0)
     target = np.log(y[usable]) if transform == "log" else y[usable]
     # in units of its deviation, because LARS stops at absolute tolerances
@@ -49,7 +56,9 @@ def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity",
     if not len(varying):
         return Surrogate(ranges, np.zeros((1, inputs), int), np.array([centre]), transform)
     enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(len(varying), 0.7)
-    basis = ot.OrthogonalProductPolynomialFactory([ot.LegendreFactory()] * len(varying), enumerate_terms)
+    basis = ot.OrthogonalProductPolynomialFactory(
+        [ot.LegendreFactory()] * len(varying), enumerate_terms
+    )
     most = max(2, int(0.8 * usable.sum()))
     size = min(enumerate_terms.getBasisSizeFromTotalDegree(degree), most)
     selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
@@ -63,7 +72,9 @@ def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity",
     chaos.run()
     chosen = [int(k) for k in chaos.getResult().getIndices()]
     degrees = np.zeros((len(chosen), inputs), int)
-    degrees[:, varying] = np.array([list(enumerate_terms(k)) for k in chosen], int).reshape(-1, len(varying))
+    degrees[:, varying] = np.array([list(enumerate_terms(k)) for k in chosen], int).reshape(
+        -1, len(varying)
+    )
     # an input that the selection left out would have an index of zero with an interval of no width
     kept = [np.zeros(inputs, int), *np.eye(inputs, dtype=int)[varying]]
     missing = [term for term in kept if not (degrees == term).all(axis=1).any()]
@@ -72,7 +83,9 @@ def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity",
     return refit(u, target, ranges, np.vstack([*missing, degrees]), transform)
 
 
-def refit(u: Array, target: Array, ranges: Array, degrees: NDArray[np.int_], transform: str) -> Surrogate:
+def refit(
+    u: Array, target: Array, ranges: Array, degrees: NDArray[np.int_], transform: str
+) -> Surrogate:
     """Least-squares coefficients of given terms.
 
     Parameters

@@ -1,4 +1,6 @@
-"""Runs of the contact model: which inputs and seed each has, computing them, and the law of each."""
+"""Runs of the contact model: which inputs and seed each has, computing them, and the law of
+each.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -30,7 +32,9 @@ def compute(values: Mapping[str, float], seed: int, settings: ContactSettings) -
 
 
 def compute_all(
-    runs: Sequence[Run], settings: ContactSettings, progress: Callable[[float, str], None] | None = None
+    runs: Sequence[Run],
+    settings: ContactSettings,
+    progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[tuple[Run, Cycle | str]]:
     """Compute runs one by one; equal inputs and seed (inputs of zero width) are computed once."""
     known: dict[tuple[object, ...], Cycle | str] = {}
@@ -45,7 +49,9 @@ def compute_all(
 
 
 def compute_rows(
-    runs: Sequence[Run], contact: ContactSettings, progress: Callable[[float, str], None] | None = None
+    runs: Sequence[Run],
+    contact: ContactSettings,
+    progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[dict[str, float | int | str]]:
     """Compute runs and fit the law to each: one row per run with inputs, seed and parameters."""
     for run, cycle in compute_all(runs, contact, progress):
@@ -81,7 +87,10 @@ class MonteCarlo:
     failed: tuple[str, ...]
 
     def __repr__(self) -> str:
-        return f"MonteCarlo: laws of {np.size(self.closing.d_c_nm)} samples, {len(self.failed)} left out"
+        return (
+            f"MonteCarlo: laws of {np.size(self.closing.d_c_nm)} samples, {len(self.failed)}"
+            " left out"
+        )
 
 
 def monte_carlo(
@@ -91,9 +100,11 @@ def monte_carlo(
     seed: int = 1,
     progress: Callable[[float, str], None] | None = None,
 ) -> MonteCarlo:
-    """Close and open `samples` random surfaces, each with its own draw of the inputs, and fit the law to each.
+    """Close and open `samples` random surfaces, each with its own draw of the inputs, and fit the
+    law to each.
 
-    Samples whose cycle or fit failed are left out and counted. More samples extend fewer ones of the same seed.
+    Samples whose cycle or fit failed are left out and counted. More samples extend fewer ones of
+    the same seed.
 
     Raises
     ------
@@ -114,7 +125,9 @@ def monte_carlo(
             reasons = [outcome.status, outcome.closing.status, outcome.opening.status]
             failed.append(next(reason for reason in reasons if reason != "ok"))
     if not kept:
-        raise InputError(f"none of {samples} samples gave a law: {'; '.join(dict.fromkeys(failed))}")
+        raise InputError(
+            f"none of {samples} samples gave a law: {'; '.join(dict.fromkeys(failed))}"
+        )
     inputs = dict(zip(table.names, np.array(kept).T, strict=True))
     closing, opening = (
         Law(**dict(zip(PARAMETERS, columns, strict=True)), hamaker=inputs["hamaker"])

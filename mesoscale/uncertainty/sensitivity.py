@@ -1,4 +1,6 @@
-"""Which input matters: elementary effects (the paper's Table 3) and Sobol' indices with intervals."""
+"""Which input matters: elementary effects (the paper's Table 3) and Sobol' indices with
+intervals.
+"""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -54,14 +56,15 @@ def sobol_indices(y_a: Array, y_b: Array, y_ab: Array) -> tuple[Array, Array]:
 def pick_freeze(table: InputTable, count: int, seed: int) -> Array:
     """Samples A, B and A with one column from B, shape (n + 2, count, n).
 
-    Columns are exchanged before the correlation is put in: with correlated inputs the indices are those of
-    the independent variables behind them, in the order of the table (Rosenblatt's order).
+    Columns are exchanged before the correlation is put in: with correlated inputs the indices are
+    those of the independent variables behind them, in the order of the table (Rosenblatt's order).
     """
     inputs = len(table.rows)
     with needs("uncertainty"):
         import openturns  # a second to import, needed here alone
 
-    # OpenTURNS' SobolIndicesExperiment is shifted by its global generator: other samples, whatever the seed
+    # OpenTURNS' SobolIndicesExperiment is shifted by its global generator: other samples, whatever
+    # the seed
     shift = np.random.default_rng(np.random.SeedSequence([seed, 0x50])).random(2 * inputs)
     unit = (np.asarray(openturns.SobolSequence(2 * inputs).generate(count)) + shift) % 1.0
     a, b = unit[:, :inputs], unit[:, inputs:]
@@ -84,10 +87,10 @@ def sensitivity_rows(
 ) -> list[dict[str, Any]]:
     """Rows of uq/sensitivity.csv: every output with every input.
 
-    mu* is the mean over seeds of every seed's own value on the nodes of level 1 (the paper's one star), beside
-    its scatter. Sobol' indices are those of the exported responses, averaged over random surfaces; their intervals
-    (5 to 95 %) come from resampling the samples behind them together with the direct runs.
-    """
+    mu* is the mean over seeds of every seed's own value on the nodes of level 1 (the paper's one
+    star), beside its scatter. Sobol' indices are those of the exported responses, averaged over
+    random surfaces; their intervals (5 to 95 %) come from resampling the samples behind them
+    together with the direct runs."""
     y = nodes.paper_outputs
     ranges = table.ranges()
     inputs = len(table.rows)
@@ -105,15 +108,22 @@ def sensitivity_rows(
             for label, tables in (("", paper), ("_as_printed", paper_as_printed)):
                 theirs = tables.get(output.short, {}).get(row.name, np.nan)
                 line[f"paper_mu_star{label}"] = theirs
-                line[f"difference_in_seed_sd{label}"] = (mu_star - theirs) / scatter if scatter else np.nan
+                line[f"difference_in_seed_sd{label}"] = (
+                    (mu_star - theirs) / scatter if scatter else np.nan
+                )
             for name, indices in (("sobol_first", first), ("sobol_total", total)):
-                line |= dict(zip((name, f"{name}_low", f"{name}_high"), indices[:, k, i], strict=True))
+                line |= dict(
+                    zip((name, f"{name}_low", f"{name}_high"), indices[:, k, i], strict=True)
+                )
             rows.append({**line, "seed_share": seed_share[k], "seeds_used": len(lines)})
     return rows
 
 
-def index_intervals(responses: Sequence[Response | None], direct: Direct, table: InputTable) -> tuple[Array, Array]:
-    """First-order and total indices of the outputs: estimate, lower and upper end, shape (3, len(OUTPUTS), n).
+def index_intervals(
+    responses: Sequence[Response | None], direct: Direct, table: InputTable
+) -> tuple[Array, Array]:
+    """First-order and total indices of the outputs: estimate, lower and upper end, shape (3,
+    len(OUTPUTS), n).
 
     Parameters
     ----------
@@ -127,8 +137,14 @@ def index_intervals(responses: Sequence[Response | None], direct: Direct, table:
     for _ in range(SOBOL_RESAMPLES):
         # other samples as well: heavy tails make the estimators themselves uncertain
         again = points[:, rng.integers(points.shape[1], size=points.shape[1])]
-        picks = rng.integers(len(direct[0]), size=len(direct[0])) if len(direct[0]) else np.empty(0, int)
-        resampled.append(response_indices(again, _refitted(responses, direct[0][picks], outputs[picks])))
+        picks = (
+            rng.integers(len(direct[0]), size=len(direct[0]))
+            if len(direct[0])
+            else np.empty(0, int)
+        )
+        resampled.append(
+            response_indices(again, _refitted(responses, direct[0][picks], outputs[picks]))
+        )
     ends, draws = np.full((2, *estimate.shape), np.nan), np.array(resampled)
     known = np.isfinite(draws).all(axis=0)
     ends[:, known] = np.quantile(draws[:, known], [0.05, 0.95], axis=0)
@@ -145,11 +161,15 @@ def response_indices(points: Array, responses: Sequence[Response | None]) -> Arr
     """
     inputs = points.shape[2]
     y = evaluate(responses, points.reshape(-1, inputs)).reshape(inputs + 2, -1, len(OUTPUTS))
-    return np.stack([sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(len(OUTPUTS))], axis=1)
+    return np.stack(
+        [sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(len(OUTPUTS))], axis=1
+    )
 
 
 def _refitted(responses: Sequence[Response | None], x: Array, y: Array) -> list[Surrogate | None]:
-    """The regression responses with their terms kept and their coefficients fitted to other runs."""
+    """The regression responses with their terms kept and their coefficients fitted to other
+    runs.
+    """
     again: list[Surrogate | None] = []
     for k, response in enumerate(responses):
         if not isinstance(response, Surrogate):

@@ -11,7 +11,9 @@ Array = NDArray[np.float64]
 
 
 def legendre(u: Array, highest: int) -> Array:
-    """Legendre polynomials P_0 .. P_highest (P_n(1) = 1), shape (highest + 1, ...) with that of u."""
+    """Legendre polynomials P_0 .. P_highest (P_n(1) = 1), shape (highest + 1, ...) with that of
+    u.
+    """
     values = [np.ones_like(u), u]
     for n in range(1, highest):
         values.append(((2 * n + 1) * u * values[n] - n * values[n - 1]) / (n + 1))
@@ -39,7 +41,9 @@ def basis_matrix(u: Array, degrees: NDArray[np.int_]) -> Array:
 
 
 def scaled(x: Array, ranges: Array) -> Array:
-    """Inputs (m, n), of ranges (n, 2), in -1 .. 1, and beyond where they leave them; an input of no width gives 0."""
+    """Inputs (m, n), of ranges (n, 2), in -1 .. 1, and beyond where they leave them; an input of no
+    width gives 0.
+    """
     low, high = ranges[:, 0], ranges[:, 1]
     width = high - low
     return np.where(width > 0, 2 * (x - low) / np.where(width > 0, width, 1.0) - 1, 0.0)
@@ -47,7 +51,8 @@ def scaled(x: Array, ranges: Array) -> Array:
 
 @dataclass(frozen=True)
 class Surrogate:
-    """y = transform( sum_t coefficient_t prod_k P_{degree_tk}(u_k) ), u = 2 (x - low)/(high - low) - 1.
+    """y = transform( sum_t coefficient_t prod_k P_{degree_tk}(u_k) ), u = 2 (x - low)/(high - low)
+    - 1.
 
     Attributes
     ----------
@@ -64,13 +69,16 @@ class Surrogate:
 
     def __call__(self, x: Array) -> Array:
         """Output at inputs x of shape (m, n)."""
-        total = basis_matrix(scaled(np.atleast_2d(x), self.ranges), self.degrees) @ self.coefficients
+        total = (
+            basis_matrix(scaled(np.atleast_2d(x), self.ranges), self.degrees) @ self.coefficients
+        )
         return np.exp(total) if self.transform == "log" else total
 
 
 @dataclass(frozen=True)
 class Below:
-    """y = above - drop, a response that nowhere exceeds another one: the drop is the exponential of a sum.
+    """y = above - drop, a response that nowhere exceeds another one: the drop is the exponential of
+    a sum.
 
     Attributes
     ----------
@@ -96,7 +104,9 @@ Response = Surrogate | Below
 
 def evaluate(responses: Sequence[Callable[[Array], Array] | None], x: Array) -> Array:
     """Responses at inputs x (m, n), shape (m, responses); NaN where there is no response."""
-    return np.stack([response(x) if response else np.full(len(x), np.nan) for response in responses], axis=1)
+    return np.stack(
+        [response(x) if response else np.full(len(x), np.nan) for response in responses], axis=1
+    )
 
 
 def to_json(response: Response) -> dict[str, Any]:
@@ -107,6 +117,8 @@ def to_json(response: Response) -> dict[str, Any]:
         "transform": surrogate.transform,
         "terms": [
             {"degrees": degrees, "coefficient": coefficient}
-            for degrees, coefficient in zip(surrogate.degrees.tolist(), surrogate.coefficients.tolist(), strict=True)
+            for degrees, coefficient in zip(
+                surrogate.degrees.tolist(), surrogate.coefficients.tolist(), strict=True
+            )
         ],
     }

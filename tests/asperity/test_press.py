@@ -1,4 +1,6 @@
-"""A given map under a flat: Hertz, Boussinesq's punch, the cycle of a scene, and what must hold for any map."""
+"""A given map under a flat: Hertz, Boussinesq's punch, the cycle of a scene, and what must hold for
+any map.
+"""
 
 import numpy as np
 import pytest
@@ -20,14 +22,23 @@ def test_a_sphere_alone_is_hertzs():
     radius = (0.75 * loads * RADIUS / E_STAR) ** (1 / 3)
     assert pressed.converged
     np.testing.assert_allclose(pressed.loads_nN, loads, rtol=1e-5)
-    np.testing.assert_allclose(pressed.pressure_GPa.sum((1, 2)) * (SIDE / PIXELS) ** 2, loads, rtol=1e-5)
+    np.testing.assert_allclose(
+        pressed.pressure_GPa.sum((1, 2)) * (SIDE / PIXELS) ** 2, loads, rtol=1e-5
+    )
     np.testing.assert_allclose(SIDE * np.sqrt(pressed.area_share / np.pi), radius, rtol=0.02)
     np.testing.assert_allclose(pressed.approach_nm, radius**2 / RADIUS, rtol=0.003)
-    np.testing.assert_allclose(pressed.pressure_GPa.max((1, 2)), 1.5 * loads / (np.pi * radius**2), rtol=0.003)
+    np.testing.assert_allclose(
+        pressed.pressure_GPa.max((1, 2)), 1.5 * loads / (np.pi * radius**2), rtol=0.003
+    )
     # the gap beside the contact (Johnson 1985, eq. 3.42a)
     beside = 1.2 * radius[1] < R
     a, r = radius[1], R[beside]
-    lowered = radius[1] / (np.pi * RADIUS) * ((2 - (r / a) ** 2) * np.arcsin(a / r) + np.sqrt((r / a) ** 2 - 1)) * a
+    lowered = (
+        radius[1]
+        / (np.pi * RADIUS)
+        * ((2 - (r / a) ** 2) * np.arcsin(a / r) + np.sqrt((r / a) ** 2 - 1))
+        * a
+    )
     wanted = r**2 / (2 * RADIUS) - a**2 / RADIUS + lowered
     np.testing.assert_allclose(pressed.gap_nm[1][beside], wanted, atol=0.002 * wanted.max())
 
@@ -36,7 +47,9 @@ def test_a_sphere_alone_is_hertzs():
 def test_an_approach_gives_the_load_that_gives_it(yields):
     """To the width of steps where it yields, which come by another way."""
     by_load = asp.press(SPHERE, SIDE, [1000.0, 5000.0], E_STAR, periodic=False, **yields)
-    pressed = asp.press(SPHERE, SIDE, None, E_STAR, periodic=False, approach_nm=by_load.approach_nm, **yields)
+    pressed = asp.press(
+        SPHERE, SIDE, None, E_STAR, periodic=False, approach_nm=by_load.approach_nm, **yields
+    )
     np.testing.assert_allclose(pressed.approach_nm, by_load.approach_nm, rtol=1e-9)
     np.testing.assert_allclose(pressed.loads_nN, by_load.loads_nN, rtol=2e-3 if yields else 1e-6)
     assert pressed.converged
@@ -69,7 +82,9 @@ def test_a_periodic_map_is_pressed_as_in_a_cycle(model):
     def law(gap):
         return INPUTS.hamaker / (6 * np.pi * (gap + settings.gap_cutoff_nm) ** 3)
 
-    pressed = asp.press(surface, 250.0, [500.0, 2000.0], 91.0, contact_at="lowest", attraction=law, **yields)
+    pressed = asp.press(
+        surface, 250.0, [500.0, 2000.0], 91.0, contact_at="lowest", attraction=law, **yields
+    )
     assert pressed.separation_nm[-1] == pytest.approx(cycle.closing.separation_nm[-1], abs=2e-3)
     assert pressed.attraction_nN[-1] == pytest.approx(cycle.closing.attractive_nN[-1], rel=0.01)
     np.testing.assert_array_equal(pressed.gap_nm[pressed.pressure_GPa > 0], 0)
@@ -83,8 +98,12 @@ def test_of_two_maps_only_the_sum_counts():
 
 
 def test_neighbours_lower_a_periodic_sphere():
-    """By 3.900 F / (pi E* L), a lattice of point forces less its mean, on a cell 20 times as wide as the contact."""
-    free, repeated = (asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=each) for each in (False, True))
+    """By 3.900 F / (pi E* L), a lattice of point forces less its mean, on a cell 20 times as wide
+    as the contact.
+    """
+    free, repeated = (
+        asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=each) for each in (False, True)
+    )
     lowered = free.approach_nm[0] - repeated.approach_nm[0]
     assert lowered == pytest.approx(3.90026 * 100.0 / (np.pi * E_STAR * SIDE), rel=0.03)
     assert free.pressure_GPa.max() == pytest.approx(repeated.pressure_GPa.max(), rel=0.003)
@@ -100,7 +119,9 @@ def test_a_pressed_map_is_drawn_and_says_what_it_is():
 @pytest.mark.parametrize(("periodic", "needed"), [(True, "0.00256"), (False, "0.00944")])
 def test_a_map_beyond_memory_is_refused(monkeypatch, periodic, needed):
     monkeypatch.setattr("mesoscale.checks.machine_MB", lambda: 2)
-    with pytest.raises(asp.InputError, match=f"needs {needed} GB of memory, this machine has 0.002; take a part"):
+    with pytest.raises(
+        asp.InputError, match=f"needs {needed} GB of memory, this machine has 0.002; take a part"
+    ):
         asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=periodic)
 
 
@@ -119,10 +140,13 @@ def test_maps_of_many_loads_are_counted_in_memory(monkeypatch, periodic):
     assert asp.press(SPHERE, SIDE, loads[:10], E_STAR, periodic=periodic).converged
 
 
-@pytest.mark.parametrize("side", [np.float32(SIDE), np.int64(SIDE), np.array(SIDE), [SIDE, SIDE], np.full(2, SIDE)])
+@pytest.mark.parametrize(
+    "side", [np.float32(SIDE), np.int64(SIDE), np.array(SIDE), [SIDE, SIDE], np.full(2, SIDE)]
+)
 def test_a_side_is_a_number_or_two_of_any_kind(side):
     np.testing.assert_array_equal(
-        asp.press(SPHERE, side, 100.0, E_STAR).pressure_GPa, asp.press(SPHERE, SIDE, 100.0, E_STAR).pressure_GPa
+        asp.press(SPHERE, side, 100.0, E_STAR).pressure_GPa,
+        asp.press(SPHERE, SIDE, 100.0, E_STAR).pressure_GPa,
     )
 
 
@@ -133,13 +157,17 @@ def test_an_attraction_that_writes_into_its_gaps_changes_no_result():
         return pull
 
     spoiled = asp.press(SPHERE, SIDE, 100.0, E_STAR, attraction=spoiling)
-    clean = asp.press(SPHERE, SIDE, 100.0, E_STAR, attraction=lambda gap: 0.01 / (6 * np.pi * (gap + 0.3) ** 3))
+    clean = asp.press(
+        SPHERE, SIDE, 100.0, E_STAR, attraction=lambda gap: 0.01 / (6 * np.pi * (gap + 0.3) ** 3)
+    )
     np.testing.assert_array_equal(spoiled.gap_nm, clean.gap_nm)
     assert spoiled.attraction_nN.tolist() == clean.attraction_nN.tolist()
 
 
 def test_only_maps_that_repeat_have_no_tilt():
-    """A wave as long as the map seems tilted, a levelled map is not, and one that stands alone may be."""
+    """A wave as long as the map seems tilted, a levelled map is not, and one that stands alone may
+    be.
+    """
     wave = 3.0 * np.sin(2 * np.pi * X / SIDE)[:, None] + 0.0 * X
     rough = np.random.default_rng(1).normal(0.0, 3.0, SPHERE.shape)
     for levelled in (wave, rough, SPHERE):
@@ -147,10 +175,14 @@ def test_only_maps_that_repeat_have_no_tilt():
     tilted = rough + np.linspace(0.0, 500.0, PIXELS)
     assert asp.press(tilted, SIDE, 100.0, E_STAR, periodic=False).converged
     for heights, axis in ((tilted, "y"), (tilted.T, "x")):
-        with pytest.raises(asp.InputError, match=f"tilted by 5.. nm along {axis}, the roughness is [23]"):
+        with pytest.raises(
+            asp.InputError, match=f"tilted by 5.. nm along {axis}, the roughness is [23]"
+        ):
             asp.press(heights, SIDE, 100.0, E_STAR)
         with pytest.raises(asp.InputError, match=f"tilted by 5.. nm along {axis}"):
-            asp.run_cycle(INPUTS, GRID, 1, 100.0, heights=heights, length_nm=SIDE, contact_at="highest")
+            asp.run_cycle(
+                INPUTS, GRID, 1, 100.0, heights=heights, length_nm=SIDE, contact_at="highest"
+            )
 
 
 @pytest.mark.parametrize(
@@ -166,16 +198,25 @@ def test_only_maps_that_repeat_have_no_tilt():
         ({"heights": SPHERE[:3, :3]}, "at least 4 x 4 sites"),
         ({"loads_nN": np.ones((2, 2))}, "loads_nN: accepted are rising"),
         ({"loads_nN": [[1.0], [2.0, 3.0]]}, "loads_nN: rows of different length"),
-        ({"loads_nN": np.ma.array([1.0, 2.0], mask=[False, True])}, "loads_nN: 1 values are masked"),
+        (
+            {"loads_nN": np.ma.array([1.0, 2.0], mask=[False, True])},
+            "loads_nN: 1 values are masked",
+        ),
         ({"loads_nN": None, "approach_nm": np.ones((2, 2))}, "approach_nm: accepted are rising"),
-        ({"loads_nN": None, "approach_nm": np.ma.array([1.0, 2.0], mask=[0, 1])}, "approach_nm: 1 values are masked"),
+        (
+            {"loads_nN": None, "approach_nm": np.ma.array([1.0, 2.0], mask=[0, 1])},
+            "approach_nm: 1 values are masked",
+        ),
         ({"periodic": "False"}, "periodic = 'False': accepted are True and False"),
         ({"periodic": 0}, "periodic = 0"),
         ({"attraction": 0.2}, "attraction = 0.2: accepted is a function"),
         ({"attraction": lambda: 1.0}, "takes 0 positional arguments"),
         ({"attraction": lambda gap: None}, "attraction"),
         ({"attraction": lambda gap: -np.ones_like(gap)}, r"-1 \.\. 0 GPa where sites do not touch"),
-        ({"attraction": lambda gap: np.full_like(gap, 1e6)}, r"0 \.\. 1e\+06 GPa where sites do not touch"),
+        (
+            {"attraction": lambda gap: np.full_like(gap, 1e6)},
+            r"0 \.\. 1e\+06 GPa where sites do not touch",
+        ),
         ({"attraction": lambda gap: np.ones((2, 2))}, "shape"),
         ({"h_prime": 8.0}, "without h_macro"),
         ({"h_macro": 0.0}, "h_macro = 0 GPa: the surface would carry nothing"),

@@ -30,7 +30,8 @@ def server():
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     process = subprocess.Popen(
-        [sys.executable, "-m", "asperity", "serve", "--port", str(port), "--workers", "2"], stdout=subprocess.PIPE
+        [sys.executable, "-m", "asperity", "serve", "--port", str(port), "--workers", "2"],
+        stdout=subprocess.PIPE,
     )
     url = f"http://127.0.0.1:{port}"
     for _ in range(600):
@@ -67,7 +68,10 @@ HEAD = b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Type: application
             HEAD + b"Transfer-Encoding: chunked\r\n\r\nZZ\r\nabc\r\n0\r\n\r\n",
             "no HTTP: Invalid character in chunk size",
         ),
-        (HEAD + b"Transfer-Encoding: chunked\r\n\r\n3\r\nabcdef\r\n0\r\n\r\n", "no HTTP: Expected LF"),
+        (
+            HEAD + b"Transfer-Encoding: chunked\r\n\r\n3\r\nabcdef\r\n0\r\n\r\n",
+            "no HTTP: Expected LF",
+        ),
         (HEAD + b"Content-Length: -5\r\n\r\n", "no HTTP: Invalid character in Content-Length"),
         (HEAD + b"Content-Encoding: gzip\r\nContent-Length: 3\r\n\r\nabc", "cannot be decoded"),
         (b"HELLO\r\n\r\n", "no HTTP: Invalid method"),
@@ -130,17 +134,41 @@ def test_client_gets_the_librarys_digits(server, name, values, config):
         ("Evaluate", {"name": "law", "input": [[1, 2]]}, "one list of 7 numbers"),
         ("Evaluate", {"name": "law", "input": [["a"] * 7]}, "one list of 7 numbers"),
         ("Evaluate", {"name": "contact_cycle", "input": [[*CENTRE[:-1], -1]]}, "rms = -1"),
-        ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"sed": 1}}, "unknown key"),
-        ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"seed": -1}}, "seed = -1"),
+        (
+            "Evaluate",
+            {"name": "contact_cycle", "input": [CENTRE], "config": {"sed": 1}},
+            "unknown key",
+        ),
+        (
+            "Evaluate",
+            {"name": "contact_cycle", "input": [CENTRE], "config": {"seed": -1}},
+            "seed = -1",
+        ),
         ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": 5}, "mapping"),
         ("Evaluate", {"name": []}, "no such model"),
         ("Evaluate", {"name": {"a": 1}}, "no such model"),
         ("ModelInfo", {"name": None}, "no such model"),
-        ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"cls": 1}}}, "cls = 1"),
+        (
+            "Evaluate",
+            {"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"cls": 1}}},
+            "cls = 1",
+        ),
         ("Evaluate", {"name": "contact_cycle", "input": [[*CENTRE[:-1], 10**400]]}, "too large"),
-        ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"pixels": 16384}}}, "points"),
-        ("Evaluate", {"name": "pad", "input": [CENTRE], "config": {"cells": 100_000}}, "grid points"),
-        ("Evaluate", {"name": "pad", "input": [CENTRE], "config": {"separations_nm": [40.0] * 5000}}, "1 .. 1000"),
+        (
+            "Evaluate",
+            {"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"pixels": 16384}}},
+            "points",
+        ),
+        (
+            "Evaluate",
+            {"name": "pad", "input": [CENTRE], "config": {"cells": 100_000}},
+            "grid points",
+        ),
+        (
+            "Evaluate",
+            {"name": "pad", "input": [CENTRE], "config": {"separations_nm": [40.0] * 5000}},
+            "1 .. 1000",
+        ),
         ("InputSizes", {"name": "none"}, "no such model"),
         ("OutputSizes", {"name": "pad", "config": {"separations_nm": "x"}}, "falling separations"),
     ],
@@ -154,11 +182,15 @@ def test_a_malformed_request_gets_one_line(server, path, body, words):
 
 
 @pytest.mark.parametrize("headers", [
-    {"Host": "evil.example"}, {"Host": "evil.example:4242"}, {"Host": "[::1"}, {"Content-Type": "text/plain"},
-    {"Content-Type": "application/x-www-form-urlencoded"}, {"Content-Type": "application/json; charset=nobody"},
+    {"Host": "evil.example"}, {"Host": "evil.example:4242"}, {"Host": "[::1"},
+    {"Content-Type": "text/plain"},
+    {"Content-Type": "application/x-www-form-urlencoded"},
+    {"Content-Type": "application/json; charset=nobody"},
 ])  # fmt: skip
 def test_a_web_page_cannot_use_the_server(server, headers):
-    """A page of a stranger may send forms anywhere, and may let a name of its own lead here; JSON it may not send."""
+    """A page of a stranger may send forms anywhere, and may let a name of its own lead here; JSON
+    it may not send.
+    """
     client = HTTPConnection(server[0].removeprefix("http://"), timeout=60)
     body = json.dumps({"name": "pad", "input": [CENTRE], "config": QUICK})
     client.request("POST", "/Evaluate", body, {"Content-Type": "application/json", **headers})
@@ -169,9 +201,13 @@ def test_a_web_page_cannot_use_the_server(server, headers):
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="needs /proc")
 def test_a_request_that_nobody_waits_for_is_ended(server):
-    """Large requests keep both workers; their clients go away, and a small request is answered at once."""
+    """Large requests keep both workers; their clients go away, and a small request is answered at
+    once.
+    """
     url = server[0].removeprefix("http://")
-    body = json.dumps({"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"pixels": 8192}}})
+    body = json.dumps(
+        {"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"pixels": 8192}}}
+    )
     clients = [HTTPConnection(url) for _ in range(4)]
     for client in clients:
         client.request("POST", "/Evaluate", body, {"Content-Type": "application/json"})
@@ -189,7 +225,10 @@ def children(pid):
         if entry.isdigit():
             try:
                 with open(f"/proc/{entry}/stat") as stat, open(f"/proc/{entry}/cmdline") as line:
-                    if int(stat.read().rpartition(")")[2].split()[1]) == pid and "spawn_main" in line.read():
+                    if (
+                        int(stat.read().rpartition(")")[2].split()[1]) == pid
+                        and "spawn_main" in line.read()
+                    ):
                         found.append(int(entry))
             except OSError:
                 continue
@@ -223,10 +262,15 @@ def test_a_worker_killed_at_work_is_replaced_and_its_request_repeated(server):
 def test_a_client_that_goes_away_leaves_the_server_well(server):
     url = server[0]
     host, port = url.removeprefix("http://").split(":")
-    body = json.dumps({"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"pixels": 256}}}).encode()
+    body = json.dumps(
+        {"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"pixels": 256}}}
+    ).encode()
     for cut in (len(body), len(body) // 2):
         client = socket.create_connection((host, int(port)))
-        client.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body) + body[:cut])
+        client.sendall(
+            b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body)
+            + body[:cut]
+        )
         client.close()
     assert len(umbridge.HTTPModel(url, "pad")([CENTRE], QUICK)) == 2
 
@@ -241,7 +285,9 @@ def test_only_the_local_address_listens(server):
 
 
 def test_a_foreign_library_propagates_through_it(server):
-    """OpenTURNS sends a sample through a pad by way of the client: its pull grows with the Hamaker constant."""
+    """OpenTURNS sends a sample through a pad by way of the client: its pull grows with the Hamaker
+    constant.
+    """
     openturns = pytest.importorskip("openturns")
     model = umbridge.HTTPModel(server[0], "pad")
 

@@ -24,7 +24,9 @@ def test_the_defaults_of_the_settings_are_among_the_shipped_materials():
     assert materials[elastic.material].network_glass is not None
 
 
-@pytest.mark.parametrize(("name", "quenched_g_cm3"), [("silicon_dioxide", 2.33), ("titanium_dioxide", 3.8)])
+@pytest.mark.parametrize(
+    ("name", "quenched_g_cm3"), [("silicon_dioxide", 2.33), ("titanium_dioxide", 3.8)]
+)
 def test_number_density_of_a_quenched_glass_is_that_of_its_stated_density(name, quenched_g_cm3):
     material = load_material(FOLDER / f"{name}.yaml")
     assert f"{quenched_g_cm3} g/cm3" in material.sources["asperity"]
@@ -55,9 +57,16 @@ def test_polycrystalline_titanium_is_the_average_of_its_crystal():
 
     bulk_high, shear_high = average(C, 3)
     compressibility, compliance = average(S, 0.75)
-    bulk, shear = (bulk_high + 1 / (9 * compressibility)) / 2, (shear_high + 1 / (4 * compliance)) / 2
-    assert 9 * bulk * shear / (3 * bulk + shear) == pytest.approx(body.young_GPa, abs=body.young_std_GPa)
-    assert (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)) == pytest.approx(body.poisson_ratio, abs=0.01)
+    bulk, shear = (
+        (bulk_high + 1 / (9 * compressibility)) / 2,
+        (shear_high + 1 / (4 * compliance)) / 2,
+    )
+    assert 9 * bulk * shear / (3 * bulk + shear) == pytest.approx(
+        body.young_GPa, abs=body.young_std_GPa
+    )
+    assert (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)) == pytest.approx(
+        body.poisson_ratio, abs=0.01
+    )
 
 
 def changed(tmp_path, name, where, value):
@@ -79,28 +88,88 @@ def changed(tmp_path, name, where, value):
 @pytest.mark.parametrize(
     ("name", "where", "value", "words"),
     [
-        ("silicon_dioxide", "oxide_glass/densty", 2.2, ["oxide_glass", "densty", "accepted are density_g_cm3"]),
+        (
+            "silicon_dioxide",
+            "oxide_glass/densty",
+            2.2,
+            ["oxide_glass", "densty", "accepted are density_g_cm3"],
+        ),
         ("silicon_dioxide", "oxide_glas", {}, ["oxide_glas'", "accepted are name, formula"]),
         ("silicon_dioxide", "oxide_glass/cutoff_A", None, ["oxide_glass.cutoff_A", "required"]),
-        ("silicon_dioxide", "oxide_glass/density_g_cm3", -2.2, ["density_g_cm3", "greater than 0", "-2.2"]),
+        (
+            "silicon_dioxide",
+            "oxide_glass/density_g_cm3",
+            -2.2,
+            ["density_g_cm3", "greater than 0", "-2.2"],
+        ),
         ("silicon_dioxide", "oxide_glass/density_g_cm3", float("nan"), ["density_g_cm3", "number"]),
-        ("silicon_dioxide", "oxide_glass/density_g_cm3", 22, ["density_g_cm3 = 22", "2.05 to 2.45"]),
+        (
+            "silicon_dioxide",
+            "oxide_glass/density_g_cm3",
+            22,
+            ["density_g_cm3 = 22", "2.05 to 2.45"],
+        ),
         ("silicon_dioxide", "oxide_glass/bond_range_A", [1.7, 1.5], ["bond_range_A", "must rise"]),
-        ("silicon_dioxide", "oxide_glass/cutoff_A", 1.5, ["cutoff_A = 1.5", "longer than bond_A = 1.61"]),
+        (
+            "silicon_dioxide",
+            "oxide_glass/cutoff_A",
+            1.5,
+            ["cutoff_A = 1.5", "longer than bond_A = 1.61"],
+        ),
         ("silicon_dioxide", "oxide_glass/cutoff_A", 4, ["cutoff_A", "less than or equal to 3"]),
-        ("silicon_dioxide", "oxide_glass/quenched/source", "nobody", ["nobody", "not listed under `sources`"]),
+        (
+            "silicon_dioxide",
+            "oxide_glass/quenched/source",
+            "nobody",
+            ["nobody", "not listed under `sources`"],
+        ),
         ("silicon_dioxide", "formula", {"Si": 1, "N": 2}, ["crystals.stishovite.sites", "Si, N"]),
         ("silicon_dioxide", "formula", {"$(1+1)": 1}, ["formula", "$(1+1)", "match pattern"]),
         ("silicon_dioxide", "name", "quartz", ["name", "'silicon_dioxide'", "'quartz'"]),
-        ("silicon", "crystals/silicon/spacegroup", 231, ["crystals.silicon.spacegroup", "230", "231"]),
+        (
+            "silicon",
+            "crystals/silicon/spacegroup",
+            231,
+            ["crystals.silicon.spacegroup", "230", "231"],
+        ),
         ("silicon", "crystals/silicon/cell", [5.4, 5.4, 5.4, 90, 90, 180], ["cell", "below 180"]),
-        ("silicon", "crystals/silicon/supercell", [3, 3, 0], ["supercell", "greater than or equal to 1"]),
-        ("silicon_nitride", "network_glass/density_g_cm3", [3.4, 2.6], ["density_g_cm3", "must rise"]),
+        (
+            "silicon",
+            "crystals/silicon/supercell",
+            [3, 3, 0],
+            ["supercell", "greater than or equal to 1"],
+        ),
+        (
+            "silicon_nitride",
+            "network_glass/density_g_cm3",
+            [3.4, 2.6],
+            ["density_g_cm3", "must rise"],
+        ),
         ("silicon_nitride", "network_glass/masses_u", {"Si": 28}, ["masses_u", "must have Si, N"]),
-        ("silicon_nitride", "network_glass/tersoff/elements/Si/S", 2.4, ["Si", "S = 2.4", "R = 2.5"]),
-        ("silicon_nitride", "network_glass/tersoff/elements/Si/lambda", None, ["Si.lambda", "required"]),
-        ("titanium", "polycrystal/poisson_ratio", 0.5, ["polycrystal.poisson_ratio", "less than 0.5"]),
-        ("titanium", "polycrystal/young_GPa", "stiff", ["polycrystal.young_GPa", "stiff", "number"]),
+        (
+            "silicon_nitride",
+            "network_glass/tersoff/elements/Si/S",
+            2.4,
+            ["Si", "S = 2.4", "R = 2.5"],
+        ),
+        (
+            "silicon_nitride",
+            "network_glass/tersoff/elements/Si/lambda",
+            None,
+            ["Si.lambda", "required"],
+        ),
+        (
+            "titanium",
+            "polycrystal/poisson_ratio",
+            0.5,
+            ["polycrystal.poisson_ratio", "less than 0.5"],
+        ),
+        (
+            "titanium",
+            "polycrystal/young_GPa",
+            "stiff",
+            ["polycrystal.young_GPa", "stiff", "number"],
+        ),
     ],
 )
 def test_a_bad_file_gets_one_line_that_names_it(tmp_path, name, where, value, words):
@@ -112,7 +181,9 @@ def test_a_bad_file_gets_one_line_that_names_it(tmp_path, name, where, value, wo
     assert all(word in message for word in [str(path), *words]), message
 
 
-@pytest.mark.parametrize("content", ["", "[1, 2", "!!python/object/apply:os.system ['true']", "name: [\n"])
+@pytest.mark.parametrize(
+    "content", ["", "[1, 2", "!!python/object/apply:os.system ['true']", "name: [\n"]
+)
 def test_unreadable_files(tmp_path, content):
     path = tmp_path / "mine.yaml"
     path.write_text(content)
@@ -127,5 +198,7 @@ def test_two_files_of_one_oxide_are_refused(tmp_path):
     twin = changed(tmp_path, "silicon_dioxide", "name", "twin")
     twin.rename(tmp_path / "twin.yaml")
     changed(tmp_path, "silicon_dioxide", "crystals", {})
-    with pytest.raises(InputError, match=r"twin\.yaml: oxide glass SiO2 stands in .*silicon_dioxide\.yaml too"):
+    with pytest.raises(
+        InputError, match=r"twin\.yaml: oxide glass SiO2 stands in .*silicon_dioxide\.yaml too"
+    ):
         load_materials(tmp_path)

@@ -26,7 +26,9 @@ def test_force_is_minus_the_slope_of_the_energy_and_both_vanish_at_the_cutoff(pa
             slope = (energy_after - energy_before) / (2 * step)
             np.testing.assert_allclose(force, -slope, rtol=1e-6, atol=1e-6)
             near_cutoff = np.array([potential.cutoff_A - 1e-6])
-            np.testing.assert_allclose(potential.energy_and_force(first, second, near_cutoff), 0, atol=1e-5)
+            np.testing.assert_allclose(
+                potential.energy_and_force(first, second, near_cutoff), 0, atol=1e-5
+            )
 
 
 def test_morse_term_as_published():
@@ -34,7 +36,9 @@ def test_morse_term_as_published():
     potential = load_potential(PMMCS)
     close, far = np.array([2.1]), np.array([2.4])
     silicon_oxygen, _ = potential.energy_and_force("Si", "O", close)
-    assert -COULOMB_EV_A * 2.88 / 2.1 - 0.340554 < silicon_oxygen[0] < -5  # screened below the bare sum
+    assert (
+        -COULOMB_EV_A * 2.88 / 2.1 - 0.340554 < silicon_oxygen[0] < -5
+    )  # screened below the bare sum
     assert potential.energy_and_force("Si", "O", far)[0][0] > silicon_oxygen[0]
 
 
@@ -43,7 +47,9 @@ def test_halved_energies_are_half_the_table():
 
     def numbers(scale):
         lines = [line.split() for line in potential.table(("Si", "O"), scale).splitlines()]
-        return np.array([line[1:] for line in lines if len(line) == 4 and line[0].isdigit()], dtype=float)
+        return np.array(
+            [line[1:] for line in lines if len(line) == 4 and line[0].isdigit()], dtype=float
+        )
 
     full, halved = numbers(1.0), numbers(0.5)
     assert full[0, 0] == TABLE_START_A
@@ -119,7 +125,13 @@ def test_a_bad_file_gets_one_line_that_names_it(tmp_path, change, words):
 
 @pytest.mark.parametrize(
     "content",
-    ["", "[1, 2", "!!python/object/apply:os.system ['true']", "a: &a [x]\nb: [*a, *a]", 'cutoff_A: !!int ""'],
+    [
+        "",
+        "[1, 2",
+        "!!python/object/apply:os.system ['true']",
+        "a: &a [x]\nb: [*a, *a]",
+        'cutoff_A: !!int ""',
+    ],
 )
 def test_unreadable_files(tmp_path, content):
     path = tmp_path / "mine.yaml"

@@ -9,7 +9,9 @@ from evidence.hardness.area import FLANKS, Layer, cut_bodies, cut_layer
 
 @pytest.mark.parametrize("shape", FLANKS)
 def test_flanks_widen_from_the_section(shape):
-    """At the plane of contact a flank has the section's area, below it more; of the sphere, pi (R^2 - z^2)."""
+    """At the plane of contact a flank has the section's area, below it more; of the sphere, pi (R^2
+    - z^2).
+    """
     at_plane = float(FLANKS[shape](np.zeros(1), 40.0)[0])
     area = np.pi * at_plane**2 if shape == "sphere" else (2 * at_plane) ** 2
     assert area == pytest.approx(1600, rel=1e-9)
@@ -20,7 +22,9 @@ def test_flanks_widen_from_the_section(shape):
 
 
 def test_dense_layer_has_its_known_area():
-    """Atoms on a lattice of 1 Å in the plane of contact: what is left is grid and rim, below 5 % from 3 nm on."""
+    """Atoms on a lattice of 1 Å in the plane of contact: what is left is grid and rim, below 5 %
+    from 3 nm on.
+    """
     places = np.stack(np.meshgrid(np.arange(20.0), np.arange(20.0)), axis=-1).reshape(-1, 2)
     layer = Layer(20.0, places, np.zeros(len(places)), np.zeros(len(places)))
     thin = Area(rim_A=0.5)  # half the lattice's spacing

@@ -26,7 +26,10 @@ def test_another_code_reads_the_file_and_finds_the_energy_of_the_sum(metal, tmp_
 
 
 def test_a_square_crystal_is_hardly_strained(metal):
-    free, square = crystal(metal, (19, 11, 4)), square_crystal(metal, 56.0, 4 * metal.eam.lattice_A[1])
+    free, square = (
+        crystal(metal, (19, 11, 4)),
+        square_crystal(metal, 56.0, 4 * metal.eam.lattice_A[1]),
+    )
     assert len(square) == len(free)
     assert square.cell_A[0] == square.cell_A[1]
     np.testing.assert_allclose(square.cell_A, 1.0043 * free.cell_A, rtol=5e-3)

@@ -11,7 +11,9 @@ SEPARATION = np.linspace(60.0, 20.0, 81)
 
 
 def made_up(count, well_kPa, press_GPa):
-    net = np.broadcast_to(-well_kPa * 1e-6 * np.exp(-(((SEPARATION - 35.0) / 4.0) ** 2)), (count, 81))
+    net = np.broadcast_to(
+        -well_kPa * 1e-6 * np.exp(-(((SEPARATION - 35.0) / 4.0) ** 2)), (count, 81)
+    )
     noise = 1.0 + 1e-3 * np.arange(count)[:, None]
     forces = np.stack([press_GPa * noise * np.ones_like(net), net * noise], axis=1)
     opening = np.stack([np.stack([np.zeros_like(net), net * noise], axis=1)] * 2, axis=1)

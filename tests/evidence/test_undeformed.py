@@ -1,4 +1,6 @@
-"""What the report states about attraction that does not deform the contact is what the studies found."""
+"""What the report states about attraction that does not deform the contact is what the studies
+found.
+"""
 
 from evidence.contact import adhesion
 from evidence.record import load

@@ -30,7 +30,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 class Workflow:
-    """Snakemake on this checkout's Snakefile, with its results in `folder`; `profile` is local or slurm."""
+    """Snakemake on this checkout's Snakefile, with its results in `folder`; `profile` is local or
+    slurm.
+    """
 
     def __init__(self, folder: Path, profile: str = "local") -> None:
         self.folder = folder
@@ -41,7 +43,9 @@ class Workflow:
         places = ["--workflow-profile", self.profile, "--directory", str(self.folder)]
         return [*SNAKEMAKE, *places, *targets, *options, "--config", f"scene={scene}"]
 
-    def run(self, scene: str, *targets: str, options: tuple[str, ...] = ()) -> subprocess.CompletedProcess[str]:
+    def run(
+        self, scene: str, *targets: str, options: tuple[str, ...] = ()
+    ) -> subprocess.CompletedProcess[str]:
         """Run to the end."""
         return subprocess.run(
             self._command(scene, targets, options),
@@ -76,12 +80,16 @@ class Workflow:
     def jobs(plan: str) -> dict[str, int]:
         """Number of jobs by rule, from what a plan says."""
         lines = plan.splitlines()
-        start = next((number for number, line in enumerate(lines) if line.startswith("job ")), len(lines))
+        start = next(
+            (number for number, line in enumerate(lines) if line.startswith("job ")), len(lines)
+        )
         rows = [line.split() for line in itertools.takewhile(str.strip, lines[start + 1 :])]
         return {rule: int(count) for rule, count, *_ in rows}
 
     def kill_when(self, scene: str, condition: Callable[[], bool], timeout_s: float = 600) -> bool:
-        """Start a run and SIGKILL it with all its children once `condition()` holds; False if it ended first."""
+        """Start a run and SIGKILL it with all its children once `condition()` holds; False if it
+        ended first.
+        """
         process = subprocess.Popen(
             self._command(scene, (), ()),
             env=self.environment,
@@ -110,7 +118,11 @@ def listing(folder: Path) -> dict[Path, tuple[float, bytes | str | None]]:
     return {
         path: (
             0.0 if path.is_dir() else path.lstat().st_mtime,
-            os.readlink(path) if path.is_symlink() else path.read_bytes() if path.is_file() else None,
+            os.readlink(path)
+            if path.is_symlink()
+            else path.read_bytes()
+            if path.is_file()
+            else None,
         )
         for path in paths
     }
@@ -130,7 +142,9 @@ def workflow_in(tmp_path):
 
 @pytest.fixture(scope="session")
 def made_up(tmp_path_factory):
-    """Folder of made-up results of every stage, and its files; a test that changes some takes a copy."""
+    """Folder of made-up results of every stage, and its files; a test that changes some takes a
+    copy.
+    """
     root = tmp_path_factory.mktemp("results") / "made_up"
     return root, write_all(root)
 

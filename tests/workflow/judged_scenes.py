@@ -1,9 +1,9 @@
 """The judge of a scene with mistakes, by what a run does before its first job.
 
-A scene is refused in single lines that begin with its file, or accepted as it stands: every value that an independent
-reader (text only, no types) finds in the file is the value that the run would use, and the published JSON Schema
-agrees. Anything else is a fault: another exception, a refusal of several lines, a value that was read as another.
-"""
+A scene is refused in single lines that begin with its file, or accepted as it stands: every value
+that an independent reader (text only, no types) finds in the file is the value that the run would
+use, and the published JSON Schema agrees. Anything else is a fault: another exception, a refusal of
+several lines, a value that was read as another."""
 
 import json
 import re
@@ -36,7 +36,14 @@ def judge(text: str, path: Path) -> tuple[str, str]:
     except Exception as error:  # whatever comes
         return "fault", f"{type(error).__name__}: {error}"
     if lines:
-        bad = next((line for line in lines if not (line.startswith(str(path)) and len(line) < LONGEST_LINE)), None)
+        bad = next(
+            (
+                line
+                for line in lines
+                if not (line.startswith(str(path)) and len(line) < LONGEST_LINE)
+            ),
+            None,
+        )
         broken = [line for line in lines if "".join(line.splitlines()) != line]
         if bad or broken:
             return "fault", f"refusal of another form: {bad or broken[0]}"
@@ -47,7 +54,9 @@ def judge(text: str, path: Path) -> tuple[str, str]:
 
 
 def _beyond_keys(scene: Scene, path: Path) -> list[str]:
-    """As the workflow's rules check a scene: the files it names, then contradictions and the machine."""
+    """As the workflow's rules check a scene: the files it names, then contradictions and the
+    machine.
+    """
     samples = {}
     for name, row in scene.inputs.rows().items():
         if isinstance(row.values, str):

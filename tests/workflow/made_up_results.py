@@ -78,24 +78,50 @@ def _curves(root: Path) -> None:
     h = np.linspace(20, 45, 30)
     groups, facts = {}, {}
     for name in ("elastic", "nonlinear", "plastic", "load_1000", "load_7000"):
-        central = {name: (a + b) / 2 if kind == "uniform" else a for name, (_, kind, a, b, _) in INPUTS.items()}
-        facts[name] = {"max_force_nN": 7000.0, "first_contact_nm": 40.0, "converged": True, **central}
+        central = {
+            name: (a + b) / 2 if kind == "uniform" else a
+            for name, (_, kind, a, b, _) in INPUTS.items()
+        }
+        facts[name] = {
+            "max_force_nN": 7000.0,
+            "first_contact_nm": 40.0,
+            "converged": True,
+            **central,
+        }
         for branch in ("closing", "opening"):
             force = 7000 * np.exp(-(h - 20) / 3)
             groups[f"{name}/{branch}"] = {
                 "separation_nm": Dataset(h, "nm", "mean separation", ("point",)),
                 "repulsive_nN": Dataset(force, "nN", "repulsion", ("point",)),
                 "attractive_nN": Dataset(-0.05 * force, "nN", "attraction", ("point",)),
-                "contact_area_nm2": Dataset(0.3 * force, "nm^2", "area of contacting sites", ("point",)),
+                "contact_area_nm2": Dataset(
+                    0.3 * force, "nm^2", "area of contacting sites", ("point",)
+                ),
             }
-    contact = {"length_nm": 1000.0, "pixels": 128, "reading": {"convention": "areal", "touching_attracts": False}}
-    write_h5(root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts)
+    contact = {
+        "length_nm": 1000.0,
+        "pixels": 128,
+        "reading": {"convention": "areal", "touching_attracts": False},
+    }
+    write_h5(
+        root / "curves/nominal.h5",
+        groups,
+        {"cell_area_nm2": 1e6, "contact": contact},
+        PROVENANCE,
+        facts,
+    )
     heights = np.add.outer(np.sin(np.arange(16)), np.cos(np.arange(16)))
     spots = {
         "towards_flat_nm": Dataset(heights, "nm", "height towards the flat", ("x", "y")),
-        "step": Dataset(np.digitize(-heights, [-1.5, -1.0, -0.5]) - 1, "1", "first step reached", ("x", "y")),
-        "separation_nm": Dataset(np.array([40.0, 30.0, 20.0]), "nm", "mean separation of the step", ("number",)),
-        "repulsive_nN": Dataset(np.array([10.0, 500.0, 7000.0]), "nN", "repulsive force", ("number",)),
+        "step": Dataset(
+            np.digitize(-heights, [-1.5, -1.0, -0.5]) - 1, "1", "first step reached", ("x", "y")
+        ),
+        "separation_nm": Dataset(
+            np.array([40.0, 30.0, 20.0]), "nm", "mean separation of the step", ("number",)
+        ),
+        "repulsive_nN": Dataset(
+            np.array([10.0, 500.0, 7000.0]), "nN", "repulsive force", ("number",)
+        ),
         "asperities": Dataset(np.array([1, 5, 9]), "1", "asperities in contact", ("number",)),
         "cut_share": Dataset(np.array([0.01, 0.1, 0.3]), "1", "share of the area", ("number",)),
     }
@@ -105,17 +131,25 @@ def _curves(root: Path) -> None:
         for branch, law in (("closing", LAW), ("opening", OPENED))
     ]
     run = {"run": 0, "node": 0, "seed": 0, "hamaker": 0.215}
-    _write(root / "law/parameters.csv", [run | fit for fit in (*fits, {**fits[1], "status": "poor_fit"})])
+    _write(
+        root / "law/parameters.csv",
+        [run | fit for fit in (*fits, {**fits[1], "status": "poor_fit"})],
+    )
     _write(root / "law/nominal.csv", [{"curve": "load_7000", **fit} for fit in fits])
 
 
 def _uncertainty(root: Path) -> None:
     rng = np.random.default_rng(0)
     rms = rng.uniform(2, 15, 200)
-    samples = {name: np.full(200, 1.0) for name in INPUTS} | {"rms": rms, "hamaker": np.full(200, 0.215)}
+    samples = {name: np.full(200, 1.0) for name in INPUTS} | {
+        "rms": rms,
+        "hamaker": np.full(200, 0.215),
+    }
     for branch, law in (("closing", LAW), ("opening", OPENED)):
         for name, value in law.items():
-            samples[f"{branch}_{name}"] = value * (rms / 8.5 if name.endswith("_nm") else np.ones(200))
+            samples[f"{branch}_{name}"] = value * (
+                rms / 8.5 if name.endswith("_nm") else np.ones(200)
+            )
     rows = [dict(zip(samples, line, strict=True)) for line in zip(*samples.values(), strict=True)]
     _write(root / "uq/samples.csv", rows)
     outputs = [*LAW, *(f"delta_{name}" for name in LAW)]
@@ -147,7 +181,13 @@ def _uncertainty(root: Path) -> None:
     _write(
         root / "uq/sensitivity.csv",
         [
-            {"output": output, "input": name, "mu_star": i, "paper_mu_star": i, "sobol_total": i / 21}
+            {
+                "output": output,
+                "input": name,
+                "mu_star": i,
+                "paper_mu_star": i,
+                "sobol_total": i / 21,
+            }
             for output in outputs
             for i, name in enumerate(INPUTS)
         ],
@@ -155,7 +195,15 @@ def _uncertainty(root: Path) -> None:
     _write(
         root / "uq/validation.csv",
         [
-            {"output": name, "runs": 50, "missing": 0, "q2": 0.9, "q2_low": 0.8, "q2_high": 0.95, "explained": 0.95}
+            {
+                "output": name,
+                "runs": 50,
+                "missing": 0,
+                "q2": 0.9,
+                "q2_low": 0.8,
+                "q2_high": 0.95,
+                "explained": 0.95,
+            }
             | ({"explained": 0.1, "doubt": DOUBT} if name == "C_r_GPa" else {})
             for name in outputs
         ],
@@ -183,13 +231,17 @@ def _uncertainty(root: Path) -> None:
 
 
 def _response(branch: str, name: str, value: float) -> dict[str, Any]:
-    """An output that every input moves, of each kind that the format has; `value` in the middle of the ranges."""
+    """An output that every input moves, of each kind that the format has; `value` in the middle of
+    the ranges.
+    """
     terms = {(0,) * 7: 1.0, (0, 1, 0, 0, 0, 0, 1): 0.03, (0, 0, 0, 0, 0, 3, 0): 0.04}
     terms |= {tuple(int(k == number) for k in range(7)): 0.01 * (number + 1) for number in range(6)}
     terms[0, 0, 0, 0, 0, 0, 1] = 0.5 if name == "d_c_nm" else 0.0
     if name == "rho_r_nm":
         kind = {"transform": "log"}
-        scaled = {degrees: share if any(degrees) else math.log(value) for degrees, share in terms.items()}
+        scaled = {
+            degrees: share if any(degrees) else math.log(value) for degrees, share in terms.items()
+        }
     elif (branch, name) == ("opening", "d_c_nm"):
         kind = {"transform": "log", "below": "closing_d_c_nm"}
         drop = math.log(LAW[name] - value)
@@ -197,7 +249,9 @@ def _response(branch: str, name: str, value: float) -> dict[str, Any]:
     else:
         kind = {"transform": "identity"}
         scaled = {degrees: share * value for degrees, share in terms.items()}
-    listed = [{"degrees": list(degrees), "coefficient": number} for degrees, number in scaled.items()]
+    listed = [
+        {"degrees": list(degrees), "coefficient": number} for degrees, number in scaled.items()
+    ]
     return {"name": f"{branch}_{name}", **kind, "terms": listed}
 
 
@@ -226,24 +280,36 @@ def _pad(root: Path) -> None:
     area, flats = 1e6, Flats(0.215, 0.165)
     separation = np.concatenate([np.geomspace(200, 50, 8)[:-1], np.arange(50, 19.9, -0.25)])
     grid = PadGrid(separation, np.arange(separation.size)[-61::12])
-    form = ClosedForm(-5.0, 0.15, 0.006, 0.3, 0.01, 0.02, 0.05, 1.0, 0.5, 0.0, flats.hamaker, flats.offset_nm)
+    form = ClosedForm(
+        -5.0, 0.15, 0.006, 0.3, 0.01, 0.02, 0.05, 1.0, 0.5, 0.0, flats.hamaker, flats.offset_nm
+    )
     shifts = np.random.default_rng(5).normal(0, 1.5, 24)
     closing = np.array([form.closing_GPa(separation + shift) for shift in shifts])
     opening = np.array(
-        [[form.opening_GPa(separation + shift, depth + shift) for depth in grid.depth_nm] for shift in shifts]
+        [
+            [form.opening_GPa(separation + shift, depth + shift) for depth in grid.depth_nm]
+            for shift in shifts
+        ]
     )
     for number, depth in enumerate(grid.depth_nm):
         opening[:, number, :, separation < depth] = np.nan
-    cells = PadCells(grid, np.full(24, 1 / 24), np.ones(24), 40 - shifts, closing, opening, np.ones(24, bool))
+    cells = PadCells(
+        grid, np.full(24, 1 / 24), np.ones(24), 40 - shifts, closing, opening, np.ones(24, bool)
+    )
     pad = Pad(cells, flats)
     _write(root / "pad/curves.csv", curve_rows(cells, pad.law))
     states = solve_deepened(DeviceSettings(), pad.law)
-    central = Solved(Point({}, 0.165, DeviceSettings()), pad, states, (states["release_V"], states["release_V"]))
+    central = Solved(
+        Point({}, 0.165, DeviceSettings()), pad, states, (states["release_V"], states["release_V"])
+    )
     model = PadModel(central, Design((), (), np.empty((0, 0)), np.arange(0), ()), ())
     switch = switch_on_pad(model, area)
     write_json(root / "device/pad_switch.json", switch, PROVENANCE)
     shipped = load_mapping(ROOT / "config" / "effects.yaml", "table of effects")
-    _write(root / "device/budget.csv", budget(effects_of(shipped), switch, central, {1.0: 7.0, 0.5: 5.0, 1.37: 7.3}))
+    _write(
+        root / "device/budget.csv",
+        budget(effects_of(shipped), switch, central, {1.0: 7.0, 0.5: 5.0, 1.37: 7.3}),
+    )
 
 
 def _hardness(root: Path) -> None:
@@ -253,7 +319,10 @@ def _hardness(root: Path) -> None:
         length = np.linspace(0.5, 4, 20)
         _write(
             root / f"hardness/closing/{run}.csv",
-            [{"contact_length_nm": x, "contact_stress_GPa": 10 * scale * min(x / 2, 1)} for x in length],
+            [
+                {"contact_length_nm": x, "contact_stress_GPa": 10 * scale * min(x / 2, 1)}
+                for x in length
+            ],
         )
         points.append(
             {
@@ -276,21 +345,31 @@ def _hardness(root: Path) -> None:
         steps = (100, 200, 300)
         _write(
             root / f"hardness/witness/{run}.csv",
-            [{"step": step, "displacement_nm": step / 1000, "exchanged_bonds": step // 10} for step in steps],
+            [
+                {"step": step, "displacement_nm": step / 1000, "exchanged_bonds": step // 10}
+                for step in steps
+            ],
         )
     _write(root / "hardness/points.csv", points)
     fit = {
         "method": "literature",
         "gate": {"passed": False, "reasons": ["only 2 of 9 runs <gave> a hardness"]},
         "H_macro_GPa": {"median": 1.9, "low": 1.1, "high": 2.8},
-        "hardness_GPa": {way: {"median": 9.0, "low": 8.0, "high": 10.0} for way in ("measured", "scales")},
-        "twins": [{"energy_scale": 0.5, "pairs": 1, "ratio": {"median": 0.5, "low": 0.44, "high": 0.57}}],
+        "hardness_GPa": {
+            way: {"median": 9.0, "low": 8.0, "high": 10.0} for way in ("measured", "scales")
+        },
+        "twins": [
+            {"energy_scale": 0.5, "pairs": 1, "ratio": {"median": 0.5, "low": 0.44, "high": 0.57}}
+        ],
         "free_fit": {
             "H_macro_GPa": {"mean": 10.0, "low": 7.0, "high": 13.0},
             "H_prime_GPa_nm0.5": {"mean": 0.1, "low": -6.0, "high": 4.0},
             "verdict": "6 runs do not tell H_prime from zero",
         },
-        "curve": [{"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9} for x in (2.0, 10.0)],
+        "curve": [
+            {"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9}
+            for x in (2.0, 10.0)
+        ],
         "film": {
             "base_GPa": {"low": 4, "median": 5, "high": 6},
             "left_out": {"film": 0.08, "paper": 0.2, "constant": 0.21},
@@ -325,7 +404,13 @@ def _elastic(root: Path) -> None:
     )
     gate = {"passed": True, "reasons": []}
     used = [f"a{i:02d}" for i in range(1, 4)]
-    e_star = {"mean_GPa": 90.0, "std_GPa": 4.0, "structures_used": used, "notes": ["no broken <bonds>"], "gate": gate}
+    e_star = {
+        "mean_GPa": 90.0,
+        "std_GPa": 4.0,
+        "structures_used": used,
+        "notes": ["no broken <bonds>"],
+        "gate": gate,
+    }
     write_json(root / "elastic/e_star.json", e_star, PROVENANCE)
     values = Dataset(np.random.default_rng(1).normal(90, 4, 500), "GPa", "E*", ("sample",))
     write_h5(root / "elastic/e_star.h5", {"samples": {"e_star_GPa": values}}, {}, PROVENANCE)
@@ -348,22 +433,50 @@ def _topography(root: Path) -> None:
             "heights": Dataset(heights, "nm", "heights", ("x", "y")),
         },
     }
-    facts = {"scans/small_01": {"length_x_nm": 1000.0, "rms_nm": 3.0, "trusted_low": 0.02, "trusted_high": 0.5}}
+    facts = {
+        "scans/small_01": {
+            "length_x_nm": 1000.0,
+            "rms_nm": 3.0,
+            "trusted_low": 0.02,
+            "trusted_high": 0.5,
+        }
+    }
     write_h5(root / "topography/spectra.h5", groups, {"synthetic": True}, PROVENANCE, facts)
     truth = {"q0": 0.021, "slope": 2.8, "rms_nm": 3.1}
     estimates = {
-        name: {"value": v, "interval": [0.9 * v, 1.1 * v], "scatter": [0.5 * v, 2 * v], "unit": unit}
+        name: {
+            "value": v,
+            "interval": [0.9 * v, 1.1 * v],
+            "scatter": [0.5 * v, 2 * v],
+            "unit": unit,
+        }
         for name, v, unit in (("q0", 0.02, "1/nm"), ("slope", 2.9, "1"), ("rms", 3.0, "nm"))
     }
     scan = {"name": "small_01", "rms_heights_nm": 2.9}
-    content = {"synthetic": True, "convention": "areal", "estimates": estimates, "truth": truth, "scans": [scan]}
-    write_json(root / "topography/parameters.json", {**content, "gate": {"passed": True, "reasons": []}}, PROVENANCE)
+    content = {
+        "synthetic": True,
+        "convention": "areal",
+        "estimates": estimates,
+        "truth": truth,
+        "scans": [scan],
+    }
+    write_json(
+        root / "topography/parameters.json",
+        {**content, "gate": {"passed": True, "reasons": []}},
+        PROVENANCE,
+    )
 
 
 def _history(root: Path) -> None:
     cycles, dwell = [], []
     for cycle in (1, 2):
-        row = {"seed": 1, "cycle": cycle, "held_s": 10.0 * cycle, "closed_nm": 25.0 - cycle, "last_contact_nm": 29.0}
+        row = {
+            "seed": 1,
+            "cycle": cycle,
+            "held_s": 10.0 * cycle,
+            "closed_nm": 25.0 - cycle,
+            "last_contact_nm": 29.0,
+        }
         row |= {"contact_area_nm2": 1e3, "dissipated_nN_nm": 1e4 / cycle**6, "pull_off_nN": 300.0}
         cycles.append(row)
         for time in (0.0, 10.0):
@@ -372,7 +485,9 @@ def _history(root: Path) -> None:
                 "hardness_factor": 0.9,
                 "separation_nm": 25.0 - cycle - time / 20,
             }
-            dwell.append({"seed": 1, "cycle": cycle, **held, "contact_area_nm2": 1e3, "asperities": 100})
+            dwell.append(
+                {"seed": 1, "cycle": cycle, **held, "contact_area_nm2": 1e3, "asperities": 100}
+            )
     _write(root / "history/cycles.csv", cycles)
     _write(root / "history/dwell.csv", dwell)
 
@@ -394,34 +509,80 @@ def _calibration(root: Path) -> None:
     )
     verdicts = {"pull_off": (0.5, "agrees"), "hardness": (0.0, far)}
     tables = {
-        kind: {"rows": 20, "probability": share, "verdict": verdict, "source": "made up, no measurement"}
+        kind: {
+            "rows": 20,
+            "probability": share,
+            "verdict": verdict,
+            "source": "made up, no measurement",
+        }
         for kind, (share, verdict) in verdicts.items()
     }
     chain = {"sampler": "emcee 3", "r_hat": 1.004, "independent_draws": 1700.0}
-    content = {"gate": {"passed": True, "reasons": []}, "remarks": [f"hardness (hardness.csv) {far}"], "chain": chain}
+    content = {
+        "gate": {"passed": True, "reasons": []},
+        "remarks": [f"hardness (hardness.csv) {far}"],
+        "chain": chain,
+    }
     content |= {"cycles": 1700, "response_error_share": 0.45, "points_left_out": 3}
     write_json(root / "calibration/posterior.json", {**content, "tables": tables}, PROVENANCE)
 
 
 def _studies(root: Path) -> None:
     rows = [
-        {"stage": "contact", "case": case, "knob": "force steps", "value": steps, "shipped": steps == 40}
-        | {"error": worse / steps**2, "own_error": 0.1 * worse / steps**2, "unit": "%", "release_V": None}
-        | {"reference": "320 steps; 4 surfaces", "wall_s": 0.01 * steps, "cpu_s": 0.01 * steps, "peak_rss_MB": 300.0}
+        {
+            "stage": "contact",
+            "case": case,
+            "knob": "force steps",
+            "value": steps,
+            "shipped": steps == 40,
+        }
+        | {
+            "error": worse / steps**2,
+            "own_error": 0.1 * worse / steps**2,
+            "unit": "%",
+            "release_V": None,
+        }
+        | {
+            "reference": "320 steps; 4 surfaces",
+            "wall_s": 0.01 * steps,
+            "cpu_s": 0.01 * steps,
+            "peak_rss_MB": 300.0,
+        }
         for case, worse in (("d_c", 100.0), ("C_r", 300.0))
         for steps in (5, 10, 20, 40)
     ]
     _write(root / "accuracy/contact.csv", rows)
-    own = {"stage": "answer", "case": "release", "shipped": True, "own_error": None, "unit": "V", "cpu_s": 0.0}
+    own = {
+        "stage": "answer",
+        "case": "release",
+        "shipped": True,
+        "own_error": None,
+        "unit": "V",
+        "cpu_s": 0.0,
+    }
     errors = {"elements of the beam": 0.03, "sites a side": 0.04}
-    finer = [{"knob": knob, "value": 128, "error": volts, "release_V": volts} for knob, volts in errors.items()]
-    _write(root / "device/errors.csv", [{**own, **row, "reference": "twice as many"} for row in finer])
-    cases = [{"case": case, "passed": passed} for case, passed in (("flat", True), ("spikes", False))]
+    finer = [
+        {"knob": knob, "value": 128, "error": volts, "release_V": volts}
+        for knob, volts in errors.items()
+    ]
+    _write(
+        root / "device/errors.csv", [{**own, **row, "reference": "twice as many"} for row in finer]
+    )
+    cases = [
+        {"case": case, "passed": passed} for case, passed in (("flat", True), ("spikes", False))
+    ]
     _write(root / "stability/contact.csv", cases)
 
 
 def _failure(root: Path) -> None:
-    failing = {"probability": 3e-5, "low": 2e-5, "high": 5e-5, "variation": 0.2, "by_response": 4e-5, "runs": 128}
+    failing = {
+        "probability": 3e-5,
+        "low": 2e-5,
+        "high": 5e-5,
+        "variation": 0.2,
+        "by_response": 4e-5,
+        "runs": 128,
+    }
     rows = [
         {"hold_V": volts, "attraction": times, "failing": 1e-6 * times * volts, "failing_q95": 1e-3}
         for volts in (60.0, 80.0, 100.0)
@@ -431,7 +592,9 @@ def _failure(root: Path) -> None:
         {
             "attraction": times,
             "failing": failing,
-            "given_common": {q: {"value": share} for q, share in (("0.05", 0.0), ("0.5", 2e-8), ("0.95", 3e-4))},
+            "given_common": {
+                q: {"value": share} for q, share in (("0.05", 0.0), ("0.5", 2e-8), ("0.95", 3e-4))
+            },
             "sure": 0.7,
             "largest_hold_V": largest,
             "least_rms_nm": 7.0,
@@ -440,12 +603,33 @@ def _failure(root: Path) -> None:
         }
         for times, largest in ((1 / 3, 100.0), (1.0, 71.0), (3.0, None))
     ]
-    rate = {"release_V": 0.0, "allowed": 1e-6, "confidence": 0.9, "hold_V": 70.0, "laws": laws, "switches": 160}
+    rate = {
+        "release_V": 0.0,
+        "allowed": 1e-6,
+        "confidence": 0.9,
+        "hold_V": 70.0,
+        "laws": laws,
+        "switches": 160,
+    }
     rate |= {"spring": "thickness_um"}
-    control = [{"name": "rms", "failing_if_known": 1e-7}, {"name": "hurst", "failing_if_known": 3e-5}]
-    write_json(root / "device/failure.json", rate | {"control_attraction": 1.0, "control": control}, PROVENANCE)
+    control = [
+        {"name": "rms", "failing_if_known": 1e-7},
+        {"name": "hurst", "failing_if_known": 3e-5},
+    ]
+    write_json(
+        root / "device/failure.json",
+        rate | {"control_attraction": 1.0, "control": control},
+        PROVENANCE,
+    )
     _write(root / "device/failure.csv", rows)
-    study = {"lumps": 24, "pull_in": 1e-4, "release": 3e-3, "capacitance": 0.01, "pull_in_V": 70.0, "release_V": 6.0}
+    study = {
+        "lumps": 24,
+        "pull_in": 1e-4,
+        "release": 3e-3,
+        "capacitance": 0.01,
+        "pull_in_V": 70.0,
+        "release_V": 6.0,
+    }
     study |= {"reference": 1e-3}
     write_json(root / "device/circuit.json", {"lumps": study}, PROVENANCE)
     switches = [
@@ -458,8 +642,17 @@ def _failure(root: Path) -> None:
             "pull_in_V": 70.0,
             "release_V": at,
         }
-        for name, at in (("fast", 6.0), ("slow", 6.1), ("sticky", 0.0), ("loose", 7.0), ("draw_01", 5.0))
+        for name, at in (
+            ("fast", 6.0),
+            ("slow", 6.1),
+            ("sticky", 0.0),
+            ("loose", 7.0),
+            ("draw_01", 5.0),
+        )
     ]
     _write(root / "device/circuit.csv", switches)
     ways = [f"{way}_{of}_fF" for way in ("up", "down") for of in ("central", "q05", "q95")]
-    _write(root / "device/loop.csv", [{"voltage_V": v, **dict.fromkeys(ways, 160.0 + v)} for v in (0.0, 40.0, 77.0)])
+    _write(
+        root / "device/loop.csv",
+        [{"voltage_V": v, **dict.fromkeys(ways, 160.0 + v)} for v in (0.0, 40.0, 77.0)],
+    )

@@ -1,4 +1,6 @@
-"""Scenes with mistakes: by key and value, by structure, and in their text; the same seed gives the same scene."""
+"""Scenes with mistakes: by key and value, by structure, and in their text; the same seed gives the
+same scene.
+"""
 
 import copy
 import json
@@ -12,13 +14,17 @@ from asperity.guards.foreign_yaml import load_mapping
 from workflow.scene import SCENES, Scene
 
 VALUES: tuple[Any, ...] = (
-    None, True, False, 0, -1, 1, 2, 10**9, 10**30, -0.0, 1e-300, 1e300, 0.5, -0.5, 1.0000001, "", " ", "0", "1e3",
-    "nan", ".inf", "16:40", "0200", "1_000", "0x10", "yes", "2026-11-22", "$(id)", "${x}", "{scene}", "../..",
-    "/etc/passwd", "a\tb", "a\nb", "é", "\u202e", "x" * 5000, [], {}, [0], [1, 2, 3], [[]], {"a": 1}, ["x"], [None],
+    None, True, False, 0, -1, 1, 2, 10**9, 10**30, -0.0, 1e-300, 1e300, 0.5, -0.5, 1.0000001, "",
+    " ", "0", "1e3",
+    "nan", ".inf", "16:40", "0200", "1_000", "0x10", "yes", "2026-11-22", "$(id)", "${x}",
+    "{scene}", "../..",
+    "/etc/passwd", "a\tb", "a\nb", "é", "\u202e", "x" * 5000, [], {}, [0], [1, 2, 3], [[]],
+    {"a": 1}, ["x"], [None],
     [1e300], [-1, "x"], list(range(500)), {"origin": "literature"}, {"file": "nowhere.csv"},
 )  # fmt: skip
 WORDS = (
-    "*a", "&a", "<<:", "!!int", "!!python/none", "%YAML 1.1\n---", "\t", "{", "}", "[", "]", ": ", "#", "|", ">",
+    "*a", "&a", "<<:", "!!int", "!!python/none", "%YAML 1.1\n---", "\t", "{", "}", "[", "]", ": ",
+    "#", "|", ">",
     "---", "...", "\x00", "\ufeff", "'", '"', "\\", "\r", ",", "? ", "- ", "@", "`", "0o7", "~",
 )  # fmt: skip
 
@@ -49,7 +55,13 @@ def _set(content: dict[str, Any], way: tuple[str, ...], value: Any) -> None:
 
 
 def _places(content: Any, above: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    items = content.items() if isinstance(content, dict) else enumerate(content) if isinstance(content, list) else ()
+    items = (
+        content.items()
+        if isinstance(content, dict)
+        else enumerate(content)
+        if isinstance(content, list)
+        else ()
+    )
     for key, value in items:
         yield (*above, key)
         yield from _places(value, (*above, key))
@@ -71,7 +83,9 @@ def _given_key(rng: random.Random, content: dict[str, Any]) -> None:
 
 
 def _scaled_number(rng: random.Random, content: dict[str, Any]) -> None:
-    numbers = [way for way in _places(content) if type(_owner(content, way)[way[-1]]) in (int, float)]
+    numbers = [
+        way for way in _places(content) if type(_owner(content, way)[way[-1]]) in (int, float)
+    ]
     if numbers:
         way = rng.choice(numbers)
         _owner(content, way)[way[-1]] *= rng.choice((-1, 0, 0.5, 2, 1e-9, 1e9))
@@ -81,7 +95,9 @@ def _misspelt(rng: random.Random, content: dict[str, Any]) -> None:
     way = rng.choice([way for way in _places(content) if isinstance(way[-1], str)])
     owner, name = _owner(content, way), way[-1]
     place = rng.randrange(len(name))
-    owner[name[:place] + rng.choice(("", "x", name[place] * 2)) + name[place + 1 :]] = owner.pop(name)
+    owner[name[:place] + rng.choice(("", "x", name[place] * 2)) + name[place + 1 :]] = owner.pop(
+        name
+    )
 
 
 def _moved(rng: random.Random, content: dict[str, Any]) -> None:
@@ -96,7 +112,8 @@ def _deleted(rng: random.Random, content: dict[str, Any]) -> None:
 
 
 _STRUCTURE: tuple[Callable[[random.Random, dict[str, Any]], None], ...] = (
-    _any_key, _any_key, _given_key, _given_key, _scaled_number, _scaled_number, _misspelt, _moved, _deleted,
+    _any_key, _any_key, _given_key, _given_key, _scaled_number, _scaled_number, _misspelt, _moved,
+    _deleted,
 )  # fmt: skip
 
 
@@ -113,10 +130,16 @@ def _broken_text(rng: random.Random, text: str) -> str:
 
 
 def mutated(seed: int) -> str:
-    """Text of a scene with one to three mistakes: two thirds of the scenes by content, one third in the text."""
+    """Text of a scene with one to three mistakes: two thirds of the scenes by content, one third in
+    the text.
+    """
     rng = random.Random(seed)
     if rng.random() < 1 / 3:
-        text = rng.choice(sorted(SCENES.glob("*.yaml"))).read_text(encoding="utf-8").replace("name: ", "name: my_")
+        text = (
+            rng.choice(sorted(SCENES.glob("*.yaml")))
+            .read_text(encoding="utf-8")
+            .replace("name: ", "name: my_")
+        )
         for _ in range(rng.choice((1, 1, 2))):
             text = _broken_text(rng, text) or " "
         return text

@@ -1,4 +1,6 @@
-"""Plan every target of every shipped scene in one process; prints rows of scene, target and the refusal, if any."""
+"""Plan every target of every shipped scene in one process; prints rows of scene, target and the
+refusal, if any.
+"""
 
 import contextlib
 import io
@@ -51,5 +53,8 @@ rows = []
 with SnakemakeApi(OutputSettings(dryrun=True, quiet={Quietness.ALL})) as api:
     for scene in sorted(path.stem for path in (ROOT / "config" / "scenes").glob("*.yaml")):
         workflow = read(api, scene)
-        rows += [(scene, target, refusal(lambda name=target, of=workflow: plan(of, name))) for target in targets()]
+        rows += [
+            (scene, target, refusal(lambda name=target, of=workflow: plan(of, name)))
+            for target in targets()
+        ]
 print(json.dumps(rows))

@@ -22,13 +22,20 @@ def scene(folder, *scans, **topography):
     """A scene whose roughness comes from these scans."""
     path = folder / "mine.yaml"
     keys = {"scans": f"[{', '.join(scans)}]", **topography}
-    path.write_text("topography: {" + ", ".join(f"{key}: {value}" for key, value in keys.items()) + "}" + MATERIAL)
+    path.write_text(
+        "topography: {"
+        + ", ".join(f"{key}: {value}" for key, value in keys.items())
+        + "}"
+        + MATERIAL
+    )
     return str(path)
 
 
 def errors(done):
     assert not TRACE.search(done.stderr)
-    return sorted({line for line in (done.stdout + done.stderr).splitlines() if line.startswith("ERROR")})
+    return sorted(
+        {line for line in (done.stdout + done.stderr).splitlines() if line.startswith("ERROR")}
+    )
 
 
 def rough(seed=0, pixels=64):
@@ -68,7 +75,9 @@ def test_each_bad_scan_gets_one_line(refused):
 
 def test_a_mended_scan_is_read_and_finished_ones_are_not_read_again(refused, make_workflow):
     _, folder = refused
-    finished, mended = (f"results/mine/topography/spectra/chunk_{number:03d}.h5" for number in (0, 1))
+    finished, mended = (
+        f"results/mine/topography/spectra/chunk_{number:03d}.h5" for number in (0, 1)
+    )
     before = (folder / finished).stat().st_mtime_ns
     write_gwy(folder / "unreadable.gwy", Scan(rough(1), (1000.0, 1000.0), "mended"))
     done = make_workflow(folder).run(str(folder / "mine.yaml"), finished, mended)
@@ -96,7 +105,9 @@ def test_a_constant_scan_stops_where_its_numbers_would_be_used(workflow_in):
 
 
 def test_a_failing_run_whose_reader_went_away_ends(workflow_in):
-    """As where the pager that it writes to is closed: it must not wait for ever and keep the next run out."""
+    """As where the pager that it writes to is closed: it must not wait for ever and keep the next
+    run out.
+    """
     (workflow_in.folder / "bad.gwy").write_bytes(b"nothing")
     run = workflow_in.start(scene(workflow_in.folder, "bad.gwy"), "topography")
     assert run.stderr is not None

@@ -1,4 +1,6 @@
-"""More direct runs add files and leave those that are there as they are; memory does not grow with them."""
+"""More direct runs add files and leave those that are there as they are; memory does not grow with
+them.
+"""
 
 import tracemalloc
 

@@ -6,18 +6,29 @@ from workflow.files.results import write_csv, write_json
 from workflow.report.available import Results
 from workflow.report.stages.budget import describe
 
-EFFECT = {"about": "at most", "how": "literature", "held": False, "settle": "measure it", "source": "a paper"}
+EFFECT = {
+    "about": "at most",
+    "how": "literature",
+    "held": False,
+    "settle": "measure it",
+    "source": "a paper",
+}
 
 
 @pytest.fixture
 def budget_of(tmp_path):
     def made(**tables):
         rows = {"humid air": 6.0, "creep of the beam": None}
-        tables["device/budget"] = [{"effect": name, "volts": volts, **EFFECT} for name, volts in rows.items()]
+        tables["device/budget"] = [
+            {"effect": name, "volts": volts, **EFFECT} for name, volts in rows.items()
+        ]
         for name, content in tables.items():
             write_csv(tmp_path / f"{name}.csv", content)
         write_json(tmp_path / "device/pad_switch.json", {"answer": None}, {})
-        paths = [tmp_path / "device/pad_switch.json", *(tmp_path / f"{name}.csv" for name in tables)]
+        paths = [
+            tmp_path / "device/pad_switch.json",
+            *(tmp_path / f"{name}.csv" for name in tables),
+        ]
         section = describe(Results(tmp_path, paths, "mine"))
         rows = (row for block in section.blocks if not isinstance(block, str) for row in block.rows)
         return {row[0]: row[1:3] for row in rows if len(row) == 4}  # without that of the sources

@@ -43,7 +43,11 @@ def test_a_damaged_result_is_known(tmp_path, result, damage):
 def test_a_job_refuses_a_damaged_input_in_one_line(tmp_path, result, capsys):
     result.write_bytes(halve(result.read_bytes()))
     snakemake = SimpleNamespace(
-        rule="propagate", wildcards={}, input=[str(result)], params={}, log=[str(tmp_path / "logs" / "a.log")]
+        rule="propagate",
+        wildcards={},
+        input=[str(result)],
+        params={},
+        log=[str(tmp_path / "logs" / "a.log")],
     )
     with pytest.raises(SystemExit), job(snakemake):
         pytest.fail("the job's body ran")
@@ -77,7 +81,11 @@ def test_a_result_written_again_is_whole(result):
 
 def test_the_checksum_is_in_the_format_of_sha256sum(result):
     done = subprocess.run(
-        ["sha256sum", "-c", record_of(result).name], cwd=result.parent, capture_output=True, text=True, check=False
+        ["sha256sum", "-c", record_of(result).name],
+        cwd=result.parent,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.stdout == "table.csv: OK\n"
 
@@ -92,12 +100,16 @@ inputs:
 """
 
 
-def test_the_next_run_makes_a_damaged_result_again_and_sees_changed_samples_not_touched_ones(workflow_in):
+def test_the_next_run_makes_a_damaged_result_again_and_sees_changed_samples_not_touched_ones(
+    workflow_in,
+):
     folder = workflow_in.folder / "beside"
     folder.mkdir()
     scene, samples = folder / "mine.yaml", folder / "rms.csv"
     scene.write_text(SCENE)
-    samples.write_text("rms\n5\n6\n7\n" + "5.5000000\n" * 110_000)  # above the megabyte that Snakemake would read
+    samples.write_text(
+        "rms\n5\n6\n7\n" + "5.5000000\n" * 110_000
+    )  # above the megabyte that Snakemake would read
     assert workflow_in.run(str(scene), "inputs").returncode == 0
     inputs = workflow_in.folder / "results/mine/inputs.csv"
     whole = inputs.read_bytes()
@@ -106,7 +118,9 @@ def test_the_next_run_makes_a_damaged_result_again_and_sees_changed_samples_not_
     assert workflow_in.planned(str(scene), "inputs") == {}
 
     strange = inputs.with_name("\x1b]0;title\x07\u202e\nERROR forged.csv")  # of nobody's rule
-    planted = [inputs.with_name(name) for name in (".bashrc.original", "notes.csv", ".notes.csv.sha256")]
+    planted = [
+        inputs.with_name(name) for name in (".bashrc.original", "notes.csv", ".notes.csv.sha256")
+    ]
     planted += [strange, record_of(strange)]
     for path in planted:
         path.write_text("x")

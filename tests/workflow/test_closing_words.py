@@ -10,7 +10,14 @@ from workflow.run.closing_words import judgement
 
 
 def row(**values):
-    return {"scan": "a", "quantity": "first_contact", "left_out": "True", "low": "3", "high": "5", **values}
+    return {
+        "scan": "a",
+        "quantity": "first_contact",
+        "left_out": "True",
+        "low": "3",
+        "high": "5",
+        **values,
+    }
 
 
 def test_a_scan_outside_its_description_is_a_doubt():
@@ -32,6 +39,9 @@ def test_a_description_made_from_the_scan_itself_is_not_testable():
 def test_of_right_descriptions_one_in_twenty_is_doubted(scans):
     rng = np.random.default_rng(scans)
     ends = {"low": math.exp(-1.645), "high": math.exp(1.645)}
-    sets = [[row(**ends, pressed=math.exp(rng.standard_normal())) for _ in range(scans)] for _ in range(2000)]
+    sets = [
+        [row(**ends, pressed=math.exp(rng.standard_normal())) for _ in range(scans)]
+        for _ in range(2000)
+    ]
     # three standard deviations of a share of 0.05 in 2000
     assert np.mean([bool(disagreeing(rows)) for rows in sets]) == pytest.approx(0.05, abs=0.015)

@@ -19,9 +19,14 @@ PROVENANCE = {"rule": "fit_law", "inputs_hash": "0", "versions": {"numpy": "2"}}
 def folders(tmp_path):
     """The same made-up results twice."""
     first, second = tmp_path / "first", tmp_path / "second"
-    rows = [{"run": "a", "d_c_nm": 31.5, "wall_s": 2.0}, {"run": "b", "d_c_nm": 32.5, "wall_s": 2.0}]
+    rows = [
+        {"run": "a", "d_c_nm": 31.5, "wall_s": 2.0},
+        {"run": "b", "d_c_nm": 32.5, "wall_s": 2.0},
+    ]
     write_csv(first / "law/table.csv", rows)
-    write_json(first / "fit.json", {"H_GPa": 5.0, "gate": {"passed": True, "reasons": []}}, PROVENANCE)
+    write_json(
+        first / "fit.json", {"H_GPa": 5.0, "gate": {"passed": True, "reasons": []}}, PROVENANCE
+    )
     force = Dataset(np.array([1.0, np.nan, 3.0]), "nN", "repulsive force", ("point",))
     write_h5(first / "curves.h5", {"closing": {"force": force}}, {"area_nm2": 4.0}, PROVENANCE)
     write_text(first / "scene.yaml", "scene: {name: ci}\nversions: {numpy: '2'}\ngit_commit: abc\n")
@@ -38,7 +43,9 @@ def test_what_says_who_made_it_and_how_fast_does_not_count(folders):
     write_json(second / "fit.json", {"H_GPa": 5.0, "gate": {"passed": True, "reasons": []}}, other)
     with h5py.File(second / "curves.h5", "a") as file:
         file.attrs["inputs_hash"] = "1"
-    write_text(second / "scene.yaml", "scene: {name: ci}\nversions: {numpy: '3'}\ngit_commit: def\n")
+    write_text(
+        second / "scene.yaml", "scene: {name: ci}\nversions: {numpy: '3'}\ngit_commit: def\n"
+    )
     write_text(second / "logs/fit_law.log", "took 7 s")
     (second / ".lock").touch()
     assert list(differences(first, second)) == []
@@ -94,7 +101,11 @@ def test_a_change_is_named(folders, change, line):
 
 @pytest.mark.parametrize(
     ("change", "code", "says"),
-    [(None, 0, "no difference"), (change_curve, 1, "curves.h5"), (shutil.rmtree, 2, "no results of a scene")],
+    [
+        (None, 0, "no difference"),
+        (change_curve, 1, "curves.h5"),
+        (shutil.rmtree, 2, "no results of a scene"),
+    ],
 )
 def test_the_command_says_it_by_its_exit_code(folders, change, code, says):
     first, second = folders
@@ -122,7 +133,9 @@ def test_a_file_that_cannot_be_read_is_named_and_the_rest_compared(folders, plan
         with h5py.File(second / "curves.h5", "a") as file:
             file.create_dataset("z", (10**9,), "f8", chunks=(10**6,))
     curves, fit = differences(first, second)
-    assert curves.startswith("curves.h5: " + ("cannot be read (ValueError" if planted else "/values"))
+    assert curves.startswith(
+        "curves.h5: " + ("cannot be read (ValueError" if planted else "/values")
+    )
     assert fit.startswith("fit.json: cannot be read (JSONDecodeError")
 
 
@@ -130,9 +143,19 @@ def test_the_command_says_what_each_scene_says_of_its_switch(made_up, tmp_path):
     (tmp_path / "other/device").mkdir(parents=True)
     (tmp_path / "other/device/pad_switch.json").write_text("[]")
     (tmp_path / "other/scene.yaml").write_text("")
-    command = [sys.executable, "-m", "asperity", "compare", str(made_up[0]), str(tmp_path / "other")]
+    command = [
+        sys.executable,
+        "-m",
+        "asperity",
+        "compare",
+        str(made_up[0]),
+        str(tmp_path / "other"),
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     first, second, *_ = done.stdout.splitlines()
     assert first.startswith("made_up: At central inputs the switch ")
-    assert second == "other: its switch cannot be read (AttributeError): damaged, or of another version"
+    assert (
+        second
+        == "other: its switch cannot be read (AttributeError): damaged, or of another version"
+    )
     assert done.returncode == 1

@@ -25,7 +25,9 @@ def test_a_chosen_cell_has_the_pressure_of_the_scene(tmp_path):
 
 
 def test_a_cell_that_the_scene_states_stays(tmp_path):
-    assert contact_settings(GIVEN, job(tmp_path, {"cell_nm": 1000.0, "surface": {}})) == ContactSettings(**GIVEN)
+    assert contact_settings(
+        GIVEN, job(tmp_path, {"cell_nm": 1000.0, "surface": {}})
+    ) == ContactSettings(**GIVEN)
 
 
 def test_a_side_follows_the_film_where_a_scene_with_scans_states_none():

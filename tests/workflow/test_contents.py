@@ -1,4 +1,6 @@
-"""Results follow the content of every file that a scene names, whatever its date; a touched file renews nothing."""
+"""Results follow the content of every file that a scene names, whatever its date; a touched file
+renews nothing.
+"""
 
 import ast
 import json
@@ -31,7 +33,13 @@ PATHS = {
     "device.spread.values",
 }
 # names of shipped files of materials, whose content counts, too
-MATERIALS = {"hardness.material", "hardness.base", "elastic.material", "elastic.counter_body", "elastic.crystals"}
+MATERIALS = {
+    "hardness.material",
+    "hardness.base",
+    "elastic.material",
+    "elastic.counter_body",
+    "elastic.crystals",
+}
 OTHER_TEXT = {
     "name",
     "inputs.source",
@@ -72,7 +80,12 @@ def change(path):
     if path.suffix == ".gwy":
         write_gwy(path, map_of(7))
     else:
-        path.write_text(path.read_text().replace("0.2", "0.3").replace("12,", "13,").replace("source:", "source:  "))
+        path.write_text(
+            path.read_text()
+            .replace("0.2", "0.3")
+            .replace("12,", "13,")
+            .replace("source:", "source:  ")
+        )
     os.utime(path, (LONG_AGO, LONG_AGO))
 
 
@@ -102,22 +115,36 @@ def finished(make_workflow, tmp_path_factory):
 
 
 def test_every_input_that_no_job_makes_is_followed_by_its_content(finished):
-    """From what Snakemake records of each result: its inputs, and the parameters that it compares."""
+    """From what Snakemake records of each result: its inputs, and the parameters that it
+    compares.
+    """
     workflow, _ = finished
-    recorded = [json.loads(path.read_text()) for path in (workflow.folder / ".snakemake/metadata").iterdir()]
+    recorded = [
+        json.loads(path.read_text()) for path in (workflow.folder / ".snakemake/metadata").iterdir()
+    ]
     assert len(recorded) > 100
     read = set()
     for result in recorded:
         sources = {path for path in result["input"] if not path.startswith("results/")}
         followed = {}
         for text in result["params"]:
-            if "'mine" in text or ".gwy'" in text or ".csv'" in text or ".yaml'" in text or ".css'" in text:
+            if (
+                "'mine" in text
+                or ".gwy'" in text
+                or ".csv'" in text
+                or ".yaml'" in text
+                or ".css'" in text
+            ):
                 value = ast.literal_eval(text)
                 followed |= value if isinstance(value, dict) and sources & value.keys() else {}
         assert sources == followed.keys(), result["rule"]
         read |= sources
     named = {Path(name).name for name in FILES} - {"gaps.csv"}  # which settings name, and no rule
-    assert {Path(path).name for path in read} >= named | {"silicon_dioxide.yaml", "silicon_nitride.yaml", "style.css"}
+    assert {Path(path).name for path in read} >= named | {
+        "silicon_dioxide.yaml",
+        "silicon_nitride.yaml",
+        "style.css",
+    }
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -133,7 +160,9 @@ def test_another_content_of_an_older_date_renews_what_reads_it_and_a_touch_nothi
         assert path.read_bytes() != before
         said = workflow.plan(scene).splitlines()
         lines = [line for line in said if not line.startswith("Using workflow")]
-        assert lines[0].startswith(f"{name}: changed since results were made of it; renews {reader}")
+        assert lines[0].startswith(
+            f"{name}: changed since results were made of it; renews {reader}"
+        )
         assert " about " in " ".join(lines[:3])
         jobs = workflow.jobs("\n".join(said))
         assert jobs.keys() >= {reader, "report"}
@@ -216,7 +245,9 @@ def test_a_damaged_memory_of_checksums_is_none(tmp_path, content):
 
 
 def test_a_file_that_cannot_be_read_is_left_to_its_job(tmp_path):
-    assert content_checksums([tmp_path / "gone.gwy"], tmp_path / "c.json") == {str(tmp_path / "gone.gwy"): UNREADABLE}
+    assert content_checksums([tmp_path / "gone.gwy"], tmp_path / "c.json") == {
+        str(tmp_path / "gone.gwy"): UNREADABLE
+    }
 
 
 def test_the_jobs_that_wait_for_a_reader_are_renewed():

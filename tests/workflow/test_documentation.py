@@ -1,4 +1,6 @@
-"""What the documentation shows works: its scenes load, and its reader of surrogates does what it says."""
+"""What the documentation shows works: its scenes load, and its reader of surrogates does what it
+says.
+"""
 
 import json
 import re
@@ -34,7 +36,9 @@ SCENES = [
     pytest.param(block, id=f"{page.stem}-{number}")
     for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
     for number, block in enumerate(
-        re.findall(r"^```yaml\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+        re.findall(
+            r"^```yaml\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE
+        )
     )
 ]
 
@@ -54,7 +58,9 @@ COMMANDS = [
     pytest.param(page, line.partition(" #")[0].strip(), id=line.strip())
     for page in PAGES
     for line in re.findall(
-        r"^(?:    )?((?:make|asperity|\.venv/bin/asperity) .*)", page.read_text("utf-8"), re.MULTILINE
+        r"^(?:    )?((?:make|asperity|\.venv/bin/asperity) .*)",
+        page.read_text("utf-8"),
+        re.MULTILINE,
     )
 ]
 
@@ -67,10 +73,12 @@ def plan(make_workflow, tmp_path_factory):
 
 @pytest.mark.parametrize(("page", "command"), COMMANDS)
 def test_a_command_of_a_page_is_understood(page, command, plan):
-    """Make has its target, the command its options, materials and keys; a scene ships and can be planned, or the page
-    writes it."""
+    """Make has its target, the command its options, materials and keys; a scene ships and can be
+    planned, or the page writes it."""
     if command.startswith("make"):
-        done = subprocess.run(["make", "-n", *shlex.split(command)[1:]], cwd=ROOT, capture_output=True, text=True)
+        done = subprocess.run(
+            ["make", "-n", *shlex.split(command)[1:]], cwd=ROOT, capture_output=True, text=True
+        )
         assert done.returncode == 0, done.stderr
         command = next((line for line in done.stdout.splitlines() if " asperity " in line), "")
         if not command:  # of developers
@@ -82,16 +90,25 @@ def test_a_command_of_a_page_is_understood(page, command, plan):
     if given.command == "film":
         material_of(given.material)
         device_of(given.device)
-    elif given.command == "demo" or (scene and (ROOT / "config/scenes" / f"{scene}.yaml").is_file()):
+    elif given.command == "demo" or (
+        scene and (ROOT / "config/scenes" / f"{scene}.yaml").is_file()
+    ):
         assert plan(scene or "demo", *targets)
     elif scene:
-        written = "asperity run scene.yaml", f"`{scene}`", f"--scene {scene}", f"asperity {Path(scene).stem}/"
+        written = (
+            "asperity run scene.yaml",
+            f"`{scene}`",
+            f"--scene {scene}",
+            f"asperity {Path(scene).stem}/",
+        )
         assert any(words in page.read_text(encoding="utf-8") for words in written)
         assert set(targets) <= set(stages())
 
 
 def test_extras_are_named_one_way():
-    known = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    known = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"][
+        "optional-dependencies"
+    ]
     for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
         text = page.read_text(encoding="utf-8")
         assert set(re.findall(r"asperity-contact\[(\w+)\]", text)) <= set(known)
@@ -99,7 +116,9 @@ def test_extras_are_named_one_way():
 
 
 def test_a_search_lists_pages_for_users_first(tmp_path):
-    """ "tip radius" found functions of the code before the page on scans; Sphinx gives results as such lists."""
+    """ "tip radius" found functions of the code before the page on scans; Sphinx gives results as
+    such lists.
+    """
     pages = "api/mesoscale", "evidence/tip", "topography"
     script = (
         (ROOT / "docs/search_order.js").read_text(encoding="utf-8")
@@ -120,7 +139,9 @@ def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):
     heights = asp.random_surface(INPUTS, asp.ContactSettings(pixels=128, length_nm=2000.0), 1)
     write_gwy(tmp_path / "scans" / "place.gwy", asp.Scan(heights, (2000.0, 2000.0), "place"))
     monkeypatch.chdir(tmp_path)
-    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    (code,) = re.findall(
+        r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL
+    )
     names: dict[str, Any] = {}
     exec(code, names)
     assert names["switch"].release_V >= 0.0
@@ -128,7 +149,9 @@ def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):
 
 def test_the_python_of_the_page_on_extending_writes_a_scan(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extending.md").read_text(encoding="utf-8"), re.DOTALL)
+    (code,) = re.findall(
+        r"```python\n(.*?)```", (ROOT / "docs/extending.md").read_text(encoding="utf-8"), re.DOTALL
+    )
     exec(code, {})
     (measured,) = load_measurements("my_scan.gwy")
     assert measured.data.lengths_nm == pytest.approx((1000.0, 1000.0))
@@ -175,8 +198,15 @@ def test_the_steps_of_the_tutorial_can_be_planned(make_workflow, tmp_path):
 
     assert planned(own) >= {"inputs", "press_pads", "device", "compute_direct_runs", "report"}
     measured = (
-        own | scans | switch | {"inputs": {name: own["inputs"][name] for name in ("e_star", "h_macro", "h_prime")}}
+        own
+        | scans
+        | switch
+        | {"inputs": {name: own["inputs"][name] for name in ("e_star", "h_macro", "h_prime")}}
     )
     assert planned(measured) >= {"analyse_scans", "press_pads", "device"}
-    computed = own | hardness | {"inputs": {name: row for name, row in own["inputs"].items() if name != "h_prime"}}
+    computed = (
+        own
+        | hardness
+        | {"inputs": {name: row for name, row in own["inputs"].items() if name != "h_prime"}}
+    )
     assert planned(computed, "hardness") >= {"make_glass", "run_closing", "hardness"}

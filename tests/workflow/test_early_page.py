@@ -1,4 +1,6 @@
-"""The page before a run ends shows the switch at central inputs, and says that it is not the last word."""
+"""The page before a run ends shows the switch at central inputs, and says that it is not the last
+word.
+"""
 
 import numpy as np
 
@@ -15,12 +17,17 @@ from workflow.run.pads import ScenePoints
 def test_the_switch_at_central_inputs_has_a_page(tmp_path):
     contact = ContactSettings(mechanics="coupled", attraction="offset")
     points = ScenePoints(TABLE, contact, DeviceSettings(), 2)
-    pad = Pad(cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165))
+    pad = Pad(
+        cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165)
+    )
     states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "deepened": 0.0}
     central = PadModel(Solved(points.by_number[0], pad, states, (5.9, 6.1)), points.design, ())
     root = tmp_path / "results/mine"
     write_csv(root / "inputs.csv", to_rows(TABLE))
-    scene = {"contact": contact.model_dump(mode="json"), "device": DeviceSettings().model_dump(mode="json")}
+    scene = {
+        "contact": contact.model_dump(mode="json"),
+        "device": DeviceSettings().model_dump(mode="json"),
+    }
     page = early_page(root, [str(root / "inputs.csv")], central, 1e6, scene)
     assert f"At central inputs the switch lets go at 6.00 V; no interval, because {STATUS}." in page
     assert "could not be drawn" not in page

@@ -1,9 +1,9 @@
 """Scene `ci`, real codes from melt to report: complete, reproducible, resumable.
 
-One run is left alone; a second is killed with SIGKILL once in each stage and resumed. Both must end with the
-same results. The second run takes over the melts and closings of the hardness stage, which `test_ownership` and
-`test_closing` kill, and the quenched cell of the first run. It has no points, whose pads are as the central one.
-"""
+One run is left alone; a second is killed with SIGKILL once in each stage and resumed. Both must end
+with the same results. The second run takes over the melts and closings of the hardness stage, which
+`test_ownership` and `test_closing` kill, and the quenched cell of the first run. It has no points,
+whose pads are as the central one."""
 
 import json
 import shutil
@@ -16,7 +16,8 @@ import pytest
 from workflow.files.results import load_csv
 from workflow.run.job import result_checksum
 
-# one job of each stage; its log is opened when it starts, so killing at its first sight interrupts that very job
+# one job of each stage; its log is opened when it starts, so killing at its first sight interrupts
+# that very job
 STAGES = {
     "elastic": "scan_glass",
     "topography": "analyse_scans",
@@ -69,17 +70,23 @@ def finished(make_workflow, tmp_path_factory):
 def datasets(file: h5py.File) -> dict[str, h5py.Dataset]:
     """Every dataset of a file by its path in it."""
     found = {}
-    file.visititems(lambda name, item: found.update({name: item}) if isinstance(item, h5py.Dataset) else None)
+    file.visititems(
+        lambda name, item: found.update({name: item}) if isinstance(item, h5py.Dataset) else None
+    )
     return found
 
 
 def content(path: Path):
-    """What a result file says, without the machine times and the names of the files that it was made of."""
+    """What a result file says, without the machine times and the names of the files that it was
+    made of.
+    """
     if path.suffix == ".h5":
         with h5py.File(path) as file:
             return {name: item[()].tobytes() for name, item in datasets(file).items()}
     if path.suffix == ".json":
-        named_alike = json.loads(path.read_text(encoding="utf-8").replace("results/killed/", "results/ci/"))
+        named_alike = json.loads(
+            path.read_text(encoding="utf-8").replace("results/killed/", "results/ci/")
+        )
         return {key: value for key, value in named_alike.items() if key != "provenance"}
     return result_checksum(path)
 
@@ -92,16 +99,24 @@ def take_over(finished, results: Path, *folders: str) -> None:
 
 
 def test_every_promised_result_is_there(finished):
-    missing = [name for name in (*RESULTS, *OF_POINTS) if not (finished.folder / "results/ci" / name).is_file()]
+    missing = [
+        name
+        for name in (*RESULTS, *OF_POINTS)
+        if not (finished.folder / "results/ci" / name).is_file()
+    ]
     assert not missing
 
 
 def test_every_part_of_the_page_is_drawn(finished):
-    assert "could not be drawn" not in (finished.folder / "results/ci/report.html").read_text(encoding="utf-8")
+    assert "could not be drawn" not in (finished.folder / "results/ci/report.html").read_text(
+        encoding="utf-8"
+    )
 
 
 def test_the_pad_has_an_answer(finished):
-    state = json.loads((finished.folder / "results/ci/device/pad_switch.json").read_text(encoding="utf-8"))
+    state = json.loads(
+        (finished.folder / "results/ci/device/pad_switch.json").read_text(encoding="utf-8")
+    )
     assert state["answer_status"] == "ok"
 
 
@@ -109,7 +124,9 @@ def test_every_h5_file_is_complete_and_has_units(finished):
     for path in (finished.folder / "results/ci").rglob("*.h5"):
         with h5py.File(path) as file:
             assert file.attrs["complete"], path
-            unlabelled = [name for name, item in datasets(file).items() if "units" not in item.attrs]
+            unlabelled = [
+                name for name, item in datasets(file).items() if "units" not in item.attrs
+            ]
             assert not unlabelled, path
 
 
@@ -134,26 +151,37 @@ def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_w
     take_over(finished, tmp_path / "results/killed", "hardness", "elastic/quenched")
     logs = tmp_path / "results/killed/logs"
     for job in STAGES.values():
-        if not list(logs.glob(f"{job}*.log")):  # a run killed in another stage may have come this far
-            assert workflow.kill_when(str(scene), lambda job=job: bool(list(logs.glob(f"{job}*.log")))), job
+        if not list(
+            logs.glob(f"{job}*.log")
+        ):  # a run killed in another stage may have come this far
+            assert workflow.kill_when(
+                str(scene), lambda job=job: bool(list(logs.glob(f"{job}*.log")))
+            ), job
     done = workflow.run(str(scene))
     assert done.returncode == 0, done.stdout + done.stderr
     for name in RESULTS:
         if name in ("scene.yaml", "report.html") or name.startswith("hardness/"):
             continue
-        first, second = content(finished.folder / "results/ci" / name), content(tmp_path / "results/killed" / name)
+        first, second = (
+            content(finished.folder / "results/ci" / name),
+            content(tmp_path / "results/killed" / name),
+        )
         np.testing.assert_equal(second, first, err_msg=name)
 
 
 def test_another_glass_moves_what_meets_the_contact(finished, make_workflow, tmp_path):
-    """Silicon nitride of another seed has another E*; hardness and roughness, which are taken over, stay."""
+    """Silicon nitride of another seed has another E*; hardness and roughness, which are taken over,
+    stay.
+    """
     workflow = make_workflow(tmp_path)
     scene = tmp_path / "other.yaml"
     scene.write_text("extends: ci\nname: other\nelastic: {seed: 4}\n")
     take_over(finished, tmp_path / "results/other", "hardness", "topography")
     done = workflow.run(str(scene), "inputs")
     assert done.returncode == 0, done.stdout + done.stderr
-    before, after = ({row["parameter"]: row for row in load_csv(path)} for path in inputs_of(finished, tmp_path))
+    before, after = (
+        {row["parameter"]: row for row in load_csv(path)} for path in inputs_of(finished, tmp_path)
+    )
     moved = {name for name in before if before[name]["a"] != after[name]["a"]}
     assert moved == {"e_star"}
     assert before["e_star"]["origin"] == "elastic"

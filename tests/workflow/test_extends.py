@@ -15,7 +15,8 @@ def test_keys_merge_and_rows_of_inputs_are_replaced_whole(tmp_path):
     mine = written(
         tmp_path,
         "mine",
-        "extends: paper\ninputs: {e_star: {origin: elastic}}\ncontact: {pixels: 64}\npad: {cells: 9}\n",
+        "extends: paper\ninputs: {e_star: {origin: elastic}}\ncontact: {pixels: 64}\npad: {cells:"
+        " 9}\n",
     )
     scene, paper = load_scene(mine), load_scene("paper")
     assert scene.name == "mine"

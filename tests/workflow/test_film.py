@@ -1,4 +1,6 @@
-"""From measured files to a scene, and the Python object beside that scene: the same numbers, digit for digit."""
+"""From measured files to a scene, and the Python object beside that scene: the same numbers, digit
+for digit.
+"""
 
 import os
 import re
@@ -56,21 +58,43 @@ def test_a_folder_becomes_a_scene_and_a_run(scans, started, tmp_path, monkeypatc
     assert "defaults" not in said
     assert "scene=scans.yaml" in started[0]
     scene = load_scene("scans.yaml")
-    assert (scene.contact.mechanics, scene.topography.tip_radius_nm, scene.device.gap_um) == ("coupled", 8.0, 2.0)
+    assert (scene.contact.mechanics, scene.topography.tip_radius_nm, scene.device.gap_um) == (
+        "coupled",
+        8.0,
+        2.0,
+    )
     rows = scene.inputs.rows()
     assert (rows["e_star"].distribution, rows["e_star"].values) == ("normal", (75.0, 4.0))
     assert (rows["h_macro"].distribution, rows["h_macro"].values) == ("uniform", (1.0, 1.6))
-    assert {name for name, row in rows.items() if row.origin == "topography"} == {"q0", "hurst", "rms", "q1"}
+    assert {name for name, row in rows.items() if row.origin == "topography"} == {
+        "q0",
+        "hurst",
+        "rms",
+        "q1",
+    }
     main([str(scans), *words])  # the same scene again: it goes on
     assert len(started) == 2
     assert main([str(scans), "--device", "gap_um=3"]) == 1  # another scene would overwrite this one
 
 
 def test_options_on_a_file_reach_its_scene(scans, started, tmp_path, monkeypatch):
-    """A map of nm without size and unit; the scene has all numbers of the device with their meaning."""
+    """A map of nm without size and unit; the scene has all numbers of the device with their
+    meaning.
+    """
     monkeypatch.chdir(tmp_path)
     np.savetxt("bare.txt", load_measurements(scans / "place_1.gwy")[0].data.heights_nm)
-    words = ["--size", "2.5x2.5", "--unit", "um,nm", "--detrend", "none", "--tip-nm", "0", "--channel", "Default"]
+    words = [
+        "--size",
+        "2.5x2.5",
+        "--unit",
+        "um,nm",
+        "--detrend",
+        "none",
+        "--tip-nm",
+        "0",
+        "--channel",
+        "Default",
+    ]
     assert main(["bare.txt", *words]) is None
     scene = load_scene("bare.yaml")
     (instrument,) = scene.topography.instruments
@@ -95,7 +119,9 @@ def test_a_file_is_described_by_one_thread_as_its_scene_does(scans, started, tmp
 def follow(said):
     """Options that a refusal names, with its values; of several channels the first."""
     options = []
-    for name, value in re.findall(r"--(size|unit|crop|points|channel)(?: ([\w:.x]+(?:,[\w:.]+)*))?", said):
+    for name, value in re.findall(
+        r"--(size|unit|crop|points|channel)(?: ([\w:.x]+(?:,[\w:.]+)*))?", said
+    ):
         if name == "channel":
             value = re.search(r"several height channels: ([^,]+),", said)[1]
         options += [f"--{name}", *([value] if value else [])]
@@ -108,7 +134,9 @@ def made_files(folder, heights):
     line = heights[:, 5]
     aperture = np.hypot(*np.meshgrid(x - pixels / 2, x - pixels / 2)) < pixels / 2
     scattered = np.random.default_rng(0).uniform(-0.5, 0.5, (pixels, pixels, 2))
-    points = np.stack([x[:, None] + scattered[..., 0], x[None, :] + scattered[..., 1], heights], axis=-1).reshape(-1, 3)
+    points = np.stack(
+        [x[:, None] + scattered[..., 0], x[None, :] + scattered[..., 1], heights], axis=-1
+    ).reshape(-1, 3)
     metres = {"Height": (heights * 1e-9, "m"), "ZSensor": (heights * 1e-9, "m")}
     np.savetxt(folder / "line_alone.txt", line)
     np.savetxt(folder / "line.txt", np.stack([x / 100, line], 1))
@@ -120,7 +148,10 @@ def made_files(folder, heights):
         file["first"], file["second"] = heights, heights
     write_channels(folder / "no_unit.gwy", {"Height": (heights, "")}, (2.5e-6, 2.5e-6))
     write_channels(folder / "two_channels.gwy", metres, (2.5e-6, 2.5e-6))
-    write_gwy(folder / "aperture.gwy", asp.Scan(np.where(aperture, heights, np.nan), (2500.0, 2500.0), "a"))
+    write_gwy(
+        folder / "aperture.gwy",
+        asp.Scan(np.where(aperture, heights, np.nan), (2500.0, 2500.0), "a"),
+    )
 
 
 @pytest.mark.parametrize(
@@ -138,7 +169,9 @@ def made_files(folder, heights):
         "aperture.gwy",
     ],
 )
-def test_every_option_that_a_refusal_prints_works(scans, name, started, tmp_path, monkeypatch, capsys):
+def test_every_option_that_a_refusal_prints_works(
+    scans, name, started, tmp_path, monkeypatch, capsys
+):
     """Followed as printed, a refusal at a time, the film is described; no refusal comes twice."""
     monkeypatch.chdir(tmp_path)
     made_files(tmp_path, load_measurements(scans / "place_1.gwy")[0].data.heights_nm)
@@ -161,15 +194,36 @@ def test_every_option_that_a_refusal_prints_works(scans, name, started, tmp_path
         (["scans", "--size", "10"], "--size: accepted for one file"),
         (["scans", "--unit", "inch"], "--unit inch: accepted are m, mm"),
         (["scans/place_1.gwy", "--size", "ten"], "--size ten: accepted is a number or two"),
-        (["scans/place_1.gwy", "--size", "10"], "scans/place_1.gwy: states a size itself; leave out"),
-        (["scans/place_1.gwy", "--unit", "um"], "scans/place_1.gwy: states a unit itself; leave out"),
+        (
+            ["scans/place_1.gwy", "--size", "10"],
+            "scans/place_1.gwy: states a size itself; leave out",
+        ),
+        (
+            ["scans/place_1.gwy", "--unit", "um"],
+            "scans/place_1.gwy: states a unit itself; leave out",
+        ),
         (["scans", "--points", "64x64"], "--points: accepted for one file"),
-        (["scans/place_1.gwy", "--points", "64"], "--points 64: accepted are two numbers such as 64x64"),
-        (["scans/place_1.gwy", "--points", "64x64"], "scans/place_1.gwy: is no list of points x, y, z"),
+        (
+            ["scans/place_1.gwy", "--points", "64"],
+            "--points 64: accepted are two numbers such as 64x64",
+        ),
+        (
+            ["scans/place_1.gwy", "--points", "64x64"],
+            "scans/place_1.gwy: is no list of points x, y, z",
+        ),
         (["scans/place_1.gwy", "--crop", "half"], "--crop half: accepted is nothing"),
-        (["scans/place_1.gwy", "--crop", "0:9999,0:64"], "scans/place_1.gwy: cut to 0:9999, 0:64 of"),
-        (["many"], "many: 201 files; at most 200 are described together: move those of this surface"),
-        (["scans/place_1.gwy", "--channel", "Phase"], "scans/place_1.gwy: no height channel 'Phase'"),
+        (
+            ["scans/place_1.gwy", "--crop", "0:9999,0:64"],
+            "scans/place_1.gwy: cut to 0:9999, 0:64 of",
+        ),
+        (
+            ["many"],
+            "many: 201 files; at most 200 are described together: move those of this surface",
+        ),
+        (
+            ["scans/place_1.gwy", "--channel", "Phase"],
+            "scans/place_1.gwy: no height channel 'Phase'",
+        ),
         (["rnu"], "rnu: neither a file nor a command; did you mean run?"),
         (["empty"], "empty: nothing to read"),
         (["scans", "--material", "stiffness=3"], "stiffness: no such input"),
@@ -177,7 +231,9 @@ def test_every_option_that_a_refusal_prints_works(scans, name, started, tmp_path
         (["scans", "--device", "gap=2"], "gap=2: accepted is KEY=NUMBER with a key of length_um"),
     ],
 )
-def test_bad_input_of_the_door_is_one_line(scans, arguments, words, started, tmp_path, monkeypatch, capsys):
+def test_bad_input_of_the_door_is_one_line(
+    scans, arguments, words, started, tmp_path, monkeypatch, capsys
+):
     monkeypatch.chdir(tmp_path)
     Path("empty").mkdir()
     Path("many").mkdir()
@@ -190,7 +246,9 @@ def test_bad_input_of_the_door_is_one_line(scans, arguments, words, started, tmp
     assert not started
 
 
-def test_interrupting_the_reading_of_files_is_one_line(scans, started, tmp_path, monkeypatch, capsys):
+def test_interrupting_the_reading_of_files_is_one_line(
+    scans, started, tmp_path, monkeypatch, capsys
+):
     def interrupt(*_):
         raise KeyboardInterrupt
 
@@ -207,15 +265,20 @@ def test_two_real_films_are_doubted_and_not_run(started, tmp_path, monkeypatch, 
     monkeypatch.chdir(tmp_path)
     assert main([str(AFM / "example_ps.tiff"), str(AFM / "di-6.di")]) == 1
     said = capsys.readouterr()
-    assert "DOUBT (several_surfaces, about spectrum): 01_example_ps and 02_di-6 look like" in said.out
+    assert (
+        "DOUBT (several_surfaces, about spectrum): 01_example_ps and 02_di-6 look like" in said.out
+    )
     assert said.err.startswith("ERROR example_ps.yaml: not run because of the doubts above")
     assert not started
-    # whoever knows that they are of one film says so, and the files that eq. 9 does not describe are pressed
+    # whoever knows that they are of one film says so, and the files that eq. 9 does not describe
+    # are pressed
     film = asp.Film([AFM / "example_ps.tiff", AFM / "di-6.di"], on_doubt="warn")
     assert film.press().cycle.converged
 
 
-def test_python_gives_the_numbers_of_the_scene_digit_for_digit(scans, started, workflow_in, monkeypatch):
+def test_python_gives_the_numbers_of_the_scene_digit_for_digit(
+    scans, started, workflow_in, monkeypatch
+):
     monkeypatch.chdir(workflow_in.folder)
     main([str(scans), "--scene", "mine.yaml"])
     content = yaml.safe_load(Path("mine.yaml").read_text(encoding="utf-8"))
@@ -225,10 +288,15 @@ def test_python_gives_the_numbers_of_the_scene_digit_for_digit(scans, started, w
     done = workflow_in.run("mine.yaml", "curves", "device")
     assert done.returncode == 0, done.stderr
 
-    threads = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMBA")}  # as jobs have it
+    threads = {
+        f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMBA")
+    }  # as jobs have it
     command = [sys.executable, "-c", SAME_NUMBERS, str(scans)]
     same = subprocess.run(
-        command, env={**os.environ, "PYTHONPATH": str(ROOT), **threads}, capture_output=True, text=True
+        command,
+        env={**os.environ, "PYTHONPATH": str(ROOT), **threads},
+        capture_output=True,
+        text=True,
     )
     assert same.returncode == 0, same.stderr
 

@@ -1,4 +1,6 @@
-"""A folder of results from a stranger leads nowhere else, and a page loses no more than the part that fails."""
+"""A folder of results from a stranger leads nowhere else, and a page loses no more than the part
+that fails.
+"""
 
 import os
 import shutil
@@ -42,12 +44,21 @@ def test_an_ordinary_folder_passes(results):
     [
         (lambda folder: (folder / ".lock").mkdir(), "a folder where a file"),
         (lambda folder: (folder / ".scene").mkdir(), "a folder where a file"),
-        (lambda folder: (folder / "law/parameters.csv").mkdir(parents=True), "a folder where a result"),
+        (
+            lambda folder: (folder / "law/parameters.csv").mkdir(parents=True),
+            "a folder where a result",
+        ),
         (lambda folder: (folder / ".scene").symlink_to("/etc/hostname"), "out of its folder"),
         (lambda folder: (folder / ".lock").symlink_to("../outside"), "out of its folder"),
         (lambda folder: (folder / "law").symlink_to("/tmp"), "out of its folder"),
-        (lambda folder: (folder / "work/glass/log.lammps").symlink_to("/tmp/x"), "out of its folder"),
-        (lambda folder: (folder / "law").symlink_to("/proc/1/cwd"), "out of its folder"),  # which only root may read
+        (
+            lambda folder: (folder / "work/glass/log.lammps").symlink_to("/tmp/x"),
+            "out of its folder",
+        ),
+        (
+            lambda folder: (folder / "law").symlink_to("/proc/1/cwd"),
+            "out of its folder",
+        ),  # which only root may read
         (lambda folder: (folder / "law").symlink_to("law"), "out of its folder"),
         (lambda folder: os.mkfifo(folder / ".scene"), "a pipe or device"),
         (lambda folder: os.mkfifo(folder / "work/glass/table"), "a pipe or device"),
@@ -62,8 +73,20 @@ def test_what_leads_elsewhere_or_waits_is_refused_in_one_line(results, plant, wo
 
 
 def test_what_killed_writers_left_is_removed(results):
-    names = (f"{UNFINISHED}a1b2c3_z.csv", f"{UNFINISHED}4711.inputs.csv.sha256", f"law/{UNFINISHED}abcdefgh.h5")
-    kept = (".inputs.csv.sha256", ".lock", ".jobs", ".scene", "inputs.csv", ".bashrc.original", ".x.csv.sha256.1")
+    names = (
+        f"{UNFINISHED}a1b2c3_z.csv",
+        f"{UNFINISHED}4711.inputs.csv.sha256",
+        f"law/{UNFINISHED}abcdefgh.h5",
+    )
+    kept = (
+        ".inputs.csv.sha256",
+        ".lock",
+        ".jobs",
+        ".scene",
+        "inputs.csv",
+        ".bashrc.original",
+        ".x.csv.sha256.1",
+    )
     (results / "law").mkdir()
     for name in (*names, *kept):
         (results / name).write_text("x")
@@ -76,7 +99,13 @@ def test_a_folder_of_somebody_else_behind_a_link_stays_as_it_is(tmp_path):
     """Nothing is removed, dated or made there, by no command."""
     home = tmp_path / "home"
     (home / ".ssh").mkdir(parents=True)
-    for name in ("notes.csv", ".notes.csv.sha256", ".bashrc.original", ".ssh/.config.abcdefgh", "inputs.csv"):
+    for name in (
+        "notes.csv",
+        ".notes.csv.sha256",
+        ".bashrc.original",
+        ".ssh/.config.abcdefgh",
+        "inputs.csv",
+    ):
         (home / name).write_text("mine")
     os.utime(home / "notes.csv", (2e9, 2e9))
     (tmp_path / "results").mkdir()
@@ -87,13 +116,17 @@ def test_a_folder_of_somebody_else_behind_a_link_stays_as_it_is(tmp_path):
         ("run", "paper", "inputs"),
         ("compare", "results/paper", "results/paper"),
     ):
-        done = subprocess.run([ASPERITY, *command], cwd=tmp_path, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [ASPERITY, *command], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
         assert done.returncode == (2 if "compare" in command else 1)
         assert [
             line for line in done.stderr.splitlines() if line.startswith("ERROR results/paper: ")
         ] or "compare" in command
         assert listing(home) == before
-        assert sorted(os.listdir(home)) == sorted({path.relative_to(home).parts[0] for path in before})
+        assert sorted(os.listdir(home)) == sorted(
+            {path.relative_to(home).parts[0] for path in before}
+        )
 
 
 @pytest.mark.skipif(os.path.exists("/proc/1/cwd"), reason="this user may read everything")
@@ -101,12 +134,20 @@ def test_a_folder_of_somebody_else_behind_a_link_stays_as_it_is(tmp_path):
 def test_a_link_to_where_one_may_not_look_is_refused(tmp_path, link):
     (tmp_path / link).parent.mkdir(exist_ok=True)
     (tmp_path / link).symlink_to("/proc/1/cwd")
-    done = subprocess.run([ASPERITY, "plan", "paper", "inputs"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.stderr == f"ERROR {link}: a link to /proc/1/cwd, which is not there; mount it, or remove the link\n"
+    done = subprocess.run(
+        [ASPERITY, "plan", "paper", "inputs"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert (
+        done.stderr
+        == f"ERROR {link}: a link to /proc/1/cwd, which is not there; mount it, or remove the"
+        " link\n"
+    )
 
 
 def test_a_checkout_in_a_path_with_a_space_and_a_site_with_a_profile_run(tmp_path):
-    """The interpreter's path reaches a shell as one word; settings of a site for its own workflows do not count."""
+    """The interpreter's path reaches a shell as one word; settings of a site for its own workflows
+    do not count.
+    """
     place = tmp_path / "it's a (place)"
     (place / "bin").mkdir(parents=True)
     (place / "bin/python").symlink_to(sys.executable)
@@ -117,7 +158,9 @@ def test_a_checkout_in_a_path_with_a_space_and_a_site_with_a_profile_run(tmp_pat
     environment = {**os.environ, "SNAKEMAKE_PROFILE": str(tmp_path), "PYTHONPATH": str(ROOT)}
     if str(ROOT).isascii():  # else Python 3.11 does not start (docs/troubleshooting.md)
         environment["LC_ALL"] = "xx_XX.UTF-8"
-    done = subprocess.run(command, cwd=place, capture_output=True, text=True, check=False, env=environment)
+    done = subprocess.run(
+        command, cwd=place, capture_output=True, text=True, check=False, env=environment
+    )
     assert done.returncode == 0, done.stderr
     assert (place / "results/paper/inputs.csv").is_file()
     assert "setlocale" not in done.stderr
@@ -137,7 +180,9 @@ def test_a_small_file_that_costs_gigabytes_or_leads_elsewhere_is_not_read(tmp_pa
             layout = h5py.VirtualLayout((3,), "f8")
             layout[:] = h5py.VirtualSource(str(tmp_path / "b.h5"), "z", (3,))
             file.create_virtual_dataset("z", layout)
-    with pytest.raises(ValueError, match="more than a result has" if planted == "large" else "lie in other files"):
+    with pytest.raises(
+        ValueError, match="more than a result has" if planted == "large" else "lie in other files"
+    ):
         load_h5(tmp_path / "a.h5")
 
 
@@ -177,7 +222,9 @@ def test_a_section_or_the_first_screen_that_fails_costs_itself(made_up, monkeypa
     monkeypatch.setattr("workflow.report.stages.inputs.describe", broken)
     monkeypatch.setattr(rendering, "first_screen", lambda results, gates: 1 / 0)
     root, paths = made_up
-    page = rendering.render(Results(root, [path for path in paths if path.name == "inputs.csv"], "made_up"))
+    page = rendering.render(
+        Results(root, [path for path in paths if path.name == "inputs.csv"], "made_up")
+    )
     assert "This part of the page could not be drawn (ZeroDivisionError" in page
     assert "<b>pull" not in page
     assert "first screen</b>" in page
@@ -187,8 +234,12 @@ def test_a_section_or_the_first_screen_that_fails_costs_itself(made_up, monkeypa
 
 
 def test_a_spreadsheet_computes_nothing_of_a_table(tmp_path):
-    write_csv(tmp_path / "x.csv", [{"source": '=HYPERLINK("http://x")', "value": -1.5, "text": "-2.5"}])
-    assert load_csv(tmp_path / "x.csv") == [{"source": '\'=HYPERLINK("http://x")', "value": "-1.5", "text": "-2.5"}]
+    write_csv(
+        tmp_path / "x.csv", [{"source": '=HYPERLINK("http://x")', "value": -1.5, "text": "-2.5"}]
+    )
+    assert load_csv(tmp_path / "x.csv") == [
+        {"source": '\'=HYPERLINK("http://x")', "value": "-1.5", "text": "-2.5"}
+    ]
 
 
 def test_a_field_of_any_length_is_read_back(tmp_path):
@@ -197,11 +248,15 @@ def test_a_field_of_any_length_is_read_back(tmp_path):
 
 
 def test_the_commit_and_the_helpers_of_somebody_else_stay_his(tmp_path):
-    """A wheel may lie in a repository that is not ours; in ours, no program of its settings is started."""
+    """A wheel may lie in a repository that is not ours; in ours, no program of its settings is
+    started.
+    """
     git = ["git", "-C", str(tmp_path), "-c", "user.name=a", "-c", "user.email=a"]
     subprocess.run([*git, "init", "-q"], check=True)
     subprocess.run([*git, "commit", "-q", "--allow-empty", "-m", "theirs"], check=True)
-    subprocess.run([*git, "config", "core.fsmonitor", f"touch {tmp_path / 'ran'}; false"], check=True)
+    subprocess.run(
+        [*git, "config", "core.fsmonitor", f"touch {tmp_path / 'ran'}; false"], check=True
+    )
     inside = tmp_path / "venv/site-packages"
     inside.mkdir(parents=True)
     assert own_commit(inside) == ""

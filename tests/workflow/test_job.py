@@ -35,7 +35,10 @@ def test_bad_input_is_one_line(snakemake, tmp_path, capsys):
 def test_an_unforeseen_error_is_called_internal(snakemake, capsys):
     with pytest.raises(SystemExit), job(snakemake):
         raise ZeroDivisionError("division by zero")
-    assert "internal error (ZeroDivisionError: division by zero); details in" in capsys.readouterr().err
+    assert (
+        "internal error (ZeroDivisionError: division by zero); details in"
+        in capsys.readouterr().err
+    )
 
 
 def test_a_full_disk_is_named(snakemake, capsys):

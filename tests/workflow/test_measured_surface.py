@@ -1,4 +1,6 @@
-"""What the page says of a measured surface: doubts stand beside what they touch, names are short."""
+"""What the page says of a measured surface: doubts stand beside what they touch, names are
+short.
+"""
 
 import pytest
 
@@ -6,14 +8,23 @@ from workflow.report.measured_surface import doubts, short_names
 from workflow.report.page import DoubtNote
 
 DOUBTS = [
-    {"code": "gap", "about": "spectrum", "text": "nothing is measured there", "remedy": "add scans"},
+    {
+        "code": "gap",
+        "about": "spectrum",
+        "text": "nothing is measured there",
+        "remedy": "add scans",
+    },
     {"code": "one_place", "about": "rms", "text": "one measurement", "remedy": ""},
 ]
 
 
 def test_a_doubt_is_said_about_the_numbers_that_it_touches():
-    spectrum, heights = (list(doubts({"doubts": DOUBTS}, *about)) for about in (("spectrum",), ("rms", "heights")))
-    assert spectrum == [DoubtNote("Doubt about spectrum (gap): nothing is measured there. To do: add scans.")]
+    spectrum, heights = (
+        list(doubts({"doubts": DOUBTS}, *about)) for about in (("spectrum",), ("rms", "heights"))
+    )
+    assert spectrum == [
+        DoubtNote("Doubt about spectrum (gap): nothing is measured there. To do: add scans.")
+    ]
     assert heights == [DoubtNote("Doubt about rms (one_place): one measurement.")]
 
 

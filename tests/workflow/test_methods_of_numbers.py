@@ -1,4 +1,6 @@
-"""One quantity, one number on the first screen; elsewhere each number stands under the model that gave it."""
+"""One quantity, one number on the first screen; elsewhere each number stands under the model that
+gave it.
+"""
 
 import re
 
@@ -32,12 +34,24 @@ def test_no_other_release_stands_on_the_page(results, page):
     """
     page = re.sub(r'<section id="part-budget".*?</section>', "", page, flags=re.DOTALL)
     page = re.sub(r'aria-label="Numerical errors;.*?</table>', "", page, flags=re.DOTALL)
-    unfolded = re.sub(r"<details.*?</details>", "", page[page.index("<main>") : page.index("</main>")], flags=re.DOTALL)
+    unfolded = re.sub(
+        r"<details.*?</details>",
+        "",
+        page[page.index("<main>") : page.index("</main>")],
+        flags=re.DOTALL,
+    )
     unfolded = re.sub(r"<svg.*?</svg>", "", unfolded, flags=re.DOTALL)
     volts = set(re.findall(r"[\d.]+ V\b", re.sub(r"<[^>]*>", "", unfolded)))
-    assert volts <= {f"{value:.3g} V" for value in (*verdict(results).release_V, *(verdict(results).other_law_V or ()))}
+    assert volts <= {
+        f"{value:.3g} V"
+        for value in (*verdict(results).release_V, *(verdict(results).other_law_V or ()))
+    }
     for other in (pad, uncertainty, sensitivity):
-        assert not any("release (V)" in row for block in other.describe(results).blocks for row in _heads(block))
+        assert not any(
+            "release (V)" in row
+            for block in other.describe(results).blocks
+            for row in _heads(block)
+        )
 
 
 def _heads(block):

@@ -1,4 +1,6 @@
-"""Asperity as a module of another workflow, which has a folder of its own and its own rules and handlers."""
+"""Asperity as a module of another workflow, which has a folder of its own and its own rules and
+handlers.
+"""
 
 import os
 import subprocess
@@ -40,12 +42,19 @@ def host(tmp_path):
     def run(scene: str, target: str, *options: str) -> str:
         (tmp_path / "workflow").mkdir(exist_ok=True)  # a host has such a folder too
         snakefile = str(ROOT / "workflow" / "Snakefile")
-        (tmp_path / "workflow" / "Snakefile").write_text(HOST.format(snakefile=snakefile, target=target))
+        (tmp_path / "workflow" / "Snakefile").write_text(
+            HOST.format(snakefile=snakefile, target=target)
+        )
         (tmp_path / "config.yaml").write_text(f"asperity: {{scene: {scene}}}")
         snakemake = str(Path(sys.executable).with_name("snakemake"))
         command = [snakemake, *options, "--cores", "1", "--configfile", "config.yaml"]
-        env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache")}  # Snakemake's own, where the home is read-only
-        done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
+        env = {
+            **os.environ,
+            "XDG_CACHE_HOME": str(tmp_path / "cache"),
+        }  # Snakemake's own, where the home is read-only
+        done = subprocess.run(
+            command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False
+        )
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout + done.stderr
 
@@ -63,7 +72,9 @@ def test_a_host_workflow_runs_the_module_in_its_own_folder(host, tmp_path):
     paper = (ROOT / "config" / "scenes" / "paper.yaml").read_text()
     (tmp_path / "mine.yaml").write_text(paper.replace("name: paper", "name: mine"))
     said = host("mine.yaml", "results/mine/inputs.csv", "all", "glass_amber.txt")
-    assert (tmp_path / "answer.txt").read_text() == (tmp_path / "results/mine/inputs.csv").read_text()
+    assert (tmp_path / "answer.txt").read_text() == (
+        tmp_path / "results/mine/inputs.csv"
+    ).read_text()
     assert (tmp_path / "glass_amber.txt").exists()
     assert "the host starts" in said
     assert "the host is done" in said

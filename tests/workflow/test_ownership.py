@@ -74,7 +74,9 @@ def test_a_second_run_is_refused(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(os, "pidfd_open"), reason="needs Linux")
-def test_a_job_dies_with_its_run_and_what_it_started_keeps_the_next_run_out(tmp_path, started, monkeypatch):
+def test_a_job_dies_with_its_run_and_what_it_started_keeps_the_next_run_out(
+    tmp_path, started, monkeypatch
+):
     run = started(["sleep", "60"])
     environment = {**os.environ, ownership.RUN: str(run.pid)}
     job = started([sys.executable, "-c", JOB, str(tmp_path)], env=environment)
@@ -94,7 +96,9 @@ def test_a_job_dies_with_its_run_and_what_it_started_keeps_the_next_run_out(tmp_
 def test_a_job_whose_run_is_gone_does_nothing(tmp_path, started):
     run = started(["true"])
     run.wait()
-    job = started([sys.executable, "-c", JOB, str(tmp_path)], env={**os.environ, ownership.RUN: str(run.pid)})
+    job = started(
+        [sys.executable, "-c", JOB, str(tmp_path)], env={**os.environ, ownership.RUN: str(run.pid)}
+    )
     assert job.wait(20) == -signal.SIGKILL
     assert job.stdout.read() == ""
     assert not (tmp_path / ".jobs").exists()
@@ -106,7 +110,9 @@ def test_results_belong_to_the_file_of_one_scene(tmp_path):
     ownership.claim(tmp_path, first, shipped, write=False)
     ownership.claim(tmp_path, second, shipped, write=True)
     ownership.claim(tmp_path, second.resolve(), shipped, write=True)
-    with pytest.raises(ownership.Refused, match=r"results of .*/b/mine\.yaml, not of .*/a/mine\.yaml"):
+    with pytest.raises(
+        ownership.Refused, match=r"results of .*/b/mine\.yaml, not of .*/a/mine\.yaml"
+    ):
         ownership.claim(tmp_path, first, shipped, write=False)
 
 
@@ -133,14 +139,18 @@ hardness:
 GLASS = "results/glass/hardness/glass/1.data"
 
 
-def test_runs_after_interrupted_ones_work_at_once_and_end_as_an_uninterrupted_one(workflow_in, tmp_path):
+def test_runs_after_interrupted_ones_work_at_once_and_end_as_an_uninterrupted_one(
+    workflow_in, tmp_path
+):
     (tmp_path / "glass.yaml").write_text(SCENE)
     scene = str(tmp_path / "glass.yaml")
     work = tmp_path / "results/glass/work/glass_1"
 
     def start_until(segment):
         run = workflow_in.start(scene, GLASS)
-        assert eventually(lambda: (work / f"restart.{segment}").exists() or run.poll() is not None, 300)
+        assert eventually(
+            lambda: (work / f"restart.{segment}").exists() or run.poll() is not None, 300
+        )
         assert run.poll() is None
         return run
 
@@ -167,7 +177,9 @@ def test_runs_after_interrupted_ones_work_at_once_and_end_as_an_uninterrupted_on
 
 
 def old_results(folder):
-    """Results of a former version of scene `paper`: a table that no rule makes any more, and a page."""
+    """Results of a former version of scene `paper`: a table that no rule makes any more, and a
+    page.
+    """
     results = folder / "results" / "paper"
     for name in ("law/wells.csv", "report.html"):
         (results / name).parent.mkdir(parents=True, exist_ok=True)
@@ -183,10 +195,15 @@ def test_results_of_another_version_are_named_once_and_kept(workflow_in):
     done = workflow_in.run("paper", "inputs")
     assert done.returncode == 0, done.stderr
     said = " ".join((done.stdout + done.stderr).split())
-    assert said.count("wells.csv is a result of another version: nothing here reads or changes them") == 1
+    assert (
+        said.count("wells.csv is a result of another version: nothing here reads or changes them")
+        == 1
+    )
     assert "report.html is older than they are: a run without a target renews it" in said
     assert "the report is" not in said
-    assert (results / "law/wells.csv").read_text() == (results / "report.html").read_text() == "old\n"
+    assert (
+        (results / "law/wells.csv").read_text() == (results / "report.html").read_text() == "old\n"
+    )
     assert (results / "inputs.csv").is_file()
 
 

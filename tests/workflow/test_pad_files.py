@@ -14,18 +14,25 @@ from workflow.run.pads import CURVES, STATES, ScenePoints, UnfitModel, load_mode
 def test_a_model_comes_back_from_its_file_and_from_its_parts(tmp_path):
     """With a point that could not be pressed, and one of whose halves one carries no switch."""
     points = ScenePoints(TABLE, ContactSettings(mechanics="asperity"), DeviceSettings(), 2)
-    pad = Pad(cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165))
+    pad = Pad(
+        cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165)
+    )
     states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "deepened": 0.0}
     solved = {
         0: Solved(points.by_number[0], pad, states, (5.9, 6.1)),
-        1: Solved(points.by_number[1], None, {}, (np.nan, np.nan), "the cells never reach the pressure"),
+        1: Solved(
+            points.by_number[1], None, {}, (np.nan, np.nan), "the cells never reach the pressure"
+        ),
         2: Solved(points.by_number[2], pad, states | {"release_V": 0.0}, (np.nan, 0.0)),
     }
     whole, parts = tmp_path / "model.h5", [tmp_path / "a.h5", tmp_path / "b.h5"]
     write_solved(str(whole), solved, {}, points.design)
     write_solved(str(parts[0]), {0: solved[0], 2: solved[2]}, {})
     write_solved(str(parts[1]), {1: solved[1]}, {})
-    for model in (load_model([str(whole)], points), load_model([str(part) for part in parts], points)):
+    for model in (
+        load_model([str(whole)], points),
+        load_model([str(part) for part in parts], points),
+    ):
         assert model.refused == ["the cells never reach the pressure"]
         assert model.states("release_V").tolist() == [0.0]
         assert model.central.halves_V == (5.9, 6.1)
@@ -67,7 +74,10 @@ FORGED = {
     **{f"no {name}": replaced(name, None) for name in CURVES},
     **{f"{name} of text": replaced(name, "x") for name in CURVES},
     **{f"{name} of another shape": replaced(name, np.ones((3, 1))) for name in CURVES},
-    **{f"no {name}": said(name, None) for name in (*STATES, "halves_V", "refused", "hamaker", "offset_nm")},
+    **{
+        f"no {name}": said(name, None)
+        for name in (*STATES, "halves_V", "refused", "hamaker", "offset_nm")
+    },
     **{f"{name} of -5": said(name, -5.0) for name in (*STATES, "hamaker", "offset_nm")},
     **{f"{name} not a number": said(name, np.nan) for name in (*STATES, "hamaker", "offset_nm")},
     **{f"{name} of text": said(name, "5") for name in (*STATES, "halves_V")},
@@ -93,7 +103,9 @@ FORGED = {
 def test_a_forged_model_is_refused_in_one_line(tmp_path, name):
     """None is believed, and none ends in an error of this program."""
     points = ScenePoints(TABLE, ContactSettings(mechanics="asperity"), DeviceSettings(), 1)
-    pad = Pad(cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165))
+    pad = Pad(
+        cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165)
+    )
     states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "deepened": 0.0}
     path = str(tmp_path / "model.h5")
     solved = {0: Solved(points.by_number[0], pad, states, (5.9, 6.1))}

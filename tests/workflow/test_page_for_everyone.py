@@ -1,4 +1,6 @@
-"""The page in a browser: no serious finding of the accessibility checker axe, no request, painted within a second."""
+"""The page in a browser: no serious finding of the accessibility checker axe, no request, painted
+within a second.
+"""
 
 from importlib.resources import files
 
@@ -27,8 +29,12 @@ window.addEventListener("load", () => setTimeout(async () => {
 @pytest.mark.parametrize(("width", "dark"), [(1280, False), (390, True)])
 def test_axe_finds_nothing_serious(page_of, tmp_path, width, dark):
     checker = files("axe_core_python").joinpath("axe.min.js").read_text(encoding="utf-8")
-    found, _ = probed(page_of("made_up"), tmp_path, width, checker + CHECK, budget_ms=30000, dark=dark)
-    assert [finding for finding in found["violations"] if finding[0] in ("serious", "critical")] == []
+    found, _ = probed(
+        page_of("made_up"), tmp_path, width, checker + CHECK, budget_ms=30000, dark=dark
+    )
+    assert [
+        finding for finding in found["violations"] if finding[0] in ("serious", "critical")
+    ] == []
     assert found["errors"] == []
     assert [name for name in found["requests"] if not name.startswith("data:")] == []
     assert found["paint_ms"] < 1000

@@ -85,7 +85,9 @@ def every_plan(tmp_path_factory):
     folder = tmp_path_factory.mktemp("every_plan")
     command = [sys.executable, str(Path(__file__).with_name("plan_everything.py"))]
     places = {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder / "cache")}
-    done = subprocess.run(command, cwd=folder, env=os.environ | places, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, cwd=folder, env=os.environ | places, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr
     return {(scene, target): words for scene, target, words in json.loads(done.stdout)}
 
@@ -94,8 +96,12 @@ def test_every_target_of_every_scene_is_planned_or_refused_for_a_true_reason(eve
     reasons = {
         "humidity": "the air is dry; give inputs.humidity or contact.air",
         "history": "history.cycles = 0: give the cycles of each surface",
-        "calibrate": "measurements.tables: none; name the tables of measurements (docs/calibration.md)",
-        "failure": "failure.probability = null: give the share of the switches that may fail, such as 1e-6",
+        "calibrate": (
+            "measurements.tables: none; name the tables of measurements (docs/calibration.md)"
+        ),
+        "failure": (
+            "failure.probability = null: give the share of the switches that may fail, such as 1e-6"
+        ),
     }
     serves = {("humid", "humidity"), ("lifetime", "history"), ("made_up", "calibrate")}
     refused = {pair: words for pair, words in every_plan.items() if words}
@@ -109,7 +115,12 @@ def test_every_target_of_every_scene_is_planned_or_refused_for_a_true_reason(eve
 
 
 def test_a_target_runs_whatever_the_tails_of_the_scene_say(every_plan):
-    for pair in (("paper", "pad"), ("diamond", "law"), ("sizes", "sensitivity"), ("films", "device")):
+    for pair in (
+        ("paper", "pad"),
+        ("diamond", "law"),
+        ("sizes", "sensitivity"),
+        ("films", "device"),
+    ):
         assert every_plan[pair] == ""
 
 
@@ -135,7 +146,9 @@ def test_only_scenes_with_measurements_schedule_a_calibration(plan):
 def test_voltages_of_switches_are_compared_with_pads_over_the_prior(make_workflow, tmp_path):
     workflow = make_workflow(tmp_path)
     (tmp_path / "volts.csv").write_text("release_V,release_error_V\n12,0.5\n")
-    (tmp_path / "mine.yaml").write_text("measurements: {tables: [{kind: release, file: volts.csv}]}")
+    (tmp_path / "mine.yaml").write_text(
+        "measurements: {tables: [{kind: release, file: volts.csv}]}"
+    )
     jobs = set(workflow.jobs(workflow.plan(str(tmp_path / "mine.yaml"), "calibrate")))
     assert jobs >= {"collect_priors", "press_prior_pads", "calibrate"}
     assert not jobs & {"press_pads", "inputs"}
@@ -143,7 +156,9 @@ def test_voltages_of_switches_are_compared_with_pads_over_the_prior(make_workflo
 
 def test_studies_run_only_where_they_are_asked_for(plan):
     for scene in ("ci", "paper", "reduced", "full"):
-        assert not [rule for rule in plan(scene) if rule.endswith(("accuracy", "stability", "study"))]
+        assert not [
+            rule for rule in plan(scene) if rule.endswith(("accuracy", "stability", "study"))
+        ]
 
 
 def test_studies_of_a_scene_leave_out_the_stages_it_does_not_use(plan):
@@ -155,7 +170,9 @@ def test_studies_of_a_scene_leave_out_the_stages_it_does_not_use(plan):
 
 
 def test_studies_of_a_scene_cover_every_stage_it_uses(said):
-    """Hardness, elastic, topography, contact, uncertainty, pad, answer and circuit, each in both."""
+    """Hardness, elastic, topography, contact, uncertainty, pad, answer and circuit, each in
+    both.
+    """
     assert re.search(r"^study +16 ", said("ci", "accuracy", "stability"), re.MULTILINE)
 
 
@@ -165,11 +182,15 @@ def test_every_study_that_a_rule_promises_exists():
     assert set(STUDIES) == {(kind, stage) for kind in ("accuracy", "stability") for stage in stages}
 
 
-def test_every_file_that_a_scene_makes_is_asked_for_so_that_a_lost_one_is_made_again(make_workflow, tmp_path):
+def test_every_file_that_a_scene_makes_is_asked_for_so_that_a_lost_one_is_made_again(
+    make_workflow, tmp_path
+):
     workflow = make_workflow(tmp_path)
     table = workflow.run("ci", options=("--summary",)).stdout.splitlines()
     made = {line.split("\t")[0] for line in table[1:]}
     plan = workflow.run("ci", options=("--dry-run",))
-    (asked,) = (line for line in (plan.stdout + plan.stderr).splitlines() if line.startswith("    input: "))
+    (asked,) = (
+        line for line in (plan.stdout + plan.stderr).splitlines() if line.startswith("    input: ")
+    )
     assert len(made) > 50
     assert made <= set(asked.removeprefix("    input: ").split(", "))

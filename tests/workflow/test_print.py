@@ -25,14 +25,29 @@ def printed(page_of, tmp_path_factory):
     page = page_of("made_up")
     (folder / "report.html").write_text(page)
     pdf = folder / "report.pdf"
-    options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder / 'profile'}"]
+    options = [
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        f"--user-data-dir={folder / 'profile'}",
+    ]
     options += ["--no-pdf-header-footer", f"--print-to-pdf={pdf}"]
     subprocess.run(
-        [CHROMIUM, *options, (folder / "report.html").as_uri()], capture_output=True, timeout=120, check=True
+        [CHROMIUM, *options, (folder / "report.html").as_uri()],
+        capture_output=True,
+        timeout=120,
+        check=True,
     )
-    subprocess.run(["pdftoppm", "-r", str(DOTS_PER_INCH), "-gray", pdf, folder / "sheet"], check=True)
-    text = subprocess.run(["pdftotext", "-layout", pdf, "-"], capture_output=True, text=True, check=True).stdout
-    headings = {re.sub(r"<[^>]*>", "", words) for words in re.findall(r"<h[23][^>]*>(.*?)</h[23]>", page, re.DOTALL)}
+    subprocess.run(
+        ["pdftoppm", "-r", str(DOTS_PER_INCH), "-gray", pdf, folder / "sheet"], check=True
+    )
+    text = subprocess.run(
+        ["pdftotext", "-layout", pdf, "-"], capture_output=True, text=True, check=True
+    ).stdout
+    headings = {
+        re.sub(r"<[^>]*>", "", words)
+        for words in re.findall(r"<h[23][^>]*>(.*?)</h[23]>", page, re.DOTALL)
+    }
     sheets = [np.asarray(Image.open(path)) for path in sorted(folder.glob("sheet*.pgm"))]
     return headings, text.rstrip("\f").split("\f"), sheets
 
@@ -48,5 +63,9 @@ def test_no_heading_is_left_alone_at_the_end_of_a_sheet(printed):
 def test_no_sheet_is_half_empty(printed):
     _, texts, sheets = printed
     assert len(sheets) == len(texts)
-    ends = [np.flatnonzero((sheet < 250).any(axis=1)).max() / sheet.shape[0] for sheet in sheets[:-1]]
-    assert [(number, round(float(end), 2)) for number, end in enumerate(ends, start=1) if end < FULLNESS] == []
+    ends = [
+        np.flatnonzero((sheet < 250).any(axis=1)).max() / sheet.shape[0] for sheet in sheets[:-1]
+    ]
+    assert [
+        (number, round(float(end), 2)) for number, end in enumerate(ends, start=1) if end < FULLNESS
+    ] == []

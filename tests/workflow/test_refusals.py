@@ -36,11 +36,14 @@ def test_an_unknown_scene(workflow_in):
 )
 def test_traces_without_the_word_are_found(said):
     assert TRACE.search(said)
-    assert not TRACE.search("ERROR mine.yaml: name = 3: an Error of yours\nasperity compare: error: no results")
+    assert not TRACE.search(
+        "ERROR mine.yaml: name = 3: an Error of yours\nasperity compare: error: no results"
+    )
 
 
 @pytest.mark.parametrize(
-    ("target", "meant"), [("lwa", "law"), ("results/paper/uq/outputs.cs", "results/paper/uq/outputs.csv")]
+    ("target", "meant"),
+    [("lwa", "law"), ("results/paper/uq/outputs.cs", "results/paper/uq/outputs.csv")],
 )
 def test_a_mistyped_target_is_one_line_with_the_nearest_name(workflow_in, target, meant):
     done = workflow_in.run("paper", target)
@@ -65,7 +68,10 @@ def test_names_that_would_act_on_a_terminal_or_are_too_long(workflow_in, monkeyp
     name = json.dumps(forged)[1:-1]
     for text, words in (
         (f'extends: "{name}.yaml"', "characters that do not print"),
-        (f'{{compute: [topography], topography: {{scans: ["{name}.gwy"]}}}}', "characters that do not print"),
+        (
+            f'{{compute: [topography], topography: {{scans: ["{name}.gwy"]}}}}',
+            "characters that do not print",
+        ),
         ("{compute: [topography], topography: {scans: [scans]}}", "characters that do not print"),
         (f"extends: {long}.yaml", "no such file"),
         (f"{{compute: [topography], topography: {{scans: [{long}]}}}}", "no such file"),
@@ -80,17 +86,25 @@ def test_names_that_would_act_on_a_terminal_or_are_too_long(workflow_in, monkeyp
 
 def test_contradictions_are_told_all_at_once(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
-    scene.write_text("{uncertainty: {direct_runs: 1}, contact: {model: elastic}, history: {cycles: 2}}")
+    scene.write_text(
+        "{uncertainty: {direct_runs: 1}, contact: {model: elastic}, history: {cycles: 2}}"
+    )
     done = workflow_in.run(str(scene))
     assert done.returncode != 0
-    for line, words in zip(errors(done), ("needs at least 14", "only plastic contacts"), strict=True):
+    for line, words in zip(
+        errors(done), ("needs at least 14", "only plastic contacts"), strict=True
+    ):
         assert line.startswith(f"ERROR {scene}: ")
         assert words in line
 
 
 def test_a_film_softer_than_its_base():
     rows = {"h_film": [2, 10], "t_film": [4, 5], "k_film": [0.1, 0.5], "m_film": [1, 2]}
-    inputs = {"hardness": "film", "h_prime": None, **{name: {"values": tuple(values)} for name, values in rows.items()}}
+    inputs = {
+        "hardness": "film",
+        "h_prime": None,
+        **{name: {"values": tuple(values)} for name, values in rows.items()},
+    }
     (line,) = mistakes(Scene.model_validate({"inputs": inputs}), {})
     assert line.startswith("inputs.h_film reaches down to 2 GPa")
     assert "films softer than their base are not modelled" in line
@@ -98,7 +112,11 @@ def test_a_film_softer_than_its_base():
 
 def test_a_film_without_thickness():
     rows = {"h_film": [7, 10], "t_film": [0, 0], "k_film": [0.1, 0.5], "m_film": [1, 2]}
-    inputs = {"hardness": "film", "h_prime": None, **{name: {"values": tuple(values)} for name, values in rows.items()}}
+    inputs = {
+        "hardness": "film",
+        "h_prime": None,
+        **{name: {"values": tuple(values)} for name, values in rows.items()},
+    }
     (line,) = mistakes(Scene.model_validate({"inputs": inputs}), {})
     assert line.startswith("inputs.t_film = 0: without a film take inputs.hardness: paper")
 
@@ -107,21 +125,38 @@ def test_points_that_cannot_tell_causes_apart_are_refused_before_anything_runs()
     scene = Scene.model_validate({"extends": "table1", "pad": {"points": 30}})
     (line,) = [line for line in mistakes(scene, {}) if line.startswith("pad.points")]
     wanted = int(line.rpartition(" ")[2])
-    assert line.startswith(f"pad.points = 30: {wanted // 2 - 1} inputs and properties of the device vary, whose parts")
-    plate = Scene.model_validate({"extends": "table1", "pad": {"points": 4}, "device": {"spring_N_per_m": 10}})
+    assert line.startswith(
+        f"pad.points = 30: {wanted // 2 - 1} inputs and properties of the device vary, whose parts"
+    )
+    plate = Scene.model_validate(
+        {"extends": "table1", "pad": {"points": 4}, "device": {"spring_N_per_m": 10}}
+    )
     said = [line for line in mistakes(plate, {}) if line.startswith("pad.points")]
-    assert said[0].startswith("pad.points = 4: 12 ")  # 7 inputs, scatter of RMS, D0, and three of a plate
+    assert said[0].startswith(
+        "pad.points = 4: 12 "
+    )  # 7 inputs, scatter of RMS, D0, and three of a plate
     for points in (0, wanted):
-        assert not mistakes(Scene.model_validate({"extends": "table1", "pad": {"points": points}}), {})
+        assert not mistakes(
+            Scene.model_validate({"extends": "table1", "pad": {"points": points}}), {}
+        )
 
 
 @pytest.mark.parametrize(
     ("device", "words"),
     [
-        ("{hold_voltage_V: 40}", "device.hold_voltage_V = 40: never closes this switch, which pulls in at 75.62 V"),
+        (
+            "{hold_voltage_V: 40}",
+            "device.hold_voltage_V = 40: never closes this switch, which pulls in at 75.62 V",
+        ),
         ("{hold_voltage_V: 40, bow_nm: -2000}", ""),
-        ("{gap_um: 1, tilt_nm: 2100}", "at rest the electrode is -50 nm above what it lands on at its lowest"),
-        ("{gap_um: 1, tilt_nm: 1900, bow_nm: -700}", ""),  # the middle and the end that are low are not one place
+        (
+            "{gap_um: 1, tilt_nm: 2100}",
+            "at rest the electrode is -50 nm above what it lands on at its lowest",
+        ),
+        (
+            "{gap_um: 1, tilt_nm: 1900, bow_nm: -700}",
+            "",
+        ),  # the middle and the end that are low are not one place
     ],
 )
 def test_a_switch_that_never_closes_or_is_never_open(device, words):
@@ -143,7 +178,8 @@ def test_bodies_whose_bases_have_another_modulus():
 
 
 @pytest.mark.parametrize(
-    "humid", [{"inputs": {"humidity": {"values": [0, 0.8]}}}, {"contact": {"air": {"humidity": 0.8}}}]
+    "humid",
+    [{"inputs": {"humidity": {"values": [0, 0.8]}}}, {"contact": {"air": {"humidity": 0.8}}}],
 )
 def test_humid_air_in_a_vacuum(humid):
     scene = Scene.model_validate({**humid, "device": {"gas_kPa": 0.001}})
@@ -154,9 +190,15 @@ def test_humid_air_in_a_vacuum(humid):
 
 def test_a_humidity_that_is_given_twice():
     scene = Scene.model_validate(
-        {"inputs": {"humidity": {"values": [0, 0.8]}}, "contact": {"air": {"humidity": 0.5, "film_nm": 0.3}}}
+        {
+            "inputs": {"humidity": {"values": [0, 0.8]}},
+            "contact": {"air": {"humidity": 0.5, "film_nm": 0.3}},
+        }
     )
-    assert "contact.air.humidity and inputs.humidity give the same number; leave one out" in mistakes(scene, {})
+    assert (
+        "contact.air.humidity and inputs.humidity give the same number; leave one out"
+        in mistakes(scene, {})
+    )
 
 
 def test_an_attraction_that_the_grid_does_not_resolve():
@@ -175,7 +217,9 @@ def test_an_attraction_that_the_grid_does_not_resolve():
 
 def test_a_run_of_weeks_is_planned_with_its_time_and_refused(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
-    scene.write_text("{contact: {mechanics: coupled, pixels: 2048}, uncertainty: {direct_runs: 100000}}")
+    scene.write_text(
+        "{contact: {mechanics: coupled, pixels: 2048}, uncertainty: {direct_runs: 100000}}"
+    )
     said = workflow_in.plan(str(scene), "uq")
     assert "a run is refused: jobs compute_direct_runs take " in said
     assert said.split(" jobs, about ")[1].split()[1] == "h"
@@ -208,7 +252,8 @@ def test_a_broken_potential_is_told_by_the_plan(workflow_in):
 
 
 def test_no_permission_to_write(workflow_in):
-    # a file where the folder of results should be stops everybody, the superuser of a CI machine included
+    # a file where the folder of results should be stops everybody, the superuser of a CI machine
+    # included
     (workflow_in.folder / "results").write_text("")
     done = workflow_in.run("paper")
     assert done.returncode != 0

@@ -25,7 +25,16 @@ from workflow.report.stages.humidity import against_humidity, begins_to_stick
 from workflow.report.stages.inputs import _distribution, stated_beside_computed
 from workflow.report.studies import Error, KnobTable, Value, pareto_front, recommended, tables_of
 
-SECTIONS = ("hardness", "elastic", "topography", "contact", "uncertainty", "sensitivity", "pad", "device")
+SECTIONS = (
+    "hardness",
+    "elastic",
+    "topography",
+    "contact",
+    "uncertainty",
+    "sensitivity",
+    "pad",
+    "device",
+)
 ON_TOP = ("history", "calibration", "accuracy", "stability")
 
 
@@ -70,9 +79,18 @@ def test_every_stage_has_its_method_and_every_figure_is_drawn(page):
 
 
 def test_the_page_is_short(page):
-    """Of all stages at once: 1,200 words that are not folded, in five parts with an index that stays."""
-    body = re.sub(r"<(details|svg|script|noscript|style).*?</\1>", "", page[page.index("<body>") :], flags=re.DOTALL)
-    assert len(re.sub(r"<[^>]*>", " ", body).split()) <= 1250  # the numerical errors of each stage among them
+    """Of all stages at once: 1,200 words that are not folded, in five parts with an index that
+    stays.
+    """
+    body = re.sub(
+        r"<(details|svg|script|noscript|style).*?</\1>",
+        "",
+        page[page.index("<body>") :],
+        flags=re.DOTALL,
+    )
+    assert (
+        len(re.sub(r"<[^>]*>", " ", body).split()) <= 1250
+    )  # the numerical errors of each stage among them
     assert re.findall(r'href="#(part-\w+)">', page[: page.index("<main>")]) == [
         f"part-{name}" for name in ("budget", "switch", "contact", "from", "trust")
     ]
@@ -134,14 +152,28 @@ def test_a_stage_that_no_input_comes_from_shows_no_red_gate(made_up):
 
 def test_a_stated_input_stands_beside_the_computed_one_with_its_effect(made_up):
     root, paths = made_up
-    results = Results(root, [path for path in paths if path.name in ("inputs.csv", "e_star.json", "fit.json")], "x")
+    results = Results(
+        root,
+        [path for path in paths if path.name in ("inputs.csv", "e_star.json", "fit.json")],
+        "x",
+    )
     results.paths |= {"device/pad_switch.json"}
-    rows = [{**row, "origin": "literature"} for row in results.csv("inputs.csv") if row["parameter"] == "e_star"]
+    rows = [
+        {**row, "origin": "literature"}
+        for row in results.csv("inputs.csv")
+        if row["parameter"] == "e_star"
+    ]
     stated = from_rows(rows).rows[0].distribution
     shifted = {"distribution": "normal", "a": float(stated.quantile(0.5)) + 10, "b": 2.0}
     deviation = float(np.diff(stated.quantile([0.16, 0.84]))[0]) / 2
-    answer = {"sensitivity": [{"name": "e_star", "share_of_variance": 0.25}], "release_V": {"std": 0.6}}
-    files = {"elastic/e_star.json": {"inputs": {"e_star": shifted}}, "device/pad_switch.json": {"answer": answer}}
+    answer = {
+        "sensitivity": [{"name": "e_star", "share_of_variance": 0.25}],
+        "release_V": {"std": 0.6},
+    }
+    files = {
+        "elastic/e_star.json": {"inputs": {"e_star": shifted}},
+        "device/pad_switch.json": {"answer": answer},
+    }
     results.csv = lambda _: rows
     results.json = lambda name: files.get(name, {})
     ((_, _, computed, effect),) = stated_beside_computed(results)
@@ -153,18 +185,37 @@ def test_a_stated_input_stands_beside_the_computed_one_with_its_effect(made_up):
 
 def test_the_pad_says_what_its_answer_is_made_of(made_up):
     root, paths = made_up
-    results = Results(root, [path for path in paths if path.parent.name in ("pad", "device")], "made_up")
+    results = Results(
+        root, [path for path in paths if path.parent.name in ("pad", "device")], "made_up"
+    )
     spread = {"std": 0.5, "quantiles": {"0.05": 6.0, "0.5": 7.0, "0.95": 8.0}}
     answer = {
         **dict.fromkeys(("release_V", "pull_in_V", "capacitance_fF"), spread),
         "quantile_error_V": {"0.05": 0.3, "0.5": 0.1, "0.95": 0.2},
         "causes": {"cells": 0.3},
-        "sensitivity": [{"name": "rms", "varies": "common", "share_of_variance": 0.7, "interval_shrinks_by": 0.4}],
-        **{"points": 64, "refused": ["too soft"], "deepened": 0, "cells_error_V": 0.3, "explained": 0.9},
+        "sensitivity": [
+            {
+                "name": "rms",
+                "varies": "common",
+                "share_of_variance": 0.7,
+                "interval_shrinks_by": 0.4,
+            }
+        ],
+        **{
+            "points": 64,
+            "refused": ["too soft"],
+            "deepened": 0,
+            "cells_error_V": 0.3,
+            "explained": 0.9,
+        },
     }
-    results.json = lambda name: Results.json(results, name) | ({"answer": answer} if "pad_switch" in name else {})
+    results.json = lambda name: (
+        Results.json(results, name) | ({"answer": answer} if "pad_switch" in name else {})
+    )
     (behind,) = [
-        block for block in pad.describe(results).blocks if "Behind the interval" in getattr(block, "caption", "")
+        block
+        for block in pad.describe(results).blocks
+        if "Behind the interval" in getattr(block, "caption", "")
     ]
     assert ("switches computed; of them without an answer", "65; 1") in behind.rows
 
@@ -173,10 +224,19 @@ def test_the_page_shows_the_release_by_key_and_why_a_curve_ends(page):
     section = page[page.index('id="device"><summary>') :]
     section = section[: section.index("</details>")]
     section = section.replace("\u00a0", " ")
-    for label in ("thickness (µm)", "length (µm)", "gap (µm)", "stress (MPa)", "dielectric (nm)", "hold voltage (V)"):
+    for label in (
+        "thickness (µm)",
+        "length (µm)",
+        "gap (µm)",
+        "stress (MPa)",
+        "dielectric (nm)",
+        "hold voltage (V)",
+    ):
         assert f'<th scope="row">{label}</th>' in section
     assert "never closes this switch" in section
-    assert page.index("if one property of the device were another") < page.index('id="device"><summary>')
+    assert page.index("if one property of the device were another") < page.index(
+        'id="device"><summary>'
+    )
 
 
 def test_only_scene_paper_compares_with_the_paper(page_of, page):
@@ -206,7 +266,9 @@ def test_studies_recommend_the_cheapest_good_setting(made_up):
 def made_up_knob(errors, own=0.01, unit="V", volts=np.nan):
     """A knob with one quantity, finer and twice as long with each value; the first is in use."""
     values = [
-        Value(str(k), k == 0, 2.0**k, {"release": Error("release", error, own, unit, volts * error)})
+        Value(
+            str(k), k == 0, 2.0**k, {"release": Error("release", error, own, unit, volts * error)}
+        )
         for k, error in enumerate(errors)
     ]
     return KnobTable("pad", "steps", "finer", values)
@@ -235,15 +297,23 @@ def test_the_front_of_error_and_time_holds_what_nothing_beats():
 def test_every_stage_has_a_line_on_its_numerical_error(page):
     table = page[page.index("Numerical errors; ") :]
     table = table[: table.index("</table>")]
-    assert "elastic, topography, uncertainty, pad, circuit, failure</th><td>not measured in this scene" in table
+    assert (
+        "elastic, topography, uncertainty, pad, circuit, failure</th><td>not measured in this scene"
+        in table
+    )
     assert "asperity run paper accuracy measures all" in table
     assert "sites a side, 128</td><td>release 0.040 V</td><td>0.040 V</td>" in table
 
 
 def test_numbers_that_rest_on_failed_gates_say_so(page):
     """The made-up scene takes H′ from a hardness stage that failed."""
-    assert "Rests on failed gates: hardness. hardness: only 2 of 9 runs &lt;gave&gt; a hardness." in page
-    assert page.count("Rests on failed gates: hardness.") == 4  # the first screen and the parts behind it
+    assert (
+        "Rests on failed gates: hardness. hardness: only 2 of 9 runs &lt;gave&gt; a hardness."
+        in page
+    )
+    assert (
+        page.count("Rests on failed gates: hardness.") == 4
+    )  # the first screen and the parts behind it
     assert "hardness, whose gate failed" in page
 
 
@@ -277,7 +347,9 @@ def test_pictures_are_light_and_lose_nothing():
     shades = np.asarray(picture.convert("RGBA"))[:, :, :3].astype(int)
     scaled = (heights - heights.min()) / np.ptp(heights)
     expected = matplotlib.colormaps["cividis"](scaled, bytes=True)[:, :, :3].astype(int)
-    assert any(np.abs(shades - turned).max() <= 2 for turned in (expected, expected[::-1]))  # of 255; rounding
+    assert any(
+        np.abs(shades - turned).max() <= 2 for turned in (expected, expected[::-1])
+    )  # of 255; rounding
     assert max(len(part) for part in re.findall(r'\bd="[^"]*?\.(\d+)', svg)) <= 2
 
 
@@ -348,6 +420,8 @@ def test_the_page_says_from_which_humidity_on_the_switch_sticks():
         for humidity, release in zip((0.0, 0.3, 0.5), releases, strict=True)
     ]
     said = begins_to_stick(rows)
-    assert said.startswith("At central inputs the switch sticks from between 30.0% and 50.0% humidity on (menisci")
+    assert said.startswith(
+        "At central inputs the switch sticks from between 30.0% and 50.0% humidity on (menisci"
+    )
     assert said.endswith("at none of these humidities (their volume stays).")
     assert "<svg" in against_humidity([{**row, "stuck": ""} for row in rows])

@@ -75,7 +75,9 @@ def test_csv_quotes_what_needs_it(tmp_path):
 
 
 def test_json_has_no_nan(tmp_path):
-    write_json(tmp_path / "a.json", {"H": np.nan, "interval": np.array([1.0, np.inf])}, {"rule": "fit"})
+    write_json(
+        tmp_path / "a.json", {"H": np.nan, "interval": np.array([1.0, np.inf])}, {"rule": "fit"}
+    )
     content = load_json(tmp_path / "a.json")
     assert content["H"] is None
     assert content["interval"] == [1.0, None]

@@ -58,16 +58,28 @@ def test_an_exponent_without_a_point_is_a_number(tmp_path):
         ("contact: 3", ["contact = 3", "a mapping"]),
         ("compute: [stiffness]", ["compute", "hardness, elastic, topography"]),
         ("name: ../../etc", ["name", "of the form"]),
-        ("topography: {convention: profile}", ["topography.convention = profile", "make them equal"]),
+        (
+            "topography: {convention: profile}",
+            ["topography.convention = profile", "make them equal"],
+        ),
         ("contact: {q1_per_nm: 5}", ["contact.q1_per_nm reaches 5 1/nm", "3.217 1/nm"]),
-        ("inputs: {q1: {values: [0.4, 5]}}", ["inputs.q1 reaches 5 1/nm", "3.217 1/nm", "raise contact.pixels"]),
-        ("inputs: {e_star: {values: [90, 90], varies: each}}", ["inputs.e_star", "each", "no spread"]),
+        (
+            "inputs: {q1: {values: [0.4, 5]}}",
+            ["inputs.q1 reaches 5 1/nm", "3.217 1/nm", "raise contact.pixels"],
+        ),
+        (
+            "inputs: {e_star: {values: [90, 90], varies: each}}",
+            ["inputs.e_star", "each", "no spread"],
+        ),
         ("- a", ["a scene is a mapping"]),
         ("a: [", ["not valid YAML"]),
         ("contact: {pixels: 256, pixels: 512}", ["'pixels' stands twice"]),
         ("x: !!python/object/apply:os.system ['true']", ["plain values only"]),
         ("x: !!binary aGVsbG8=", ["line 1", "plain values only"]),
-        ("contact: {pixels: 16:40}", ['contact.pixels = "16:40"', "an integer"]),  # 1000 in YAML 1.1
+        (
+            "contact: {pixels: 16:40}",
+            ['contact.pixels = "16:40"', "an integer"],
+        ),  # 1000 in YAML 1.1
         ("contact: {pixels: 0200}", ['contact.pixels = "0200"', "an integer"]),  # 128
         ("contact: {pixels: 1_024}", ['contact.pixels = "1_024"', "an integer"]),
         ("contact: {pixels: 2026-11-22}", ['contact.pixels = "2026-11-22"', "an integer"]),
@@ -95,7 +107,9 @@ def test_a_mistake_is_one_line_with_file_key_value_and_what_is_accepted(tmp_path
 
 def test_aliases_that_would_unfold_to_gigabytes_are_refused_at_the_first(tmp_path):
     bomb = "a: &a [x,x,x,x,x,x,x,x,x]\n"
-    bomb += "".join(f"{b}: &{b} [{','.join([f'*{a}'] * 9)}]\n" for a, b in itertools.pairwise("abcdefghi"))
+    bomb += "".join(
+        f"{b}: &{b} [{','.join([f'*{a}'] * 9)}]\n" for a, b in itertools.pairwise("abcdefghi")
+    )
     (line,) = lines(tmp_path, bomb)
     assert "line 2: alias *a" in line
 
@@ -125,13 +139,22 @@ def test_files_that_a_scene_names_are_sought_here_and_beside_it(tmp_path, monkey
     monkeypatch.chdir(tmp_path)
     scene = tmp_path / "scenes" / "mine.yaml"
     scene.parent.mkdir()
-    for path in (scene, tmp_path / "here.csv", scene.parent / "beside.csv", scene.parent / "{a}.csv"):
+    for path in (
+        scene,
+        tmp_path / "here.csv",
+        scene.parent / "beside.csv",
+        scene.parent / "{a}.csv",
+    ):
         path.write_text("")
     found = locate("scenes/mine.yaml", "inputs.rms.file", ["here.csv", "beside.csv"])
     assert found == ["here.csv", "scenes/beside.csv"]
-    with pytest.raises(SceneError, match=r"inputs\.rms\.file = scenes/{a}\.csv: braces mean wildcards"):
+    with pytest.raises(
+        SceneError, match=r"inputs\.rms\.file = scenes/{a}\.csv: braces mean wildcards"
+    ):
         locate("scenes/mine.yaml", "inputs.rms.file", ["{a}.csv"])
-    with pytest.raises(SceneError, match=r"inputs\.rms\.file = nowhere\.csv: no such file here or beside"):
+    with pytest.raises(
+        SceneError, match=r"inputs\.rms\.file = nowhere\.csv: no such file here or beside"
+    ):
         locate("scenes/mine.yaml", "inputs.rms.file", ["nowhere.csv"])
 
 
@@ -160,6 +183,9 @@ def test_files_that_snakemake_or_nobody_can_read_are_refused(tmp_path, name, wor
 
 def test_files_of_the_system_are_neither_tables_nor_scans():
     """/proc/kmsg waits for ever for what the kernel says next."""
-    for read in (lambda: foreign_table("/proc/kmsg", "inputs.rms.values"), lambda: load_measurements("/proc/kmsg")):
+    for read in (
+        lambda: foreign_table("/proc/kmsg", "inputs.rms.values"),
+        lambda: load_measurements("/proc/kmsg"),
+    ):
         with pytest.raises(InputError, match="of the system, not of data"):
             read()

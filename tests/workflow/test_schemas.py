@@ -32,7 +32,10 @@ TABLE = "results/mine/device/failure.csv"
 
 def test_every_table_of_the_rules_has_a_schema():
     rules = "".join(path.read_text() for path in RULES.glob("*.smk"))
-    paths = set(re.findall(r'\{RESULTS\}/([^"\n]*\.csv)"', rules)) - {"{{kind}}/{{stage}}.csv", "{kind}/{stage}.csv"}
+    paths = set(re.findall(r'\{RESULTS\}/([^"\n]*\.csv)"', rules)) - {
+        "{{kind}}/{{stage}}.csv",
+        "{kind}/{stage}.csv",
+    }
     assert len(paths) > 35
     names = [re.sub(r"\{\{?[^}]*\}\}?", "x_1", path.replace("{name}", "chunk")) for path in paths]
     assert not [name for name in names if schema_of(Path(name)) is None]
@@ -41,7 +44,9 @@ def test_every_table_of_the_rules_has_a_schema():
 def test_every_schema_belongs_to_a_rule():
     rules = "".join(path.read_text() for path in RULES.glob("*.smk"))
     patterns = [path for tables in STAGES.values() for table in tables for path in table.paths]
-    assert not [pattern for pattern in patterns if pattern.partition("*")[0].rpartition("/")[0] not in rules]
+    assert not [
+        pattern for pattern in patterns if pattern.partition("*")[0].rpartition("/")[0] not in rules
+    ]
 
 
 def test_the_page_of_result_files_is_up_to_date():
@@ -52,7 +57,10 @@ def test_the_page_of_result_files_is_up_to_date():
     ("row", "words"),
     [
         (ROW | {"heigth": 0.6}, "column heigth is unknown"),
-        ({key: value for key, value in ROW.items() if key != "attraction"}, "column attraction is missing"),
+        (
+            {key: value for key, value in ROW.items() if key != "attraction"},
+            "column attraction is missing",
+        ),
         (ROW | {"failing": None}, "row 1 has no value in column failing"),
         (ROW | {"failing": "most"}, "row 1, column failing: 'most' is no number"),
     ],
@@ -71,11 +79,29 @@ def test_a_result_without_a_schema_is_not_written(tmp_path):
 
 def test_the_schema_orders_the_columns(tmp_path):
     path = tmp_path / "results/mine/elastic/quenched/a.csv"
-    row = {"status": "accepted", "coordination_Si": 4.0, "coordination_N": 3.0, "defects": 0, "structure": "a"}
-    row |= {"attempt": 0, "density_g_cm3": 3.0, "shortest_SiN_A": 1.7, "bond_spread_A": 0.1, "symmetry_operations": 1}
+    row = {
+        "status": "accepted",
+        "coordination_Si": 4.0,
+        "coordination_N": 3.0,
+        "defects": 0,
+        "structure": "a",
+    }
+    row |= {
+        "attempt": 0,
+        "density_g_cm3": 3.0,
+        "shortest_SiN_A": 1.7,
+        "bond_spread_A": 0.1,
+        "symmetry_operations": 1,
+    }
     write_csv(path, [row])
     names = path.read_text().splitlines()[0].split(",")
-    assert names[:5] == ["structure", "attempt", "density_g_cm3", "coordination_Si", "coordination_N"]
+    assert names[:5] == [
+        "structure",
+        "attempt",
+        "density_g_cm3",
+        "coordination_Si",
+        "coordination_N",
+    ]
     assert names[-1] == "status"
 
 
@@ -87,14 +113,18 @@ def test_a_table_without_rows_has_its_columns(tmp_path):
 
 def test_a_column_that_may_be_empty_needs_no_value(tmp_path):
     path = tmp_path / "results/mine/calibration/predictive.csv"
-    spread = {f"{state}_{name}": 1.0 for state in ("prior", "posterior") for name in ("q05", "q50", "q95")}
+    spread = {
+        f"{state}_{name}": 1.0 for state in ("prior", "posterior") for name in ("q05", "q50", "q95")
+    }
     write_csv(path, [{"quantity": "release", "unit": "V", **spread}])
     assert load_csv(path)[0]["force_nN"] == ""
 
 
 def test_what_was_written_is_read(tmp_path):
     write_csv(tmp_path / TABLE, [ROW, ROW | {"attraction": float("nan")}])
-    assert load_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"attraction": "nan"}
+    assert load_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {
+        "attraction": "nan"
+    }
 
 
 @pytest.mark.parametrize(
@@ -102,8 +132,14 @@ def test_what_was_written_is_read(tmp_path):
     [
         (lambda text: text.replace("failing", "top"), "column failing is missing"),
         (lambda text: text[:-5], "row 1 ends before column failing_sure"),
-        (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column attraction: '0\.\\x005' is no number"),
-        (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, failing_sure"),
+        (
+            lambda text: text.replace("0.5", "0.\x005"),
+            r"row 1, column attraction: '0\.\\x005' is no number",
+        ),
+        (
+            lambda text: text.replace("0.6", "0.6,0.6"),
+            "row 1 goes beyond the last column, failing_sure",
+        ),
         (lambda text: "", "column hold_V is missing"),
     ],
 )
@@ -111,7 +147,9 @@ def test_a_damaged_table_is_refused_in_one_line(tmp_path, change, words):
     path = tmp_path / TABLE
     write_csv(path, [ROW])
     path.write_text(change(path.read_text()))
-    with pytest.raises(UnfitTable, match=rf"{words}; damaged or of another version: delete it and run again"):
+    with pytest.raises(
+        UnfitTable, match=rf"{words}; damaged or of another version: delete it and run again"
+    ):
         load_csv(path)
 
 
@@ -130,9 +168,15 @@ FILM = {
 }
 
 
-@pytest.mark.parametrize(("rows", "scatter"), [({}, None), ({}, (0.1, 0.3)), (AS_INPUTS, None), (FILM, (0.1, 0.3))])
-def test_switches_for_circuits_fit_their_table_whatever_their_inputs(monkeypatch, tmp_path, rows, scatter):
-    """Own scans have places of unequal roughness: their switches were refused after all the work."""
+@pytest.mark.parametrize(
+    ("rows", "scatter"), [({}, None), ({}, (0.1, 0.3)), (AS_INPUTS, None), (FILM, (0.1, 0.3))]
+)
+def test_switches_for_circuits_fit_their_table_whatever_their_inputs(
+    monkeypatch, tmp_path, rows, scatter
+):
+    """Own scans have places of unequal roughness: their switches were refused after all the
+    work.
+    """
 
     def press_pad(point, contact, cells, first_seed, **_):
         law = known_pad(point).law
@@ -145,7 +189,9 @@ def test_switches_for_circuits_fit_their_table_whatever_their_inputs(monkeypatch
     cutoffs = cutoff_range(of_pad, contact)
     design = plan_points(of_pad, contact, device, 8)
     central = solve_point(central_point(of_pad, contact, device), contact, 2, 0)
-    model = PadModel(central, design, tuple(solve_points(list(enumerate(design.points, 1)), contact, 2)))
+    model = PadModel(
+        central, design, tuple(solve_points(list(enumerate(design.points, 1)), contact, 2))
+    )
     made = spread_switches(model, of_pad, contact, cutoffs, 8)
     path = tmp_path / "results/mine/device/circuit.csv"
     write_csv(path, [switch.row for switch in made])

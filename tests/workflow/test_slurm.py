@@ -1,4 +1,6 @@
-"""The cluster profile on a real Slurm: the same results as on one machine. `.ci/slurm` starts one where it can."""
+"""The cluster profile on a real Slurm: the same results as on one machine. `.ci/slurm` starts one
+where it can.
+"""
 
 import importlib.util
 import shutil
@@ -18,7 +20,9 @@ def answers():
     """Does a Slurm controller answer here, with a node that takes jobs?"""
     if shutil.which("sinfo") is None:
         return False
-    done = subprocess.run(["sinfo", "-h", "-o", "%t"], capture_output=True, text=True, timeout=30, check=False)
+    done = subprocess.run(
+        ["sinfo", "-h", "-o", "%t"], capture_output=True, text=True, timeout=30, check=False
+    )
     return done.returncode == 0 and any(state in done.stdout for state in ("idle", "mix", "alloc"))
 
 
@@ -30,7 +34,9 @@ pytestmark = [
 ]
 
 
-@pytest.mark.skipif(not answers(), reason="no Slurm answers here; .ci/slurm starts one on a machine for tests")
+@pytest.mark.skipif(
+    not answers(), reason="no Slurm answers here; .ci/slurm starts one on a machine for tests"
+)
 def test_results_do_not_depend_on_where_a_job_ran(make_workflow, tmp_path):
     files = ("inputs.csv", "curves/nominal.h5")
     found = []
@@ -44,14 +50,29 @@ def test_results_do_not_depend_on_where_a_job_ran(make_workflow, tmp_path):
     assert found[0] == found[1]
 
 
-@pytest.mark.skipif(not answers(), reason="no Slurm answers here; .ci/slurm starts one on a machine for tests")
+@pytest.mark.skipif(
+    not answers(), reason="no Slurm answers here; .ci/slurm starts one on a machine for tests"
+)
 def test_more_ready_jobs_than_may_wait_all_run(tmp_path):
     """Arrays of the plugin lose jobs then, and the run hangs."""
     rule = "rule one:\n    output: '{k}.txt'\n    shell: 'touch {output}'\n"
-    (tmp_path / "Snakefile").write_text(f"rule all:\n    input: expand('{{k}}.txt', k=range(6))\n{rule}")
-    command = [sys.executable, "-m", "snakemake", "--workflow-profile", str(ROOT / "workflow/profiles/slurm")]
+    (tmp_path / "Snakefile").write_text(
+        f"rule all:\n    input: expand('{{k}}.txt', k=range(6))\n{rule}"
+    )
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--workflow-profile",
+        str(ROOT / "workflow/profiles/slurm"),
+    ]
     done = subprocess.run(
-        [*command, *SLURM, "--jobs", "2"], cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False
+        [*command, *SLURM, "--jobs", "2"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert len(list(tmp_path.glob("*.txt"))) == 6

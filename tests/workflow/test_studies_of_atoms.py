@@ -10,7 +10,9 @@ from workflow.run.studies_of_atoms import hard_rows, knobs_of
 
 def rows(values, noise):
     found = Deviations(np.array(values), np.array(noise), 2.5)
-    variation = Variation("speed", [("B", "%"), ("force", "%")], [(50, lambda: found)], 50, "rest", "2 cuts")
+    variation = Variation(
+        "speed", [("B", "%"), ("force", "%")], [(50, lambda: found)], 50, "rest", "2 cuts"
+    )
     return list(rows_of(knobs_of([variation], {"B": -0.2})))
 
 
@@ -21,7 +23,11 @@ def test_an_error_is_known_as_far_as_samples_and_noise_tell():
     assert force["own_error"] == pytest.approx(0.7)
     assert modulus["release_V"] == pytest.approx(0.2 * 17**0.5)
     assert force["release_V"] is None
-    assert (modulus["cpu_s"], modulus["shipped"], modulus["reference"]) == (2.5, True, "rest; 2 cuts")
+    assert (modulus["cpu_s"], modulus["shipped"], modulus["reference"]) == (
+        2.5,
+        True,
+        "rest; 2 cuts",
+    )
 
 
 def test_one_sample_is_known_by_its_noise_alone():

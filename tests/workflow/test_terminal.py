@@ -13,7 +13,9 @@ from workflow.scene import load_scene
 
 
 class OneSecondEach:
-    """Costs of a scene in which every job takes a second; no job of the rule `unheard_of` ran here before."""
+    """Costs of a scene in which every job takes a second; no job of the rule `unheard_of` ran here
+    before.
+    """
 
     def __init__(self):
         self.learned = []
@@ -65,18 +67,23 @@ def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry):
 
 
 def test_the_time_left_follows_what_jobs_take(capsys, monkeypatch, tmp_path):
-    # a machine of a tenth of the speed: after three jobs of eight seconds the rest is known to a third
+    # a machine of a tenth of the speed: after three jobs of eight seconds the rest is known to a
+    # third
     clock, chunks = [0.0], [job("compute_direct_runs", number) for number in range(8)]
     monkeypatch.setattr("workflow.run.progress.time.monotonic", lambda: clock[0])
     dag = SimpleNamespace(needrun_jobs=lambda: chunks, job_dependencies=lambda job: [])
-    snakemake = SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag, persistence=RECORDED)
+    snakemake = SimpleNamespace(
+        dryrun=False, local_exec=True, cores=1, dag=dag, persistence=RECORDED
+    )
     costs = Costs(load_scene("paper"), {}, tmp_path / "none.json")
     takes = 10 * costs.seconds("compute_direct_runs", {})
     terminal = Terminal(snakemake, costs, "nothing to do", 12)
     wall_s = terminal._wall_s
     send(terminal, "run_info")
     for number in range(3):
-        send(terminal, "job_info", jobid=number, rule_name="compute_direct_runs", rule_msg="compute")
+        send(
+            terminal, "job_info", jobid=number, rule_name="compute_direct_runs", rule_msg="compute"
+        )
         clock[0] += takes
         send(terminal, "job_finished", job_id=number)
     assert wall_s() == pytest.approx(5 * takes, rel=1 / 3)
@@ -88,11 +95,14 @@ def test_the_time_left_follows_what_jobs_take(capsys, monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("local", "hours", "begin"), [(True, 12, ""), (True, 1e-4, "jobs fit_law take"), (False, 1e-4, "")]
+    ("local", "hours", "begin"),
+    [(True, 12, ""), (True, 1e-4, "jobs fit_law take"), (False, 1e-4, "")],
 )
 def test_a_run_that_is_too_long_is_refused_unless_a_cluster_takes_it(local, hours, begin):
     dag = SimpleNamespace(needrun_jobs=lambda: [job("fit_law")], job_dependencies=lambda job: [])
-    snakemake = SimpleNamespace(dryrun=False, local_exec=local, cores=2, dag=dag, persistence=RECORDED)
+    snakemake = SimpleNamespace(
+        dryrun=False, local_exec=local, cores=2, dag=dag, persistence=RECORDED
+    )
     terminal = Terminal(snakemake, OneSecondEach(), "nothing to do", hours)
     send(terminal, "run_info")
     assert terminal.refusal.startswith(begin)
@@ -104,19 +114,28 @@ def test_a_changed_file_comes_first_with_what_it_renews_and_asks_for_hours_as_lo
     glass.params, glass.output = [{"mine.yaml": "b" * 64}], ["glass.data"]
     recorded = SimpleNamespace(params=lambda path: [repr({"mine.yaml": "a" * 64})])
     needs = {closing: [glass]}
-    dag = SimpleNamespace(needrun_jobs=lambda: [glass, closing, other], job_dependencies=lambda job: needs.get(job, []))
-    snakemake = SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag, persistence=recorded)
+    dag = SimpleNamespace(
+        needrun_jobs=lambda: [glass, closing, other],
+        job_dependencies=lambda job: needs.get(job, []),
+    )
+    snakemake = SimpleNamespace(
+        dryrun=False, local_exec=True, cores=1, dag=dag, persistence=recorded
+    )
     terminal = Terminal(snakemake, OneSecondEach(), "nothing to do", 1e-4)
     send(terminal, "run_info")
     first, second, third = capsys.readouterr().err.splitlines()
-    assert first == "mine.yaml: changed since results were made of it; renews make_glass, run_closing"
+    assert (
+        first == "mine.yaml: changed since results were made of it; renews make_glass, run_closing"
+    )
     assert second.strip() == "(jobs: 2, about 2 s)"
     assert third.startswith("3 jobs, about 3 s on 1 cores")
     assert "--hours" in terminal.refusal
 
 
 def test_the_release_is_told_as_switches_are_solved(capsys, tmp_path):
-    """By the quantiles of the answer, over the points that are there: those of an earlier run, too."""
+    """By the quantiles of the answer, over the points that are there: those of an earlier run,
+    too.
+    """
     jobs = []
     for number, release_V in enumerate(([9.0], [0.0, 4.0, np.nan], [5.0, 6.0, 7.0])):
         jobs.append(job("press_pads", number))
@@ -125,7 +144,9 @@ def test_the_release_is_told_as_switches_are_solved(capsys, tmp_path):
             for point, value in enumerate(release_V, number):  # the first is the central one
                 file.create_group(f"point_{point:04d}").attrs["release_V"] = value
     dag = SimpleNamespace(jobs=jobs, needrun_jobs=lambda: jobs[1:], job_dependencies=lambda job: [])
-    snakemake = SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag, persistence=RECORDED)
+    snakemake = SimpleNamespace(
+        dryrun=False, local_exec=True, cores=1, dag=dag, persistence=RECORDED
+    )
     terminal = Terminal(snakemake, OneSecondEach(), "", 12)
     send(terminal, "run_info")
     for number in (1, 2):
@@ -145,13 +166,20 @@ def test_the_page_before_the_end_brings_no_warning():
     snakemake = SimpleNamespace(dryrun=False, output_settings=SimpleNamespace(verbose=False))
     speak(snakemake, logger, Costs(load_scene("paper"), {}), "nothing to do", 12)
     for rule in ("report", "device"):
-        logger.warning(f"Warning: the following output files of rule {rule} were not present when the DAG was created:")
+        logger.warning(
+            f"Warning: the following output files of rule {rule} were not present when the DAG was"
+            " created:"
+        )
     assert [" of rule device " in record.getMessage() for record in heard] == [True]
 
 
 def test_nothing_to_do_names_the_report(capsys):
-    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do; the report is there", 12)
-    terminal.emit(logging.makeLogRecord({"msg": "Nothing to be done (all requested files are present)."}))
+    terminal = Terminal(
+        SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do; the report is there", 12
+    )
+    terminal.emit(
+        logging.makeLogRecord({"msg": "Nothing to be done (all requested files are present)."})
+    )
     assert capsys.readouterr().err == "nothing to do; the report is there\n"
 
 
@@ -163,7 +191,9 @@ def test_a_job_that_the_system_ended_is_named(capsys, tmp_path):
     for log in (killed, failed):
         send(terminal, "job_error", rule_name="compute_runs", log=[str(log)])
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("ERROR compute_runs: ended by the system without a word, probably out of memory")
+    assert line.startswith(
+        "ERROR compute_runs: ended by the system without a word, probably out of memory"
+    )
 
 
 def test_a_script_that_cannot_start_is_not_taken_for_missing_memory(capsys, tmp_path):
@@ -204,22 +234,37 @@ def test_a_plan_learns_from_what_jobs_took(tmp_path):
     assert other.seconds("uq", {}) == guess
 
 
-SHAPES = ["{", "[]", "3", "null", "[" * 100_000, '{"uq": [3, 4]}', '{"paper": 1}', '{"paper": {"uq": {"1": 2}}}']
+SHAPES = [
+    "{",
+    "[]",
+    "3",
+    "null",
+    "[" * 100_000,
+    '{"uq": [3, 4]}',
+    '{"paper": 1}',
+    '{"paper": {"uq": {"1": 2}}}',
+]
 PAIRS = ["[1]", '["x", 2]', "[1, 0]", "[NaN, 1]", "[-1, 1]", "[1e999, 1]", "null"]
 
 
-@pytest.mark.parametrize("content", [*SHAPES, *(f'{{"paper": {{"uq": {pair}}}}}' for pair in PAIRS)])
+@pytest.mark.parametrize(
+    "content", [*SHAPES, *(f'{{"paper": {{"uq": {pair}}}}}' for pair in PAIRS)]
+)
 def test_times_of_another_shape_are_forgotten(tmp_path, content):
     times, paper = tmp_path / "times.json", load_scene("paper")
     times.write_text(content)
-    assert Costs(paper, {}, times).seconds("uq", {}) == Costs(paper, {}, tmp_path / "none.json").seconds("uq", {})
+    assert Costs(paper, {}, times).seconds("uq", {}) == Costs(
+        paper, {}, tmp_path / "none.json"
+    ).seconds("uq", {})
     times.write_bytes(b"\xff\x00")
     assert not Costs(paper, {}, times).known(["uq"])
 
 
 def test_what_takes_the_time_is_named_with_what_to_do():
     said = refusal({"compute_direct_runs": 36000.0, "law": 2.0}, 18000.0, 2, 4)
-    assert said.startswith("jobs compute_direct_runs take 10 of the 10 hours of one core, 5 hours on 2, ")
+    assert said.startswith(
+        "jobs compute_direct_runs take 10 of the 10 hours of one core, 5 hours on 2, "
+    )
     assert "a run on one machine may take 4; ask for less, allow it (--hours 6, " in said
     assert refusal({"compute_direct_runs": 36000.0}, 18000.0, 2, 100) == ""
 

@@ -9,8 +9,15 @@ from workflow.report.gates import _attraction, trust
 from workflow.report.page import Gate
 from workflow.report.verdict import CELLS, verdict
 
-SOUND = [Gate("law", False, ("misses",), answer=False), Gate("hardness", False, ("too few runs",), used=False)]
-BOTH_LAWS = [{"times": 1 / 3, "release_V": 9.0}, {"times": 1.0, "release_V": 7.4}, {"times": 3.0, "release_V": 0.0}]
+SOUND = [
+    Gate("law", False, ("misses",), answer=False),
+    Gate("hardness", False, ("too few runs",), used=False),
+]
+BOTH_LAWS = [
+    {"times": 1 / 3, "release_V": 9.0},
+    {"times": 1.0, "release_V": 7.4},
+    {"times": 3.0, "release_V": 0.0},
+]
 
 
 def _described(low, middle, high):
@@ -22,7 +29,9 @@ def _probability(value):
 
 
 def _pad(stuck=0.02, cells=0.1, explained=0.9, **more):
-    """As device/pad_switch.json with an answer for the inputs, D0 and geometry; the release's variance is 4 V²."""
+    """As device/pad_switch.json with an answer for the inputs, D0 and geometry; the release's
+    variance is 4 V².
+    """
     rows = [("bow_nm", "each", 0.5), ("rms", "common", 0.25), ("gap_cutoff_nm", "common", 0.1)]
     return {
         "electrode": "bending",
@@ -33,7 +42,12 @@ def _pad(stuck=0.02, cells=0.1, explained=0.9, **more):
             "stuck": _probability(stuck),
             "causes": {"common": 0.4, "each": 0.5, "cells": cells},
             "sensitivity": [
-                {"name": name, "varies": varies, "share_of_variance": share, "interval_shrinks_by": share / 2}
+                {
+                    "name": name,
+                    "varies": varies,
+                    "share_of_variance": share,
+                    "interval_shrinks_by": share / 2,
+                }
                 for name, varies, share in rows
             ],
             **{"points": 64, "explained": explained, "cells_error_V": 2.0 * cells**0.5},
@@ -45,7 +59,10 @@ def _pad(stuck=0.02, cells=0.1, explained=0.9, **more):
 
 def _results(pad, coupled=False, attraction="clamped"):
     return SimpleNamespace(
-        has=lambda *names: pad is not None, json=lambda name: pad, coupled=coupled, contact={"attraction": attraction}
+        has=lambda *names: pad is not None,
+        json=lambda name: pad,
+        coupled=coupled,
+        contact={"attraction": attraction},
     )
 
 
@@ -54,16 +71,22 @@ def said(pad, gates=SOUND, **about):
 
 
 def test_verdict_says_outcome_and_next_step():
-    assert said(_pad()).sentence == (
-        "The switch lets go at 6.60 V (5\u00a0%:\u00a03.10 V; 95\u00a0%:\u00a09.40 V); 2% stick. Control next the bow "
-        "of the electrode at rest: known exactly, it shrinks the interval by 25%."
+    assert (
+        said(_pad()).sentence
+        == "The switch lets go at 6.60 V (5\u00a0%:\u00a03.10 V; 95\u00a0%:\u00a09.40 V); 2% stick."
+        " Control next the bow of the electrode at rest: known exactly, it shrinks the interval"
+        " by 25%."
     )
     assert said(_pad()).causes == (("bow", 0.5), ("RMS roughness", 0.25), ("D₀", 0.1), (CELLS, 0.1))
 
 
 @pytest.mark.parametrize(
     ("stuck", "words"),
-    [(1.0, "The switch sticks"), (0.4, "is open: 40% stick; the median is 6.60 V"), (0.0, "The switch lets go at")],
+    [
+        (1.0, "The switch sticks"),
+        (0.4, "is open: 40% stick; the median is 6.60 V"),
+        (0.0, "The switch lets go at"),
+    ],
 )
 def test_verdict_says_when_it_is_not_decided(stuck, words):
     assert words in said(_pad(stuck)).outcome
@@ -71,7 +94,9 @@ def test_verdict_says_when_it_is_not_decided(stuck, words):
 
 @pytest.mark.parametrize(("stuck", "words"), [(False, "lets go at 6.66 V"), (True, "sticks")])
 def test_without_an_interval_the_same_model_gives_its_central_value_and_the_reason(stuck, words):
-    """Not the flat electrode's, which sticks more: 7.86 V of one scene stood beside "sticks" of another."""
+    """Not the flat electrode's, which sticks more: 7.86 V of one scene stood beside "sticks" of
+    another.
+    """
     central = {"release_V": 0.0 if stuck else 6.66}
     why = "13 of 64 switches cannot be solved"
     without = said({**_pad(), "answer": None, "answer_status": why, "central": central})
@@ -83,7 +108,13 @@ def test_without_an_interval_the_same_model_gives_its_central_value_and_the_reas
 
 def test_a_pad_that_gives_no_number_says_why():
     gate = {"passed": False, "reasons": ["the beam does not land"]}
-    pad = {"electrode": "bending", "central": None, "answer": None, "answer_status": "no points", "gate": gate}
+    pad = {
+        "electrode": "bending",
+        "central": None,
+        "answer": None,
+        "answer_status": "no points",
+        "gate": gate,
+    }
     assert said(pad).outcome == "The release voltage is not known, because the beam does not land."
     assert verdict(_results(None), SOUND) is None
 
@@ -95,9 +126,18 @@ def test_a_coupled_switch_that_sticks_does_so_by_an_upper_bound():
 
 def test_what_varies_is_named_in_words():
     """ "Measure next s_RMS better" told nobody to scan more places."""
-    rows = [{"name": "rms_scatter", "varies": "common", "share_of_variance": 0.5, "interval_shrinks_by": 0.3}]
+    rows = [
+        {
+            "name": "rms_scatter",
+            "varies": "common",
+            "share_of_variance": 0.5,
+            "interval_shrinks_by": 0.3,
+        }
+    ]
     pad = _pad()
-    assert said({**pad, "answer": {**pad["answer"], "sensitivity": rows}}).next_step.startswith("Scan more places next")
+    assert said({**pad, "answer": {**pad["answer"], "sensitivity": rows}}).next_step.startswith(
+        "Scan more places next"
+    )
     rows[0]["varies"] = "each"
     controlled = said({**pad, "answer": {**pad["answer"], "sensitivity": rows}}).next_step
     assert controlled.startswith("Control next the roughness from place to place:")
@@ -132,7 +172,10 @@ def test_only_what_the_answer_rests_on_is_mended_first():
 def test_both_laws_of_attraction_are_shown():
     assert said(_pad()).other_law_V == (7.4, 9.0)
     assert said(_pad(), attraction="offset").other_law_V == (7.4, 0.0)
-    assert said(_pad(by_attraction=[{**row, "release_V": None} for row in BOTH_LAWS])).other_law_V is None
+    assert (
+        said(_pad(by_attraction=[{**row, "release_V": None} for row in BOTH_LAWS])).other_law_V
+        is None
+    )
 
 
 def test_the_light_knows_that_the_other_law_changes_the_outcome():

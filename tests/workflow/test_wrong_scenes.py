@@ -1,4 +1,6 @@
-"""Nonsense is refused before anything runs; a mutated scene is refused in clear lines or used as it stands."""
+"""Nonsense is refused before anything runs; a mutated scene is refused in clear lines or used as it
+stands.
+"""
 
 import pytest
 

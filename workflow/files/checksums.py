@@ -1,11 +1,12 @@
 """Checksums of result files: each beside its file, in the format of `sha256sum`, hidden.
 
-`law/parameters.csv` has its checksum in `law/.parameters.csv.sha256` (check by hand: `sha256sum -c` in that folder).
-The writer of results (`workflow.files.results.atomic_path`) records it just before the result appears, so that a result
-without a checksum is none of ours, and one that differs from it was damaged afterwards.
+`law/parameters.csv` has its checksum in `law/.parameters.csv.sha256` (check by hand: `sha256sum -c`
+in that folder). The writer of results (`workflow.files.results.atomic_path`) records it just before
+the result appears, so that a result without a checksum is none of ours, and one that differs from
+it was damaged afterwards.
 
-Files of the user have no record beside them. `content_checksums` tells their content, by which results follow it.
-"""
+Files of the user have no record beside them. `content_checksums` tells their content, by which
+results follow it."""
 
 import hashlib
 import json
@@ -16,11 +17,16 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-UNFINISHED = ".asperity-unfinished-"  # so begin the temporary names of results and records, and no others
+UNFINISHED = (
+    ".asperity-unfinished-"  # so begin the temporary names of results and records, and no others
+)
 CLOCK_S = 5.0  # by which clocks of machines that share a disk may differ
 CONTENTS = Path(".snakemake/asperity_contents.json")
-"""Checksums of the files that scenes name, with size, dates and inode that they had; may be deleted."""
-SETTLED_S = 2.0  # a file changed within the tick of a clock has the same dates: file systems have ticks up to 2 s
+"""Checksums of the files that scenes name, with size, dates and inode that they had; may be
+deleted.
+"""
+# a file changed within the tick of a clock has the same dates: file systems have ticks up to 2 s
+SETTLED_S = 2.0
 UNREADABLE = "unreadable"  # the job that reads such a file says why
 
 
@@ -31,10 +37,11 @@ def file_checksum(path: str | Path) -> str:
 
 
 def content_checksums(paths: Iterable[str | Path], remembered: Path = CONTENTS) -> dict[str, str]:
-    """SHA-256 of files by path; a file whose size, dates and inode are as remembered is not read again.
+    """SHA-256 of files by path; a file whose size, dates and inode are as remembered is not read
+    again.
 
-    The date of the inode (ctime) counts, too: no program can set it, as `cp -p` and `rsync -a` set the other one.
-    """
+    The date of the inode (ctime) counts, too: no program can set it, as `cp -p` and `rsync -a` set
+    the other one."""
     known = _remembered(remembered)
     checksums: dict[str, str] = {}
     news: dict[str, list[Any]] = {}
@@ -68,7 +75,9 @@ def _remembered(file: Path) -> dict[str, Any]:
 
 def _remember(file: Path, content: dict[str, Any]) -> None:
     temporary = file.with_name(f"{file.name}.{os.getpid()}")
-    with suppress(OSError):  # a full disk, or a folder that may not be written: read again next time
+    with suppress(
+        OSError
+    ):  # a full disk, or a folder that may not be written: read again next time
         file.parent.mkdir(exist_ok=True)
         temporary.write_text(json.dumps(content), encoding="utf-8")
         temporary.replace(file)
@@ -92,11 +101,16 @@ def record(path: Path, content: Path) -> None:
 
 
 def is_damaged(path: str | Path) -> bool:
-    """Does a file differ from its recorded checksum?  False where there is no record: a file of the user."""
+    """Does a file differ from its recorded checksum?  False where there is no record: a file of the
+    user.
+    """
     target = record_of(path)
     if not target.is_file():
         return False
-    return target.read_text(encoding="utf-8", errors="replace") != f"{file_checksum(path)}  {Path(path).name}\n"
+    return (
+        target.read_text(encoding="utf-8", errors="replace")
+        != f"{file_checksum(path)}  {Path(path).name}\n"
+    )
 
 
 def recorded(folder: str | Path) -> Iterator[Path]:
@@ -113,7 +127,9 @@ def is_late(path: Path) -> bool:
 
 
 def remove_unfinished(folder: str | Path) -> None:
-    """Delete what killed writers left below a folder: results and records under their temporary names."""
+    """Delete what killed writers left below a folder: results and records under their temporary
+    names.
+    """
     for path in Path(folder).rglob(f"{UNFINISHED}*"):
         if path.is_file():
             path.unlink()

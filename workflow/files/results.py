@@ -1,8 +1,9 @@
-"""The one writer of result files: each appears whole or not at all, with its checksum beside it (`checksums`).
+"""The one writer of result files: each appears whole or not at all, with its checksum beside it
+(`checksums`).
 
-A file is written under a temporary name in its own directory, synced to disk and renamed, so that the
-existence of a result means that it is complete (a half-written HDF5 file opens without complaint).
-"""
+A file is written under a temporary name in its own directory, synced to disk and renamed, so that
+the existence of a result means that it is complete (a half-written HDF5 file opens without
+complaint)."""
 
 import csv
 import io
@@ -52,10 +53,14 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         yield temporary
         umask = os.umask(0)
         os.umask(umask)
-        temporary.chmod(0o666 & ~umask)  # mkstemp makes private files; results follow the user's umask
+        temporary.chmod(
+            0o666 & ~umask
+        )  # mkstemp makes private files; results follow the user's umask
         with temporary.open("rb") as stream:
             os.fsync(stream.fileno())
-        record(path, temporary)  # before the result: killed in between, the record waits for a file that is made again
+        record(
+            path, temporary
+        )  # before the result: killed in between, the record waits for a file that is made again
         temporary.replace(path)
     except OSError as error:
         error.filename = error.filename or str(path)  # "disk full" alone would not say where
@@ -80,12 +85,15 @@ def write_csv(path: str | Path, rows: Iterable[Mapping[str, Any]]) -> None:
 
     Parameters
     ----------
-    rows : mappings from column name (with its unit as suffix) to value; a missing value is an empty cell. The order
-        of the columns is that of the table's schema, of a file outside results/ that of the first row.
+    rows : mappings from column name (with its unit as suffix) to value; a missing value is an empty
+        cell. The order
+        of the columns is that of the table's schema, of a file outside results/ that of the first
+        row.
 
     Raises
     ------
-    ValueError : the table does not fit its schema (`workflow.schemas`), which every file under results/ has; or,
+    ValueError : the table does not fit its schema (`workflow.schemas`), which every file under
+        results/ has; or,
         elsewhere, a row has a column that the first has not.
     """
     path = Path(path)
@@ -94,9 +102,14 @@ def write_csv(path: str | Path, rows: Iterable[Mapping[str, Any]]) -> None:
     if schema is None and "results" in path.parts:
         raise ValueError(f"{path}: no table of workflow/schemas/ is for this file")
     columns = schema.header(rows) if schema is not None else list(rows[0])
-    if schema is not None and (misfit := schema.misfit(columns, [dict.fromkeys(columns, "") | row for row in rows])):
+    if schema is not None and (
+        misfit := schema.misfit(columns, [dict.fromkeys(columns, "") | row for row in rows])
+    ):
         raise ValueError(f"{path}: {misfit}; see workflow/schemas/")
-    with atomic_path(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
+    with (
+        atomic_path(path) as temporary,
+        temporary.open("w", newline="", encoding="utf-8") as stream,
+    ):
         writer = csv.DictWriter(stream, columns, restval="", lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
@@ -125,7 +138,9 @@ def load_csv(path: str | Path) -> list[dict[str, str]]:
         header, rows = reader.fieldnames or (), list(reader)
     schema = schema_of(path)
     if schema is not None and (misfit := schema.misfit(header, rows)):
-        raise UnfitTable(f"{path}: {misfit}; damaged or of another version: delete it and run again")
+        raise UnfitTable(
+            f"{path}: {misfit}; damaged or of another version: delete it and run again"
+        )
     return rows
 
 
@@ -134,12 +149,16 @@ def load_numbers(path: str | Path) -> list[dict[str, float]]:
     return [{name: float(value or "nan") for name, value in row.items()} for row in load_csv(path)]
 
 
-def write_json(path: str | Path, data: Mapping[str, Any], provenance: Mapping[str, Any] | None = None) -> None:
+def write_json(
+    path: str | Path, data: Mapping[str, Any], provenance: Mapping[str, Any] | None = None
+) -> None:
     """Write a JSON result file; NaN and infinities become null, arrays become lists."""
     content = dict(data)
     if provenance is not None:
         content["provenance"] = {"schema_version": SCHEMA_VERSION, **provenance}
-    write_text(path, json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+    write_text(
+        path, json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    )
 
 
 def _plain(value: Any) -> Any:
@@ -188,7 +207,9 @@ def write_h5(
             for name, dataset in datasets.items():
                 values = np.asarray(dataset.values)
                 if values.ndim != len(dataset.dims):
-                    raise ValueError(f"{path}: {group_name}/{name} has {values.ndim} axes, not {dataset.dims}")
+                    raise ValueError(
+                        f"{path}: {group_name}/{name} has {values.ndim} axes, not {dataset.dims}"
+                    )
                 options = {"compression": "gzip", "shuffle": True} if values.size > 4096 else {}
                 stored = group.create_dataset(name, data=values, track_times=False, **options)
                 stored.attrs["units"] = dataset.unit
@@ -205,7 +226,9 @@ def write_h5(
 
 
 def _attach_scales(group: Any, datasets: Mapping[str, Dataset]) -> None:
-    """Make each dataset named like its one dimension the coordinate of that dimension, as netCDF readers expect."""
+    """Make each dataset named like its one dimension the coordinate of that dimension, as netCDF
+    readers expect.
+    """
     for name, dataset in datasets.items():
         if dataset.dims == (name,):
             group[name].make_scale(name)
@@ -225,16 +248,20 @@ def _attributes(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 DEEPEST = 4
-"""Groups in each other in a result; the time to visit them grows with their depth squared: 3,000 take half a minute."""
+"""Groups in each other in a result; the time to visit them grows with their depth squared: 3,000
+take half a minute.
+"""
 
 
-def load_h5(path: str | Path) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
+def load_h5(
+    path: str | Path,
+) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
     """Read an HDF5 result file: datasets by group, root attributes, attributes by group.
 
     Raises
     ------
-    ValueError : the file is not a complete result file, or its datasets are too large or lie in other files.
-    """
+    ValueError : the file is not a complete result file, or its datasets are too large or lie in
+        other files."""
     import h5py
 
     groups: dict[str, dict[str, np.ndarray]] = {}
@@ -252,7 +279,8 @@ def load_h5(path: str | Path) -> tuple[dict[str, dict[str, np.ndarray]], dict[st
 
 
 def checked_items(file: Any) -> dict[str, Any]:
-    """Groups and datasets of an open HDF5 file, which may be a stranger's, by name; nothing is read of them.
+    """Groups and datasets of an open HDF5 file, which may be a stranger's, by name; nothing is read
+    of them.
 
     Raises
     ------
@@ -265,12 +293,20 @@ def checked_items(file: Any) -> dict[str, Any]:
         return True if name.count("/") > DEEPEST else None
 
     if file.visititems(kept):
-        raise ValueError(f"{file.filename}: groups in groups, which no result has; delete it and run again")
+        raise ValueError(
+            f"{file.filename}: groups in groups, which no result has; delete it and run again"
+        )
     datasets = [item for item in items.values() if hasattr(item, "nbytes")]
     size = sum(dataset.nbytes for dataset in datasets)
-    # the largest result that ships has 18 MB; deflate packs 1032 times at most, what is not written takes nothing
+    # the largest result that ships has 18 MB; deflate packs 1032 times at most, what is not written
+    # takes nothing
     if size > min(2**30, 1100 * Path(file.filename).stat().st_size):
-        raise ValueError(f"{file.filename}: datasets of {size} bytes, more than a result has; delete it and run again")
+        raise ValueError(
+            f"{file.filename}: datasets of {size} bytes, more than a result has; delete it and run"
+            " again"
+        )
     if any(dataset.is_virtual or dataset.external for dataset in datasets):
-        raise ValueError(f"{file.filename}: datasets that lie in other files; delete it and run again")
+        raise ValueError(
+            f"{file.filename}: datasets that lie in other files; delete it and run again"
+        )
     return items

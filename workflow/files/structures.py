@@ -17,7 +17,9 @@ def structure_text(atoms: Atoms) -> str:
     lines = [str(len(atoms)), f'Lattice="{lattice}" Properties=species:S:1:pos:R:3 pbc="T T T"']
     lines += [
         f"{symbol} {x!r} {y!r} {z!r}"
-        for symbol, (x, y, z) in zip(atoms.get_chemical_symbols(), atoms.positions.tolist(), strict=True)
+        for symbol, (x, y, z) in zip(
+            atoms.get_chemical_symbols(), atoms.positions.tolist(), strict=True
+        )
     ]
     return "\n".join(lines) + "\n"
 
@@ -30,7 +32,9 @@ def load_structure(path: str | Path) -> Atoms:
 
 
 class ScfStore(MutableMapping[str, dict[str, np.ndarray]]):
-    """Finished SCF calculations of a job, one file each: a killed job loses only the one it was in."""
+    """Finished SCF calculations of a job, one file each: a killed job loses only the one it was
+    in.
+    """
 
     def __init__(self, path: Path):
         self.path = path

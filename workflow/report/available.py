@@ -1,4 +1,6 @@
-"""The result files a report may show: what exists is read, what does not exist leaves no section."""
+"""The result files a report may show: what exists is read, what does not exist leaves no
+section.
+"""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -18,12 +20,16 @@ CsvRow = dict[str, str]
 class Results:
     """Result files of one scene by their path inside `results/<scene>/`.
 
-    Only files named at the start are seen, so that a report depends on its declared inputs and on nothing
-    that happens to lie beside them. `at_hand` is the content of JSON and YAML files that are not written yet.
-    """
+    Only files named at the start are seen, so that a report depends on its declared inputs and on
+    nothing that happens to lie beside them. `at_hand` is the content of JSON and YAML files that
+    are not written yet."""
 
     def __init__(
-        self, root: str | Path, paths: Iterable[str | Path], scene: str, at_hand: Mapping[str, Any] | None = None
+        self,
+        root: str | Path,
+        paths: Iterable[str | Path],
+        scene: str,
+        at_hand: Mapping[str, Any] | None = None,
     ) -> None:
         self.root, self.scene, self.at_hand = Path(root), scene, at_hand or {}
         self.paths = {Path(path).relative_to(self.root).as_posix() for path in map(Path, paths)}
@@ -39,7 +45,9 @@ class Results:
 
     def matching(self, prefix: str, suffix: str) -> list[str]:
         """Names that begin and end so, sorted."""
-        return sorted(name for name in self.paths if name.startswith(prefix) and name.endswith(suffix))
+        return sorted(
+            name for name in self.paths if name.startswith(prefix) and name.endswith(suffix)
+        )
 
     @cache  # noqa: B019 (one object per report)
     def csv(self, name: str) -> list[CsvRow]:
@@ -54,16 +62,22 @@ class Results:
     @cached_property
     def record(self) -> dict[str, Any]:
         """What the run depends on: its scene, versions, commit."""
-        return self.at_hand.get("scene.yaml") or load_mapping(self.root / "scene.yaml", "record of a run")
+        return self.at_hand.get("scene.yaml") or load_mapping(
+            self.root / "scene.yaml", "record of a run"
+        )
 
     @cache  # noqa: B019
-    def h5(self, name: str) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
+    def h5(
+        self, name: str
+    ) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
         """Groups, root attributes and group attributes of an HDF5 file."""
         return load_h5(self.root / name)
 
     @property
     def contact(self) -> dict[str, Any]:
-        """The contact settings that the curves were made with; without curves those that are at hand."""
+        """The contact settings that the curves were made with; without curves those that are at
+        hand.
+        """
         if self.has("curves/nominal.h5"):
             return json.loads(self.h5("curves/nominal.h5")[1]["contact"])
         return self.record["scene"]["contact"] if self.at_hand else {}
@@ -92,7 +106,9 @@ class Results:
 
 
 def results_in(folder: Path) -> Results:
-    """All result files of a folder, for a command that no run schedules; links, pipes and devices are left out."""
+    """All result files of a folder, for a command that no run schedules; links, pipes and devices
+    are left out.
+    """
     paths = [
         path
         for path in sorted(folder.rglob("*"))

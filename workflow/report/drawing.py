@@ -1,8 +1,7 @@
 """Figures as inline SVG that follow the page: its font, its colours, light and dark.
 
-Matplotlib draws in marker colours, each of which becomes a CSS variable of the page afterwards. Numbers of a figure are
-in the files named below it.
-"""
+Matplotlib draws in marker colours, each of which becomes a CSS variable of the page afterwards.
+Numbers of a figure are in the files named below it."""
 
 import base64
 import io
@@ -66,7 +65,8 @@ def draw(
     rows: int = 1,
     **options: Any,
 ) -> str:
-    """SVG of a figure; one of several columns also as single panels, which narrow screens show below each other.
+    """SVG of a figure; one of several columns also as single panels, which narrow screens show
+    below each other.
 
     Parameters
     ----------
@@ -110,8 +110,14 @@ def _panels(figure: Figure) -> list[str]:
     """View boxes of the panels, in points from the upper left corner."""
     width, height = 72 * figure.get_size_inches()
     boxes = []
-    bars = {axis: [image.colorbar.ax for image in axis.images if image.colorbar] for axis in figure.axes}
-    panels = [axis for axis in figure.axes if axis.get_visible() and not any(axis in bar for bar in bars.values())]
+    bars = {
+        axis: [image.colorbar.ax for image in axis.images if image.colorbar] for axis in figure.axes
+    }
+    panels = [
+        axis
+        for axis in figure.axes
+        if axis.get_visible() and not any(axis in bar for bar in bars.values())
+    ]
     for axis in panels:
         parts = [part.get_tightbbox() for part in (axis, *bars[axis])]
         box = (
@@ -120,7 +126,8 @@ def _panels(figure: Figure) -> list[str]:
             .padded(0.005)
         )
         boxes.append(
-            f"{box.x0 * width:.1f} {(1 - box.y1) * height:.1f} {box.width * width:.1f} {box.height * height:.1f}"
+            f"{box.x0 * width:.1f} {(1 - box.y1) * height:.1f} {box.width * width:.1f}"
+            f" {box.height * height:.1f}"
         )
     return boxes
 
@@ -141,7 +148,9 @@ def _inline(svg: str, name: str, label: str) -> str:
     svg = re.sub(r"font: ([\d.]+px) [^;\"]+", r"font-size: \1", svg)
     svg = re.sub(r"font-family: [^;\"]+;? ?", "", svg)
     # matplotlib blackens what has no colour of its own
-    svg = svg.replace("fill: #000000", "fill: var(--ink)").replace("stroke: #000000", "stroke: var(--ink)")
+    svg = svg.replace("fill: #000000", "fill: var(--ink)").replace(
+        "stroke: #000000", "stroke: var(--ink)"
+    )
     svg = re.sub(r">([^<]*\w_\w[^<]*)<", lambda match: f">{_subscripts(match[1])}<", svg)
     svg = re.sub(r"\n\s*", "\n", svg)
     svg = _lighter(svg)
@@ -151,18 +160,25 @@ def _inline(svg: str, name: str, label: str) -> str:
     assert box is not None
     width = float(box[1].split()[2]) * 4 / 3
     start = (
-        '<svg xmlns:xlink="http://www.w3.org/1999/xlink" xmlns="http://www.w3.org/2000/svg" '
-        f'viewBox="{box[1]}" role="img" aria-label="{_attribute(label)}" style="--width:{width:.0f}px">'
+        '<svg xmlns:xlink="http://www.w3.org/1999/xlink" xmlns="http://www.w3.org/2000/svg"'
+        f' viewBox="{box[1]}" role="img" aria-label="{_attribute(label)}"'
+        f' style="--width:{width:.0f}px">'
     )
     return start + svg[opening.end() :]
 
 
 def _lighter(svg: str) -> str:
-    """The same picture in fewer bytes: coordinates to a hundredth of a point, images by their palette."""
+    """The same picture in fewer bytes: coordinates to a hundredth of a point, images by their
+    palette.
+    """
     svg = re.sub(
-        r'\b(?:d|x|y|width|height|transform)="[^"]*"', lambda match: re.sub(r"(\.\d\d)\d+", r"\1", match[0]), svg
+        r'\b(?:d|x|y|width|height|transform)="[^"]*"',
+        lambda match: re.sub(r"(\.\d\d)\d+", r"\1", match[0]),
+        svg,
     )
-    return re.sub(r"(?<=data:image/png;base64,)[A-Za-z0-9+/=\s]+", lambda match: _by_palette(match[0]), svg)
+    return re.sub(
+        r"(?<=data:image/png;base64,)[A-Za-z0-9+/=\s]+", lambda match: _by_palette(match[0]), svg
+    )
 
 
 def _by_palette(encoded: str) -> str:

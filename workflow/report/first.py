@@ -8,7 +8,10 @@ from workflow.report.available import Results
 from workflow.report.numbers import show
 from workflow.report.verdict import Verdict, does, in_words, verdict, volts
 
-KINDS = {"common": "To measure: one unknown value", "each": "To control: differs from device to device"}
+KINDS = {
+    "common": "To measure: one unknown value",
+    "each": "To control: differs from device to device",
+}
 BANDS = {"unknown": "not known: the typical device", "between": "from device to device"}
 LEFT, RIGHT = 70.0, 410.0
 """Ends of the bar's axis in its picture."""
@@ -37,42 +40,54 @@ def first_screen(results: Results, gates: Any) -> First | None:
         by_this, by_other = map(does, said.other_law_V)
         work = {"clamped": "a third of", "offset": "three times"}[results.contact["attraction"]]
         other = (
-            f"The law of attraction is a choice that nothing here decides. At central inputs the switch {by_this} by "
-            f"this law; by the other one, with {work} the work of adhesion, it {by_other}."
+            "The law of attraction is a choice that nothing here decides. At central inputs the"
+            f" switch {by_this} by this law; by the other one, with {work} the work of adhesion, it"
+            f" {by_other}."
         )
     answer = results.json("device/pad_switch.json").get("answer") or {}
     named = bool(said.causes)
     causes = [(head, _largest(answer, kind)) for kind, head in KINDS.items()] if named else []
     bands = {kind: answer["known"][f"{kind}_V"] for kind in BANDS} if named else {}
     known = _known(answer) if named else ""
-    return First(said, _device(results), release_bar(said, bands), causes, known, _unsolved(answer), other)
+    return First(
+        said, _device(results), release_bar(said, bands), causes, known, _unsolved(answer), other
+    )
 
 
 def _largest(answer: dict[str, Any], kind: str) -> list[tuple[str, int]]:
     """What makes the most of the variance, of one kind; shares in percent."""
-    rows = [row for row in answer["sensitivity"] if row["varies"] == kind and row["share_of_variance"] > 0]
+    rows = [
+        row
+        for row in answer["sensitivity"]
+        if row["varies"] == kind and row["share_of_variance"] > 0
+    ]
     return [(in_words(row["name"]), round(100 * row["share_of_variance"])) for row in rows[:3]]
 
 
 def _known(answer: dict[str, Any]) -> str:
     """What is not known, and what differs between devices, in words."""
     known = answer["known"]
-    typical, device = ([show(known[f"{kind}_V"][q]["value"], 2) for q in ("0.05", "0.95")] for kind in BANDS)
+    typical, device = (
+        [show(known[f"{kind}_V"][q]["value"], 2) for q in ("0.05", "0.95")] for kind in BANDS
+    )
     most = known["stuck_share"]["0.95"]
     return (
-        f"Not known: where the typical device lets go, {typical[0]} to {typical[1]} V. From device to device: "
-        f"{device[0]} to {device[1]} V, all else known. With 95 % confidence, less than {_rate(most['value'], answer)} "
-        f"of one batch stick. The error of this limit allows up to {_rate(most['high'], answer)}."
+        f"Not known: where the typical device lets go, {typical[0]} to {typical[1]} V. From device"
+        f" to device: {device[0]} to {device[1]} V, all else known. With 95 % confidence, less than"
+        f" {_rate(most['value'], answer)} of one batch stick. The error of this limit allows up to"
+        f" {_rate(most['high'], answer)}."
     )
 
 
 def _unsolved(answer: dict[str, Any]) -> str:
-    """That some switches have no answer, which are no random part of them; the reason of the first."""
+    """That some switches have no answer, which are no random part of them; the reason of the
+    first.
+    """
     if not (refused := answer.get("refused")):
         return ""
     return (
-        f"{len(refused)} of {answer['points'] + len(refused)} switches have no answer. They are left out, and may be "
-        f"those that stick. The reason of the first: {refused[0]}."
+        f"{len(refused)} of {answer['points'] + len(refused)} switches have no answer. They are"
+        f" left out, and may be those that stick. The reason of the first: {refused[0]}."
     )
 
 
@@ -98,7 +113,9 @@ def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
         return f"{LEFT + (RIGHT - LEFT) * value / top:.1f}"
 
     middle = said.release_V[len(said.release_V) // 2]
-    step = next(step for step in (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 1e4, 1e5) if top / step <= 6)
+    step = next(
+        step for step in (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 1e4, 1e5) if top / step <= 6
+    )
     ticks = [k * step for k in range(int(top / step) + 1)]
     share = "" if said.stuck is None else f" {said.stuck[1]:.0%}"
     parts = [
@@ -106,7 +123,10 @@ def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
         f'<text x="{LEFT / 2 - 4:g}" y="32" class="mid">sticks</text>',
         f'<text x="{LEFT / 2 - 4:g}" y="50" class="mid strong">{share}</text>',
         f'<path class="axis" d="M{LEFT:g} 78H{RIGHT:g}"/>',
-        *(f'<path class="axis" d="M{x(v)} 78v5"/><text x="{x(v)}" y="98" class="mid">{v:g}</text>' for v in ticks),
+        *(
+            f'<path class="axis" d="M{x(v)} 78v5"/><text x="{x(v)}" y="98" class="mid">{v:g}</text>'
+            for v in ticks
+        ),
         f'<text x="{(LEFT + RIGHT) / 2:g}" y="114" class="mid">release voltage (V)</text>',
         *(
             f'<path class="{kind}" d="M{x(band["0.05"]["value"])} {y}H{x(band["0.95"]["value"])}">'
@@ -123,9 +143,15 @@ def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
             f'<text x="{x(middle)}" y="18" class="mid strong">{show(middle)} V</text>',
         ]
     if others and others[1] > 0:
-        parts.append(f'<circle class="other" cx="{x(others[1])}" cy="36" r="5"><title>other law</title></circle>')
+        parts.append(
+            f'<circle class="other" cx="{x(others[1])}" cy="36" r="5"><title>other'
+            " law</title></circle>"
+        )
     label = f"Release voltage: {', '.join(volts(value) for value in said.release_V)}"
-    return f'<svg class="bar" viewBox="0 0 420 118" role="img" aria-label="{label}">{"".join(parts)}</svg>'
+    return (
+        '<svg class="bar" viewBox="0 0 420 118" role="img"'
+        f' aria-label="{label}">{"".join(parts)}</svg>'
+    )
 
 
 def _device(results: Results) -> str:
@@ -144,17 +170,21 @@ def _device(results: Results) -> str:
         size = f"beam of {device.length_um:g} × {device.width_um:g} µm, bending"
     else:
         metal = (
-            '<path class="metal" d="M90 96h220"/><path class="rest" d="M200 30v10l-8 5 16 8-16 8 16 8-16 8 8 5v14"/>'
+            '<path class="metal" d="M90 96h220"/><path class="rest" d="M200 30v10l-8 5 16 8-16 8 16'
+            ' 8-16 8 8 5v14"/>'
         )
         size = f"plate on a spring of {show(device.spring_N_per_m)} N/m"
-    hold = f"held at {device.hold_voltage_V:g} V" if device.hold_voltage_V else "held at its pull-in voltage"
+    hold = (
+        f"held at {device.hold_voltage_V:g} V"
+        if device.hold_voltage_V
+        else "held at its pull-in voltage"
+    )
     return (
-        f'<svg class="device" viewBox="0 0 400 190" role="img" aria-label="The switch: {size}">'
-        '<path class="rest" d="M20 40H380"/>'
-        f'<path class="anchor" d="{anchors}"/>{metal}<path class="rough" d="M60 116{rough}V138H60z"/>'
-        '<rect class="anchor" x="60" y="138" width="280" height="12"/>'
-        f'<text x="200" y="24" class="mid">{size}</text>'
-        f'<text x="200" y="62" class="mid">gap {device.gap_um:g} µm</text>'
-        f'<text x="200" y="168" class="mid">dielectric of {device.dielectric_nm:g} nm, rough</text>'
-        f'<text x="200" y="185" class="mid">{hold}</text></svg>'
+        '<svg class="device" viewBox="0 0 400 190" role="img" aria-label="The switch:'
+        f' {size}"><path class="rest" d="M20 40H380"/><path class="anchor"'
+        f' d="{anchors}"/>{metal}<path class="rough" d="M60 116{rough}V138H60z"/><rect'
+        ' class="anchor" x="60" y="138" width="280" height="12"/><text x="200" y="24"'
+        f' class="mid">{size}</text><text x="200" y="62" class="mid">gap {device.gap_um:g}'
+        f' µm</text><text x="200" y="168" class="mid">dielectric of {device.dielectric_nm:g} nm,'
+        f' rough</text><text x="200" y="185" class="mid">{hold}</text></svg>'
     )

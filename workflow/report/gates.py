@@ -46,19 +46,27 @@ def _of_file(stage: str, name: str, results: Results) -> Iterator[Gate]:
     """The gate that a stage wrote into its JSON file."""
     if results.has(name):
         gate = results.json(name).get("gate", {})
-        yield Gate(stage, bool(gate.get("passed")), tuple(gate.get("reasons", ())), results.uses(stage))
+        yield Gate(
+            stage, bool(gate.get("passed")), tuple(gate.get("reasons", ())), results.uses(stage)
+        )
 
 
 def _topography(results: Results) -> Iterator[Gate]:
     name = "topography/parameters.json"
     for gate in _of_file("topography", name, results):
-        doubts = [row["code"] for row in results.json(name).get("doubts", []) if row["text"] not in gate.reasons]
-        remark = (f"Doubts, each beside the numbers it touches: {', '.join(doubts)}.",) if doubts else ()
+        doubts = [
+            row["code"]
+            for row in results.json(name).get("doubts", [])
+            if row["text"] not in gate.reasons
+        ]
+        remark = (
+            (f"Doubts, each beside the numbers it touches: {', '.join(doubts)}.",) if doubts else ()
+        )
         yield Gate(gate.stage, gate.passed, (*gate.reasons, *remark), gate.used)
     rows = results.csv("topography/judged.csv") if results.has("topography/judged.csv") else []
     reasons = tuple(
-        f"{row['scan']} touches first at {show(row['pressed'])} nm, its description says {show(row['low'])} to "
-        f"{show(row['high'])} nm"
+        f"{row['scan']} touches first at {show(row['pressed'])} nm, its description says"
+        f" {show(row['low'])} to {show(row['high'])} nm"
         for row in disagreeing(rows)
     )
     if reasons or testable(rows):
@@ -68,8 +76,14 @@ def _topography(results: Results) -> Iterator[Gate]:
 def _curves(results: Results) -> Iterator[Gate]:
     if results.has("curves/nominal.h5"):
         cycles = results.h5("curves/nominal.h5")[2]
-        bad = [name for name, cycle in cycles.items() if "/" not in name and not bool(cycle.get("converged", True))]
-        yield Gate("curves", not bad, tuple(f"{name}: some load steps did not converge" for name in bad))
+        bad = [
+            name
+            for name, cycle in cycles.items()
+            if "/" not in name and not bool(cycle.get("converged", True))
+        ]
+        yield Gate(
+            "curves", not bad, tuple(f"{name}: some load steps did not converge" for name in bad)
+        )
 
 
 def _law(results: Results) -> Iterator[Gate]:
@@ -81,10 +95,14 @@ def _law(results: Results) -> Iterator[Gate]:
         reasons = []
         if poor:
             worst = column(poor, "residual").max()
-            reasons.append(f"{len(poor)} of {len(rows)} fits miss their curve by up to {worst:.0%} of its maximum")
+            reasons.append(
+                f"{len(poor)} of {len(rows)} fits miss their curve by up to {worst:.0%} of its"
+                " maximum"
+            )
         if missing:
             reasons.append(
-                f"{len(missing)} of {len(rows)} curves gave no law, which favours those that could be fitted"
+                f"{len(missing)} of {len(rows)} curves gave no law, which favours those that could"
+                " be fitted"
             )
         fair = len(missing) <= 0.05 * len(rows)  # of more, the rest is no fair sample
         yield Gate("law", fair, tuple(reasons), answer=False)
@@ -104,7 +122,9 @@ def _pad(results: Results) -> Iterator[Gate]:
 
 
 def other_law_V(results: Results) -> tuple[float, float] | None:
-    """Release at central inputs by this law of attraction and by the other one; None where not computed."""
+    """Release at central inputs by this law of attraction and by the other one; None where not
+    computed.
+    """
     rows = results.json("device/pad_switch.json").get("by_attraction", [])
     releases = {round(row["times"], 3): number(row["release_V"]) for row in rows}
     works = (1.0, OTHER_WORK.get(results.contact.get("attraction", ""), 0.0))
@@ -113,7 +133,9 @@ def other_law_V(results: Results) -> tuple[float, float] | None:
 
 
 def _attraction(results: Results) -> Iterator[Gate]:
-    """Nothing here measures the law of attraction: a remark where the other law gives another outcome."""
+    """Nothing here measures the law of attraction: a remark where the other law gives another
+    outcome.
+    """
     both = other_law_V(results) if results.has("device/pad_switch.json") else None
     if both and (both[0] == 0) != (both[1] == 0):
         reason = "by one of the two laws of attraction the switch sticks, by the other it lets go"
@@ -124,7 +146,12 @@ def _calibration(results: Results) -> Iterator[Gate]:
     if results.has("calibration/posterior.json"):
         posterior = results.json("calibration/posterior.json")
         reasons = (*posterior["gate"]["reasons"], *posterior["remarks"])
-        yield Gate("calibration", bool(posterior["gate"]["passed"]), reasons, answer=results.uses("calibration"))
+        yield Gate(
+            "calibration",
+            bool(posterior["gate"]["passed"]),
+            reasons,
+            answer=results.uses("calibration"),
+        )
 
 
 INPUT_GATES: dict[str, Callable[[Results], Iterator[Gate]]] = {

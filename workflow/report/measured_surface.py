@@ -1,4 +1,6 @@
-"""What describes the measured surface: the evidence, the doubts, the spectrum over all scales, the scans as judges."""
+"""What describes the measured surface: the evidence, the doubts, the spectrum over all scales, the
+scans as judges.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import takewhile
@@ -20,7 +22,9 @@ QUANTITIES = {
 
 
 def chosen_description(parameters: Mapping[str, Any]) -> str:
-    """What random surfaces follow, as a further sentence of the lead; empty without a description."""
+    """What random surfaces follow, as a further sentence of the lead; empty without a
+    description.
+    """
     description = parameters.get("description")
     if not description:
         return ""
@@ -33,7 +37,11 @@ def described_surface(results: Results, parameters: Mapping[str, Any]) -> Iterat
     description = parameters.get("description")
     if not description:
         return
-    columns = {"question": "test", "answer": "outcome", "passed": lambda row: "yes" if row["passed"] else "no"}
+    columns = {
+        "question": "test",
+        "answer": "outcome",
+        "passed": lambda row: "yes" if row["passed"] else "no",
+    }
     yield table("Which description of the surface", description["evidence"], columns)
     yield from doubts(parameters, "heights")
     if parameters.get("synthetic"):
@@ -41,8 +49,9 @@ def described_surface(results: Results, parameters: Mapping[str, Any]) -> Iterat
         return
     yield Figure(
         _one_spectrum(results, parameters),
-        "One spectrum over all scales from all measurements, with its band. Grey is what levelling, tip, noise or "
-        "pixels disturb; line profiles are converted to the spectrum of an isotropic surface.",
+        "One spectrum over all scales from all measurements, with its band. Grey is what levelling,"
+        " tip, noise or pixels disturb; line profiles are converted to the spectrum of an isotropic"
+        " surface.",
     )
     yield from doubts(parameters, "spectrum")
     if parameters.get("one_spectrum"):
@@ -58,13 +67,17 @@ def doubts(parameters: Mapping[str, Any], *about: str) -> Iterator[DoubtNote]:
     for doubt in parameters.get("doubts", []):
         if doubt["about"] in about:
             remedy = f" To do: {doubt['remedy']}." if doubt["remedy"] else ""
-            yield DoubtNote(f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}")
+            yield DoubtNote(
+                f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}"
+            )
 
 
 def short_names(names: Sequence[str]) -> dict[str, str]:
     """Names of measurements without what all of them begin with."""
     parts = [name.split("_") for name in names]
-    alike = sum(1 for _ in takewhile(lambda column: len(set(column)) == 1, zip(*parts, strict=False)))
+    alike = sum(
+        1 for _ in takewhile(lambda column: len(set(column)) == 1, zip(*parts, strict=False))
+    )
     cut = min(alike, *(len(part) - 1 for part in parts)) if len(names) > 1 else 0
     return {name: "_".join(part[cut:]) for name, part in zip(names, parts, strict=True)}
 
@@ -82,7 +95,10 @@ def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None
     def plot(axis: Any) -> None:
         for name, color in zip(names, apart if several else [SKY] * len(names), strict=False):
             q, psd = groups[name]["q"], groups[name]["psd"]
-            low, high = float(attributes[name]["trusted_low"]), float(attributes[name]["trusted_high"])
+            low, high = (
+                float(attributes[name]["trusted_low"]),
+                float(attributes[name]["trusted_high"]),
+            )
             trusted = (q >= low) & (q <= high)
             label = f"{short[name.removeprefix('scans/')]}, trusted range" if several else None
             axis.loglog(q, psd, color=SOFT, linewidth=0.6, alpha=0.7, zorder=1)
@@ -91,10 +107,20 @@ def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None
             axis.plot([], [], color=SKY, label="measurements, trusted range")
         axis.plot([], [], color=SOFT, label="limited by levelling, tip, noise or pixels")
         one, level = groups["one_spectrum"], f"{float(parameters['confidence']):.0%}"
-        axis.fill_between(one["q"], one["band_low"], one["band_high"], color=ORANGE, alpha=0.25, linewidth=0)
-        axis.loglog(one["q"], one["psd"], color=ORANGE, label=f"one spectrum, {level} band", zorder=3)
+        axis.fill_between(
+            one["q"], one["band_low"], one["band_high"], color=ORANGE, alpha=0.25, linewidth=0
+        )
+        axis.loglog(
+            one["q"], one["psd"], color=ORANGE, label=f"one spectrum, {level} band", zorder=3
+        )
         end = parameters["trusted_end"]
-        axis.axvline(end["value"], color=INK, linewidth=0.8, linestyle="--", label=f"trusted end ({end['limit']})")
+        axis.axvline(
+            end["value"],
+            color=INK,
+            linewidth=0.8,
+            linestyle="--",
+            label=f"trusted end ({end['limit']})",
+        )
         axis.set(xlabel="wave vector q (1/nm)", ylabel="PSD (nm⁴)")
         axis.legend(fontsize=8)
 
@@ -111,7 +137,9 @@ def _statistics(parameters: Mapping[str, Any]) -> Iterator[Block]:
             "what": "what",
             "unit": lambda row: shown_unit(row["unit"]),
             "value": cell("value"),
-            f"{float(parameters['confidence']):.0%} interval": lambda row: " to ".join(map(show, row["interval"])),
+            f"{float(parameters['confidence']):.0%} interval": lambda row: " to ".join(
+                map(show, row["interval"])
+            ),
         },
     )
     if not one["overlaps"] and len(one["measurements"]) > 1:
@@ -134,7 +162,8 @@ def _statistics(parameters: Mapping[str, Any]) -> Iterator[Block]:
 def _judgement(rows: Sequence[CsvRow]) -> PageTable:
     short = short_names(list(dict.fromkeys(row["scan"] for row in rows)))
     return table(
-        "The scans pressed (their largest square, made periodic), beside surfaces made from their description",
+        "The scans pressed (their largest square, made periodic), beside surfaces made from their"
+        " description",
         rows,
         {
             "scan": lambda row: short[row["scan"]],
@@ -142,6 +171,8 @@ def _judgement(rows: Sequence[CsvRow]) -> PageTable:
             "pressed": cell("pressed"),
             "description, 90 % interval": lambda row: f"{show(row['low'])} to {show(row['high'])}",
             "inside": lambda row: "yes" if row["inside"] == "True" else "no",
-            "description made": lambda row: "without it" if row["left_out"] == "True" else "from it",
+            "description made": lambda row: (
+                "without it" if row["left_out"] == "True" else "from it"
+            ),
         },
     )

@@ -13,7 +13,9 @@ SYMBOLS = {name: row.symbol for name, row in BY_NAME.items()}
 
 
 def _shown(row: LawParameter) -> tuple[str, str, float]:
-    """Symbol of an output, the unit that it is shown in, and the factor from the file's unit to that."""
+    """Symbol of an output, the unit that it is shown in, and the factor from the file's unit to
+    that.
+    """
     power = f"10{str(row.power).translate(SUPERSCRIPT)} " if row.power else ""
     return row.symbol, power + row.unit, 10.0**-row.power
 
@@ -41,7 +43,9 @@ def column(rows: Iterable[Mapping[str, Any]], name: str) -> np.ndarray:
 
 
 def show(value: Any, digits: int = 3) -> str:
-    """A number as a person writes it: `digits` significant ones, no exponent between 0.001 and 100 000."""
+    """A number as a person writes it: `digits` significant ones, no exponent between 0.001 and 100
+    000.
+    """
     value = number(value)
     if not np.isfinite(value):
         return "–"
@@ -62,7 +66,11 @@ def cell(name: str, digits: int = 3) -> Callable[[Mapping[str, Any]], str]:
     return lambda row: show(row.get(name), digits)
 
 
-def spread(row: Mapping[str, Any], middle: str, low: str, high: str, digits: int = 3, factor: float = 1.0) -> str:
-    """A number with its interval; a dash where there is none, the number alone without an interval."""
+def spread(
+    row: Mapping[str, Any], middle: str, low: str, high: str, digits: int = 3, factor: float = 1.0
+) -> str:
+    """A number with its interval; a dash where there is none, the number alone without an
+    interval.
+    """
     value, *ends = (show(number(row.get(name)) * factor, digits) for name in (middle, low, high))
     return f"{value} [{', '.join(ends)}]" if "–" not in (value, *ends) else value

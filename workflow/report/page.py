@@ -96,7 +96,12 @@ class Section:
 
 
 def section(
-    anchor: str, title: str, lead: str, blocks: Iterable[Block], files: Sequence[str], origin: str = COMPUTED
+    anchor: str,
+    title: str,
+    lead: str,
+    blocks: Iterable[Block],
+    files: Sequence[str],
+    origin: str = COMPUTED,
 ) -> Section:
     """A section without the figures that have nothing to draw."""
     drawn = [block for block in blocks if not isinstance(block, Figure) or block.svg]
@@ -106,7 +111,8 @@ def section(
 def stage(
     title: str, *needs: str, also: Sequence[str] = ()
 ) -> Callable[[Callable[[Results], Iterator[Block]]], Callable[[Results], Section | None]]:
-    """Make of a generator, which yields the lead and then blocks, what the page says of the stage of its module.
+    """Make of a generator, which yields the lead and then blocks, what the page says of the stage
+    of its module.
 
     Parameters
     ----------
@@ -137,7 +143,9 @@ def table(
     faint: Collection[str] = (),
     front: bool = False,
 ) -> PageTable:
-    """Rows of a result file under column heads; a column is the key of its text, or a function of the row."""
+    """Rows of a result file under column heads; a column is the key of its text, or a function of
+    the row.
+    """
     lines = [tuple(_text(row, column) or "–" for column in columns.values()) for row in rows]
     return PageTable(caption, tuple(columns), lines, heads, faint, front)
 

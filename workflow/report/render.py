@@ -25,19 +25,30 @@ Built = TypeVar("Built")
 
 
 def render(results: Results) -> str:
-    """HTML of the report; sections appear only for results that exist, and one that fails costs itself alone."""
+    """HTML of the report; sections appear only for results that exist, and one that fails costs
+    itself alone.
+    """
     broken: list[Gate] = []
     parts = []
     for anchor, title, stages in PARTS:
-        built = [guarded(_name(stage), partial(stage.describe, results), None, broken) for stage in stages]
+        built = [
+            guarded(_name(stage), partial(stage.describe, results), None, broken)
+            for stage in stages
+        ]
         if sections := [section for section in built if section]:
             parts.append({"anchor": anchor, "title": title, "sections": sections})
-    gates = [gate for build in GATES for gate in guarded("gates", lambda one=build: [*one(results)], [], broken)]
+    gates = [
+        gate
+        for build in GATES
+        for gate in guarded("gates", lambda one=build: [*one(results)], [], broken)
+    ]
     first = guarded("first screen", partial(first_screen, results, gates), None, broken)
     failures = guarded("accepted gates", partial(accepted_failures, results), {}, broken)
     page = {
         "rests_on": ", ".join(failures),
-        "why_failed": "; ".join(f"{stage}: {', '.join(gate.reasons)}" for stage, gate in failures.items()),
+        "why_failed": "; ".join(
+            f"{stage}: {', '.join(gate.reasons)}" for stage, gate in failures.items()
+        ),
         "scene": results.scene,
         "beside_paper": results.beside_paper,
         "first": first,
@@ -74,7 +85,9 @@ def failed(name: str, error: Exception) -> Gate:
     """The gate of a part that failed; the console says it, too."""
     reason = " ".join(f"{type(error).__name__}: {error}".split())[:300]
     print(f"report: {name} could not be drawn ({shown(reason)})", file=sys.stderr)
-    return Gate(name, False, (f"This part of the page could not be drawn ({reason}).",), answer=False)
+    return Gate(
+        name, False, (f"This part of the page could not be drawn ({reason}).",), answer=False
+    )
 
 
 def low(text: str) -> Markup:
@@ -86,4 +99,6 @@ def _provenance(results: Results) -> list[tuple[str, str]]:
     if not results.has("scene.yaml"):
         return []
     rows = [("git commit", str(results.record.get("git_commit", "")))]
-    return rows + [(name, str(version)) for name, version in results.record.get("versions", {}).items()]
+    return rows + [
+        (name, str(version)) for name, version in results.record.get("versions", {}).items()
+    ]

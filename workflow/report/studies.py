@@ -41,7 +41,9 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Error:
-    """An error of one quantity with its own error, and what it moves in the release (V, NaN: not known)."""
+    """An error of one quantity with its own error, and what it moves in the release (V, NaN: not
+    known).
+    """
 
     quantity: str
     error: float
@@ -57,7 +59,9 @@ class Error:
 
 @dataclass(frozen=True)
 class Value:
-    """One value of a knob with the errors of its quantities, and processor seconds of one computation."""
+    """One value of a knob with the errors of its quantities, and processor seconds of one
+    computation.
+    """
 
     text: str
     shipped: bool
@@ -67,7 +71,9 @@ class Value:
 
 @dataclass(frozen=True)
 class KnobTable:
-    """What an accuracy table says of one knob; its values are in the order in which they were tried, cheapest first."""
+    """What an accuracy table says of one knob; its values are in the order in which they were
+    tried, cheapest first.
+    """
 
     stage: str
     name: str
@@ -81,36 +87,55 @@ class KnobTable:
 
     @property
     def quantity(self) -> str:
-        """The quantity that the value in use, or else the first, moves most: by volts where they are known."""
+        """The quantity that the value in use, or else the first, moves most: by volts where they
+        are known.
+        """
         errors = (self.shipped or self.values[0]).errors.values()
         known = [error for error in errors if np.isfinite(error.release_V)]
-        largest = max(known or errors, key=lambda error: np.nan_to_num(error.release_V if known else error.error))
+        largest = max(
+            known or errors,
+            key=lambda error: np.nan_to_num(error.release_V if known else error.error),
+        )
         return largest.quantity
 
     @property
     def curve(self) -> list[tuple[Value, Error]]:
         """The values with their errors of that quantity."""
         quantity = self.quantity
-        pairs = [(value, value.errors[quantity]) for value in self.values if quantity in value.errors]
+        pairs = [
+            (value, value.errors[quantity]) for value in self.values if quantity in value.errors
+        ]
         return [pair for pair in pairs if np.isfinite(pair[1].error)]
 
 
 def studies(results: Results) -> list[Section]:
     """The sections of numerical errors, error against run time and stability."""
     tables = knob_tables(results)
-    sections = [section("numerical-errors", "Numerical errors, stage by stage", "", _lines(results, tables), [])]
+    sections = [
+        section(
+            "numerical-errors", "Numerical errors, stage by stage", "", _lines(results, tables), []
+        )
+    ]
     if accuracy := results.matching("accuracy/", ".csv"):
         tried = [table for table in tables if len(table.values) > 1]
-        sections.append(section("accuracy", "Error against run time", ACCURACY, _accuracy(results, tried), accuracy))
+        sections.append(
+            section(
+                "accuracy", "Error against run time", ACCURACY, _accuracy(results, tried), accuracy
+            )
+        )
     if stability := results.matching("stability/", ".csv"):
-        sections.append(section("stability", "Stiff and extreme cases", STABILITY, _stability(results), stability))
+        sections.append(
+            section(
+                "stability", "Stiff and extreme cases", STABILITY, _stability(results), stability
+            )
+        )
     return sections
 
 
 ACCURACY = (
-    "What each numerical choice costs and buys. Errors are root mean squares over several surfaces, points or seeds, "
-    "each with its standard error. Recommended is the cheapest value whose error is small, or within a factor "
-    f"{NEAR_BEST:g} of the best one tried."
+    "What each numerical choice costs and buys. Errors are root mean squares over several"
+    " surfaces, points or seeds, each with its standard error. Recommended is the cheapest value"
+    f" whose error is small, or within a factor {NEAR_BEST:g} of the best one tried."
 )
 STABILITY = "Unusual inputs, and what the code does with them."
 
@@ -137,7 +162,9 @@ def tables_of(stage: str, rows: Sequence[CsvRow]) -> list[KnobTable]:
             value = Value(row["value"], row["shipped"] == "True", number(row["cpu_s"]))
             knob.values.append(value)
         numbers = [number(row.get(name)) for name in ("error", "own_error", "release_V")]
-        value.errors.setdefault(row["case"], Error(row["case"], numbers[0], numbers[1], row["unit"], numbers[2]))
+        value.errors.setdefault(
+            row["case"], Error(row["case"], numbers[0], numbers[1], row["unit"], numbers[2])
+        )
     return [knob for knob in knobs.values() if any(value.errors for value in knob.values)]
 
 
@@ -162,11 +189,15 @@ def _lines(results: Results, tables: Sequence[KnobTable]) -> Iterator[Block]:
         if others:
             worst.append(max(others, key=lambda table: _in_use(table).error))
         choices = [f"{table.name}, {_short(table.shipped)}" for table in worst]
-        rows.append((stage, "; ".join(choices), "; ".join(str(_in_use(table)) for table in worst), volts))
+        rows.append(
+            (stage, "; ".join(choices), "; ".join(str(_in_use(table)) for table in worst), volts)
+        )
     if unknown:
         rows.append((", ".join(unknown), "not measured in this scene", "", ""))
     caption = f"Numerical errors; asperity run {results.scene} accuracy measures all"
-    yield PageTable(caption, ("stage", "worst choice", "its error", "release moves"), rows, front=True)
+    yield PageTable(
+        caption, ("stage", "worst choice", "its error", "release moves"), rows, front=True
+    )
 
 
 def _in_use(table: KnobTable) -> Error:
@@ -186,12 +217,20 @@ def _short(value: Value | None) -> str:
 def _accuracy(results: Results, tables: Sequence[KnobTable]) -> Iterator[Block]:
     yield Figure(
         error_against_time(tables),
-        "Error against processor seconds of one computation, a line a choice. Rings: values in use. Dashed: no value "
-        "tried has a smaller error in less time.",
+        "Error against processor seconds of one computation, a line a choice. Rings: values in use."
+        " Dashed: no value tried has a smaller error in less time.",
         wide=True,
     )
     deviation_V = release_deviation_V(results)
-    header = ("stage", "choice", "in use", "its error", "beside the release's spread", "takes (s)", "recommended")
+    header = (
+        "stage",
+        "choice",
+        "in use",
+        "its error",
+        "beside the release's spread",
+        "takes (s)",
+        "recommended",
+    )
     rows = [line for table in tables if (line := _line(table, deviation_V))]
     yield PageTable("Numerical choices", header, rows, heads=2)
 
@@ -238,9 +277,13 @@ def recommended(table: KnobTable, deviation_V: float = np.nan) -> str:
     rises = np.diff(errors) > TOLD_APART * np.hypot(own_errors[1:], own_errors[:-1])
     if rises.any() or errors[-1] >= errors[0]:
         return "none: errors do not fall towards the reference"
-    small = [_is_small(error, deviation_V) or error.error <= NEAR_BEST * errors[best] for _, error in curve]
+    small = [
+        _is_small(error, deviation_V) or error.error <= NEAR_BEST * errors[best]
+        for _, error in curve
+    ]
     value, error = min(
-        (pair for pair, enough in zip(curve, small, strict=True) if enough), key=lambda pair: pair[0].cpu_s
+        (pair for pair, enough in zip(curve, small, strict=True) if enough),
+        key=lambda pair: pair[0].cpu_s,
     )
     return f"{_short(value)}: {error} in {show(value.cpu_s, 2)} s"
 
@@ -252,7 +295,9 @@ def _is_small(error: Error, deviation_V: float) -> bool:
 
 
 def error_against_time(tables: Sequence[KnobTable]) -> str | None:
-    """Error against processor seconds, both logarithmic: a panel a stage and unit, a line a knob."""
+    """Error against processor seconds, both logarithmic: a panel a stage and unit, a line a
+    knob.
+    """
     panels: dict[tuple[str, str], list[KnobTable]] = {}
     for table in tables:
         if drawn_points(table):
@@ -266,13 +311,21 @@ def error_against_time(tables: Sequence[KnobTable]) -> str | None:
         for axis, ((stage, unit), knobs) in zip(axes, panels.items(), strict=False):
             _draw_panel(axis, knobs)
             axis.xaxis.set_minor_locator(LogLocator(subs=(2, 5)))  # their labels have room
-            axis.set(title=stage, xlabel="processor time (s)", ylabel=f"error ({unit})", xscale="log", yscale="log")
+            axis.set(
+                title=stage,
+                xlabel="processor time (s)",
+                ylabel=f"error ({unit})",
+                xscale="log",
+                yscale="log",
+            )
         for axis in axes[len(panels) :]:
             axis.set_visible(False)
 
     label = "Numerical error against processor time, for each choice of each stage"
     legend = max(map(len, panels.values())) * LEGEND_LINE
-    return draw("accuracy", label, plot, (4.4 * columns, (3.2 + legend) * rows), columns=columns, rows=rows)
+    return draw(
+        "accuracy", label, plot, (4.4 * columns, (3.2 + legend) * rows), columns=columns, rows=rows
+    )
 
 
 def drawn_points(table: KnobTable) -> list[tuple[float, float, bool]]:
@@ -291,14 +344,26 @@ def _draw_panel(axis, knobs: Sequence[KnobTable]) -> None:
         every += points
         seconds, errors, shipped = map(np.array, zip(*sorted(points), strict=True))
         axis.plot(seconds, errors, ".-", color=color, label=f"{knob.name}: {knob.quantity}")
-        axis.plot(seconds[shipped], errors[shipped], "o", color=INK, markerfacecolor="none", markersize=10, linewidth=0)
+        axis.plot(
+            seconds[shipped],
+            errors[shipped],
+            "o",
+            color=INK,
+            markerfacecolor="none",
+            markersize=10,
+            linewidth=0,
+        )
     front = pareto_front([(seconds, error) for seconds, error, _ in every])
     axis.plot(*zip(*front, strict=True), "--", color=SOFT, linewidth=1, zorder=0)
-    axis.legend(fontsize=8, loc="upper left", bbox_to_anchor=(0, -0.18))  # below: nowhere else is free
+    axis.legend(
+        fontsize=8, loc="upper left", bbox_to_anchor=(0, -0.18)
+    )  # below: nowhere else is free
 
 
 def pareto_front(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The points, by rising time, than which no other has a smaller or equal error in less or equal time."""
+    """The points, by rising time, than which no other has a smaller or equal error in less or equal
+    time.
+    """
     front: list[tuple[float, float]] = []
     for seconds, error in sorted(points):
         if not front or error < front[-1][1]:
@@ -311,9 +376,17 @@ def _stability(results: Results) -> Iterator[Block]:
         name.removeprefix("stability/").removesuffix(".csv"): results.csv(name)
         for name in results.matching("stability/", ".csv")
     }
-    failed = [f"{stage}: {row['case']}" for stage, rows in tables.items() for row in rows if row["passed"] != "True"]
+    failed = [
+        f"{stage}: {row['case']}"
+        for stage, rows in tables.items()
+        for row in rows
+        if row["passed"] != "True"
+    ]
     total = sum(map(len, tables.values()))
-    yield f"{total - len(failed)} of {total} cases passed." + f" Not passed: {'; '.join(failed)}." * bool(failed)
+    yield (
+        f"{total - len(failed)} of {total} cases passed."
+        + f" Not passed: {'; '.join(failed)}." * bool(failed)
+    )
     for stage, rows in tables.items():
         lines = [
             (

@@ -1,8 +1,8 @@
-"""What the scene says of its switch: one quantity of one model, on the page, in `asperity compare` and at a run's end.
+"""What the scene says of its switch: one quantity of one model, on the page, in `asperity compare`
+and at a run's end.
 
-It is the release, and the sticking, of the scene's electrode on the pad over all that is uncertain. Where this interval
-cannot be had, the value at central inputs stands, with the reason.
-"""
+It is the release, and the sticking, of the scene's electrode on the pad over all that is uncertain.
+Where this interval cannot be had, the value at central inputs stands, with the reason."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -38,12 +38,14 @@ class Verdict:
 
     Attributes
     ----------
-    release_V : 5 %, median and 95 %, 0 where it sticks; without an interval the central value alone; None: not known.
+    release_V : 5 %, median and 95 %, 0 where it sticks; without an interval the central value
+        alone; None: not known.
     stuck : probability of sticking with its 95 % interval; None without an interval.
     no_interval : why there is none; empty where there is one.
     causes : shares of the variance, largest first.
     no_cause : why no cause is named; empty where they are.
-    other_law_V : release at central inputs by this law of attraction and by the other one; None where not computed.
+    other_law_V : release at central inputs by this law of attraction and by the other one; None
+        where not computed.
     next_step : what to do.
     """
 
@@ -62,7 +64,10 @@ class Verdict:
         if self.release_V is None:
             return f"The release voltage is not known, because {self.no_interval}."
         if self.stuck is None:
-            return f"At central inputs the switch {does(*self.release_V)}; no interval, because {self.no_interval}."
+            return (
+                f"At central inputs the switch {does(*self.release_V)}; no interval, because"
+                f" {self.no_interval}."
+            )
         low, middle, high = self.release_V
         probability = self.stuck[1]
         if probability >= DECIDED:
@@ -71,7 +76,10 @@ class Verdict:
         if probability <= 1 - DECIDED:
             return f"The switch lets go at {volts(middle)} {interval}; {probability:.0%} stick."
         median = f"is {volts(middle)}" if middle else "sticks"
-        return f"Whether the switch lets go is open: {probability:.0%} stick; the median {median} {interval}."
+        return (
+            f"Whether the switch lets go is open: {probability:.0%} stick; the median {median}"
+            f" {interval}."
+        )
 
     @property
     def sentence(self) -> str:
@@ -92,7 +100,9 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
         causes, no_cause = causes_of(answer)
     else:
         release = (pad["central"]["release_V"],) if pad["central"] else None
-        no_interval = ("; ".join(pad["gate"]["reasons"]) if release is None else "") or pad["answer_status"]
+        no_interval = ("; ".join(pad["gate"]["reasons"]) if release is None else "") or pad[
+            "answer_status"
+        ]
     every = gates_of(results) if gates is None else gates
     failed = [gate for gate in every if gate.used and gate.answer and not gate.passed]
     return Verdict(
@@ -130,15 +140,26 @@ def in_words(name: str) -> str:
 def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]:
     """Shares of the variance by cause, and why none is named."""
     rows = [(in_words(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"]]
-    rows = [(name, share) for name, share in [*rows, (CELLS, answer["causes"]["cells"])] if share > 0]
+    rows = [
+        (name, share) for name, share in [*rows, (CELLS, answer["causes"]["cells"])] if share > 0
+    ]
     if not rows:
         return (), f"all {answer['points']} computed combinations of what is uncertain do the same"
     explained = answer["explained"]
     if explained < 0.5:  # of switches left out: less does not tell a cause
         many = f"the {answer['points']} computed switches"
         if explained <= 0:
-            return (), f"{many} are too few to tell, as a fit to all but one does not predict that one"
-        return (), f"a fit to {many} explains only {explained:.0%} of the variance of those that are left out"
+            return (
+                (),
+                f"{many} are too few to tell, as a fit to all but one does not predict that one",
+            )
+        return (
+            (),
+            (
+                f"a fit to {many} explains only {explained:.0%} of the variance of those that are"
+                " left out"
+            ),
+        )
     return tuple(sorted(rows, key=lambda row: -row[1])), ""
 
 
@@ -159,9 +180,17 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
         return "Compute more cells next (pad.point_cells)."
     if no_cause:
         return "Compute more switches next (pad.points)." if answer["explained"] <= 0 else ""
-    name, shrinks = rows[0]["name"], f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}"
+    name, shrinks = (
+        rows[0]["name"],
+        f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}",
+    )
     if rows[0]["varies"] == "each":
-        return f"Control next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}: {shrinks}."
+        return (
+            f"Control next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}:"
+            f" {shrinks}."
+        )
     if name == "rms_scatter":
         return f"Scan more places next: the roughness varies from place to place; {shrinks}."
-    return f"Measure next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}: {shrinks}."
+    return (
+        f"Measure next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}: {shrinks}."
+    )

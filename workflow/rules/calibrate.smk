@@ -13,14 +13,18 @@ if {"release", "pull_in", "sticking"} & set(MEASUREMENT_FILES):
         "pads": [f"{RESULTS}/calibration/pads/chunk_{chunk}.h5" for chunk in POINT_CHUNKS],
     }
 PRIORS = SCENE.inputs.priors()
-if workflow.is_main_process and MEASUREMENT_FILES:  # a table that cannot be used is told before the first cycle
+if (
+    workflow.is_main_process and MEASUREMENT_FILES
+):  # a table that cannot be used is told before the first cycle
     from mesoscale.calibration.measurements import load_measurements
     from mesoscale.calibration.surfaces import check_points
     from mesoscale.errors import InputError as BadTable
 
     try:
         for table in SCENE.measurements.tables:
-            check_points(load_measurements(table, MEASUREMENT_FILES[table.kind]), SCENE.contact.max_force_nN)
+            check_points(
+                load_measurements(table, MEASUREMENT_FILES[table.kind]), SCENE.contact.max_force_nN
+            )
     except BadTable as error:
         refuse(error)
 
@@ -78,7 +82,10 @@ use rule press_pads as press_prior_pads with:
 rule calibrate:
     """inputs narrowed by your measurements of contacts"""
     input:
-        required(MEASUREMENT_FILES, "measurements.tables: none; name the tables of measurements (docs/calibration.md)"),
+        required(
+            MEASUREMENT_FILES,
+            "measurements.tables: none; name the tables of measurements (docs/calibration.md)",
+        ),
         **MEASUREMENT_FILES,
         **SURFACE,
         **PRIOR_PADS,

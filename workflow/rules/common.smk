@@ -27,7 +27,9 @@ def refuse(mistakes):
 SCENE_GIVEN = from_word(str(config.get("scene", "reduced")))  # a name or a path
 for argument in workflow.config_settings.config_args or ():
     if argument.startswith("scene=") and from_word(argument.removeprefix("scene=")) != SCENE_GIVEN:
-        refuse(f"{argument}: Snakemake reads {SCENE_GIVEN!r}; rename the file, or: asperity run FILE")
+        refuse(
+            f"{argument}: Snakemake reads {SCENE_GIVEN!r}; rename the file, or: asperity run FILE"
+        )
 try:
     SCENE = load_scene(SCENE_GIVEN)
 except SceneError as error:
@@ -36,9 +38,15 @@ except SceneError as error:
 RESULTS = f"results/{SCENE.name}"
 
 for folder in (Path(RESULTS), Path(RESULTS).parent):
-    if os.path.islink(folder) and not os.path.exists(folder):  # unlike Path.exists, False where one may not look
-        refuse(f"{folder}: a link to {os.readlink(folder)}, which is not there; mount it, or remove the link")
-writable = next(folder for folder in (Path(RESULTS), *Path(RESULTS).parents) if os.path.exists(folder))
+    if os.path.islink(folder) and not os.path.exists(
+        folder
+    ):  # unlike Path.exists, False where one may not look
+        refuse(
+            f"{folder}: a link to {os.readlink(folder)}, which is not there; mount it, or remove the link"
+        )
+writable = next(
+    folder for folder in (Path(RESULTS), *Path(RESULTS).parents) if os.path.exists(folder)
+)
 if not (writable.is_dir() and os.access(writable, os.W_OK)):
     refuse(f"{RESULTS}: cannot write to {writable}; run in a folder you may write to")
 

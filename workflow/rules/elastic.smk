@@ -1,17 +1,29 @@
 ELASTIC = settings("elastic")
 GLASSES = [f"a{k:02d}" for k in range(1, ELASTIC["structures"] + 1)]
 WITH_LDA = GLASSES[: max(1, len(GLASSES) // 2)]
-CRYSTALS = {name: material_path(material) for material in MATERIALS.values() for name in material.crystals}
+CRYSTALS = {
+    name: material_path(material) for material in MATERIALS.values() for name in material.crystals
+}
 MATERIAL = str(CONFIG / "materials" / f"{ELASTIC['material']}.yaml")
 COUNTER_BODY = str(CONFIG / "materials" / f"{ELASTIC['counter_body']}.yaml")
 
 for key, name, known in (
-    ("material", ELASTIC["material"], [name for name, one in MATERIALS.items() if one.network_glass is not None]),
-    ("counter_body", ELASTIC["counter_body"], [name for name, one in MATERIALS.items() if one.polycrystal is not None]),
+    (
+        "material",
+        ELASTIC["material"],
+        [name for name, one in MATERIALS.items() if one.network_glass is not None],
+    ),
+    (
+        "counter_body",
+        ELASTIC["counter_body"],
+        [name for name, one in MATERIALS.items() if one.polycrystal is not None],
+    ),
     *(("crystals", name, list(CRYSTALS)) for name in ELASTIC["crystals"]),
 ):
     if needed("elastic") and name not in known:
-        refuse(f"{SCENE_GIVEN}: elastic.{key} = {name!r:.60}: not known; known are {', '.join(known)}")
+        refuse(
+            f"{SCENE_GIVEN}: elastic.{key} = {name!r:.60}: not known; known are {', '.join(known)}"
+        )
 
 
 wildcard_constraints:
@@ -21,7 +33,9 @@ wildcard_constraints:
 
 def quenched_before(wildcards):
     """Cells that a quench must not make once more: one after the other, which costs nothing beside their DFT."""
-    return [f"{RESULTS}/elastic/quenched/a{k:02d}.xyz" for k in range(1, int(wildcards.amorphous[1:]))]
+    return [
+        f"{RESULTS}/elastic/quenched/a{k:02d}.xyz" for k in range(1, int(wildcards.amorphous[1:]))
+    ]
 
 
 rule make_amorphous:

@@ -3,9 +3,13 @@ from workflow.scene.hardness_files import check_bodies, hardness_files
 
 HARDNESS = settings("hardness")
 CLOSING_S = {}  # seconds of each closing run
-UNFIT = ""  # why the closings cannot be run; of a scene that needs none, it refuses the target alone
+UNFIT = (
+    ""  # why the closings cannot be run; of a scene that needs none, it refuses the target alone
+)
 try:
-    BODIES = hardness_files(SCENE.hardness, MATERIALS, CONFIG, lambda path: named_files("hardness.potential", path)[0])
+    BODIES = hardness_files(
+        SCENE.hardness, MATERIALS, CONFIG, lambda path: named_files("hardness.potential", path)[0]
+    )
     if workflow.is_main_process:
         CLOSING_S = check_bodies(SCENE.hardness, BODIES, MATERIALS)
 except InputError as error:
@@ -15,7 +19,9 @@ except InputError as error:
 CLOSINGS = BODIES.closings
 BASE = BODIES.base
 H_MACRO = SCENE.inputs.priors().h_macro  # the runs give H' beside it
-H_MACRO_FILE = named_files("inputs.h_macro.values", H_MACRO.values) if isinstance(H_MACRO.values, str) else []
+H_MACRO_FILE = (
+    named_files("inputs.h_macro.values", H_MACRO.values) if isinstance(H_MACRO.values, str) else []
+)
 
 
 def of_run(pattern):
@@ -32,7 +38,10 @@ def of_base(run):
     """As named inputs: what lies below a film, and the cell of it that fits the asperity."""
     if run.asperity.film_nm is None:
         return {}
-    return {"base": f"{RESULTS}/hardness/base/{run.seed}_{run.asperity.tiles}.data", "base_material": BASE}
+    return {
+        "base": f"{RESULTS}/hardness/base/{run.seed}_{run.asperity.tiles}.data",
+        "base_material": BASE,
+    }
 
 
 BODY_FILES = [BODIES.material, BODIES.potential]
@@ -122,7 +131,9 @@ rule hardness:
         material=BODIES.material,
         base_material=BASE or [],
         potential=BODIES.potential,
-        glasses=[f"{RESULTS}/hardness/glass/{seed}.json" for seed in dict.fromkeys(SCENE.hardness.seeds)],
+        glasses=[
+            f"{RESULTS}/hardness/glass/{seed}.json" for seed in dict.fromkeys(SCENE.hardness.seeds)
+        ],
         h_macro=H_MACRO_FILE,
     output:
         points=f"{RESULTS}/hardness/points.csv",
@@ -142,4 +153,7 @@ rule hardness:
 
 if needed("hardness"):
     SHOWN += [*rules.hardness.output, *rules.hardness.input.curves, *rules.hardness.input.witnesses]
-    KEPT += [*rules.hardness.input.summaries, *expand(rules.make_glass.output, glass=SCENE.hardness.seeds)]
+    KEPT += [
+        *rules.hardness.input.summaries,
+        *expand(rules.make_glass.output, glass=SCENE.hardness.seeds),
+    ]

@@ -4,7 +4,9 @@ STAGE_RESULT = {
     "topography": f"{RESULTS}/topography/parameters.json",
     "calibration": f"{RESULTS}/calibration/posterior.json",
 }
-INPUT_STAGES = {stage: path for stage, path in STAGE_RESULT.items() if stage in SCENE.inputs.origins()}
+INPUT_STAGES = {
+    stage: path for stage, path in STAGE_RESULT.items() if stage in SCENE.inputs.origins()
+}
 SAMPLES = {
     f"samples_{name}": named_files(f"inputs.{name}.values", row.values)[0]
     for name, row in SCENE.inputs.rows().items()

@@ -4,7 +4,9 @@ from mesoscale.uncertainty.chunks import chunk_bounds
 # number 0 is the point at central inputs
 POINT_CHUNKS = {"central": (0, 1)} | {
     name: (first + 1, last + 1)
-    for name, (first, last) in chunk_bounds(SCENE.pad.points, POINTS_PER_JOB[SCENE.contact.mechanics]).items()
+    for name, (first, last) in chunk_bounds(
+        SCENE.pad.points, POINTS_PER_JOB[SCENE.contact.mechanics]
+    ).items()
 }
 
 

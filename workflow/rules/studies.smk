@@ -1,7 +1,8 @@
 # Error against run time (accuracy) and stiff and extreme cases (stability) of every stage that the scene uses
 
 OF_CELL = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"}
-OF_STAGE = {  # what both studies of a stage read beside settings, and whether the scene uses the stage
+# what both studies of a stage read beside settings, and whether the scene uses the stage
+OF_STAGE = {
     "hardness": (
         {
             "material": BODIES.material,
@@ -49,7 +50,11 @@ def files_of_study(wildcards):
     """As named inputs: what a study reads; a stage that the scene does not use is refused."""
     files, used = OF_STAGE[wildcards.stage]
     words = f"target accuracy or stability: the scene does not use the stage {wildcards.stage}; nothing to study"
-    return {"used": required(used, words), **files, **ALSO_READ.get(f"{wildcards.kind}/{wildcards.stage}", {})}
+    return {
+        "used": required(used, words),
+        **files,
+        **ALSO_READ.get(f"{wildcards.kind}/{wildcards.stage}", {}),
+    }
 
 
 ACCURACY = studies_of("accuracy")
@@ -82,7 +87,10 @@ rule study:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:
         **ON_PADS,
-        **{section: settings(section) for section in ("topography", "uncertainty", "failure", "hardness", "elastic")},
+        **{
+            section: settings(section)
+            for section in ("topography", "uncertainty", "failure", "hardness", "elastic")
+        },
         work=f"{RESULTS}/work/{{kind}}_{{stage}}",
     message:
         "study {wildcards.kind} of {wildcards.stage}"

@@ -22,12 +22,18 @@ def scan_files():
         refuse(error)
 
 
-SCAN_FILES = scan_files() if needed("topography") or not TOPOGRAPHY.scans else list(TOPOGRAPHY.scans)
+SCAN_FILES = (
+    scan_files() if needed("topography") or not TOPOGRAPHY.scans else list(TOPOGRAPHY.scans)
+)
 SCANS_PER_JOB = 6  # a start takes as long as the analysis of two
 SCAN_CHUNKS = [SCAN_FILES[k : k + SCANS_PER_JOB] for k in range(0, len(SCAN_FILES), SCANS_PER_JOB)]
 
 # what jobs that make random surfaces need where the surface is measured: its description
-SURFACE = {"topography": f"{RESULTS}/topography/parameters.json"} if "topography" in SCENE.inputs.origins() else {}
+SURFACE = (
+    {"topography": f"{RESULTS}/topography/parameters.json"}
+    if "topography" in SCENE.inputs.origins()
+    else {}
+)
 
 
 # measured scans judge their description by pressing, where the contact uses it

@@ -1,4 +1,6 @@
-"""The scene's switch at central inputs on a few pads: what a change of its inputs or of the contact moves, in volts."""
+"""The scene's switch at central inputs on a few pads: what a change of its inputs or of the contact
+moves, in volts.
+"""
 
 from collections.abc import Callable
 from functools import partial
@@ -16,7 +18,8 @@ OnPads = Callable[[Point, ContactSettings, Numerics], Array]
 
 
 def central_pads(snakemake: Any) -> tuple[Point, ContactSettings, OnPads] | None:
-    """The scene's switch at central inputs, the contact on the grid of its pads, and its release on a few pads.
+    """The scene's switch at central inputs, the contact on the grid of its pads, and its release on
+    a few pads.
 
     None where the job reads no pad: the scene has no switch.
     """

@@ -13,8 +13,11 @@ MOST_NAMED = 3
 CHECKSUM = re.compile(rf"[0-9a-f]{{64}}|{UNREADABLE}")
 
 
-def changed_files(jobs: Iterable[Any], recorded: Callable[[Any], list[str] | None]) -> dict[str, set[int]]:
-    """Files whose content differs from that of which a result was made, with the numbers of the jobs that read them.
+def changed_files(
+    jobs: Iterable[Any], recorded: Callable[[Any], list[str] | None]
+) -> dict[str, set[int]]:
+    """Files whose content differs from that of which a result was made, with the numbers of the
+    jobs that read them.
 
     Parameters
     ----------
@@ -36,13 +39,17 @@ def _checksums(parameters: Iterable[Any]) -> dict[str, str]:
     """Checksums of files by path among the values of parameters."""
     checksums: dict[str, str] = {}
     for value in parameters:
-        if isinstance(value, dict) and all(CHECKSUM.fullmatch(str(item)) for item in value.values()):
+        if isinstance(value, dict) and all(
+            CHECKSUM.fullmatch(str(item)) for item in value.values()
+        ):
             checksums |= value
     return checksums
 
 
 def _values(parameters: Iterable[str], paths: Iterable[str]) -> Iterator[Any]:
-    """Values of those recorded parameters that name one of these files; Snakemake records their text."""
+    """Values of those recorded parameters that name one of these files; Snakemake records their
+    text.
+    """
     for text in parameters:
         if any(repr(path) in text for path in paths):
             with suppress(ValueError, SyntaxError):  # nan and inf, which settings may have
@@ -71,7 +78,8 @@ def change_lines(
     rules: Mapping[int, str],
     cost: Callable[[Collection[int]], str],
 ) -> Iterator[str]:
-    """A line for files that renew the same jobs: their names, the rules of these jobs, and the time.
+    """A line for files that renew the same jobs: their names, the rules of these jobs, and the
+    time.
 
     Parameters
     ----------
@@ -85,8 +93,9 @@ def change_lines(
     for renewed, paths in groups.items():
         names = [rules[number] for number in order if number in renewed]
         yield (
-            f"{_some(paths)}: changed since results were made of {'it' if len(paths) == 1 else 'them'}; renews "
-            f"{_some(list(dict.fromkeys(names)))} (jobs: {len(names)}, {cost(renewed)})"
+            f"{_some(paths)}: changed since results were made of"
+            f" {'it' if len(paths) == 1 else 'them'}; renews {_some(list(dict.fromkeys(names)))}"
+            f" (jobs: {len(names)}, {cost(renewed)})"
         )
 
 

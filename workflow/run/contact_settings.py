@@ -1,4 +1,6 @@
-"""The contact settings of a job, with the description of the surface that the measurements chose."""
+"""The contact settings of a job, with the description of the surface that the measurements
+chose.
+"""
 
 from typing import Any
 
@@ -8,7 +10,8 @@ from workflow.run.job import settings_from_job
 
 
 def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:
-    """Settings of the scene; where it takes the surface from measurements, their cell, and their spectrum and heights.
+    """Settings of the scene; where it takes the surface from measurements, their cell, and their
+    spectrum and heights.
 
     Parameters
     ----------
@@ -17,5 +20,7 @@ def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:
     """
     path = snakemake.input.get("topography")
     described = load_json(path) if path else {}
-    settings = ContactSettings(**dict(settings_from_job(SceneContact, given)), surface=described.get("surface", {}))
+    settings = ContactSettings(
+        **dict(settings_from_job(SceneContact, given)), surface=described.get("surface", {})
+    )
     return settings.on_cell(described.get("cell_nm", settings.length_nm))

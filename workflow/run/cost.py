@@ -1,4 +1,6 @@
-"""What the jobs of a scene take: first typical seconds of their rule, then what this machine's jobs took."""
+"""What the jobs of a scene take: first typical seconds of their rule, then what this machine's jobs
+took.
+"""
 
 import json
 import math
@@ -12,8 +14,12 @@ from mesoscale.settings import SceneContact
 from workflow.scene import Scene
 
 TIMES = Path(".snakemake/asperity_seconds.json")
-"""Seconds that jobs took, beside the typical ones, by scene and rule; delete it to start again from these."""
-LONGEST_RUN_H = 12.0  # of a run on one machine, unless it is said to be meant: what a night finishes
+"""Seconds that jobs took, beside the typical ones, by scene and rule; delete it to start again from
+these.
+"""
+LONGEST_RUN_H = (
+    12.0  # of a run on one machine, unless it is said to be meant: what a night finishes
+)
 
 # On one core of a server
 TYPICAL_S = {
@@ -58,7 +64,8 @@ class Costs:
 
     Parameters
     ----------
-    closing_s : seconds of one core of each closing run of the hardness stage, which differ a thousandfold.
+    closing_s : seconds of one core of each closing run of the hardness stage, which differ a
+        thousandfold.
     times : see TIMES.
     """
 
@@ -83,7 +90,9 @@ class Costs:
         self._learned[rule] = former[0] + took, former[1] + self._typical_s(rule, wildcards)
         with suppress(OSError):  # a full disk
             self._file.parent.mkdir(exist_ok=True)
-            self._file.write_text(json.dumps(self._all | {self._scene.name: self._learned}), encoding="utf-8")
+            self._file.write_text(
+                json.dumps(self._all | {self._scene.name: self._learned}), encoding="utf-8"
+            )
 
     def known(self, rules: Iterable[str]) -> bool:
         """Did jobs of all these rules run for this scene before?"""
@@ -93,15 +102,21 @@ class Costs:
         if "closing" in rule and "run" in wildcards:
             return self._closing_s[wildcards["run"]]
         cycles_s = CYCLES.get(rule, 0) * typical_cycle_s(self._scene.contact)
-        return TYPICAL_S.get(rule, 3.0) + cycles_s  # a rule that is in neither table collects or fits
+        return (
+            TYPICAL_S.get(rule, 3.0) + cycles_s
+        )  # a rule that is in neither table collects or fits
 
 
 def _read(times: Path) -> dict[str, dict[str, tuple[float, float]]]:
-    """What was learned, by scene and rule; nothing from a file that is missing, half-written or of another shape."""
+    """What was learned, by scene and rule; nothing from a file that is missing, half-written or of
+    another shape.
+    """
     try:
         content: Any = json.loads(times.read_text(encoding="utf-8"))
         learned = {
-            str(scene): {str(rule): (float(took), float(typical)) for rule, (took, typical) in rules.items()}
+            str(scene): {
+                str(rule): (float(took), float(typical)) for rule, (took, typical) in rules.items()
+            }
             for scene, rules in content.items()
         }
     except (OSError, ValueError, TypeError, AttributeError, RecursionError):
@@ -124,14 +139,18 @@ def refusal(seconds: Mapping[str, float], wall_s: float, cores: int, hours: floa
     rule = max(seconds, key=lambda rule: seconds[rule])
     allowed = math.ceil(1.2 * wall_s / 3600)
     return (
-        f"jobs {rule} take {seconds[rule] / 3600:.3g} of the {sum(seconds.values()) / 3600:.3g} hours of one core, "
-        f"{wall_s / 3600:.3g} hours on {cores}, and a run on one machine may take {hours:g}; ask for less, allow it "
-        f"(--hours {allowed}, make run HOURS={allowed}), or run on a cluster (docs/cluster.md)"
+        f"jobs {rule} take {seconds[rule] / 3600:.3g} of the {sum(seconds.values()) / 3600:.3g}"
+        f" hours of one core, {wall_s / 3600:.3g} hours on {cores}, and a run on one machine may"
+        f" take {hours:g}; ask for less, allow it (--hours {allowed}, make run HOURS={allowed}), or"
+        " run on a cluster (docs/cluster.md)"
     )
 
 
-def wall_seconds(seconds: Mapping[int, float], needs: Mapping[int, Iterable[int]], cores: int) -> float:
-    """Least time that jobs take side by side: all cores busy, or the longest chain of jobs that wait for each other.
+def wall_seconds(
+    seconds: Mapping[int, float], needs: Mapping[int, Iterable[int]], cores: int
+) -> float:
+    """Least time that jobs take side by side: all cores busy, or the longest chain of jobs that
+    wait for each other.
 
     Parameters
     ----------

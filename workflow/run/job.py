@@ -1,4 +1,6 @@
-"""What every workflow script shares: its log, its one-line errors, its provenance and its progress."""
+"""What every workflow script shares: its log, its one-line errors, its provenance and its
+progress.
+"""
 
 import csv
 import hashlib
@@ -69,7 +71,11 @@ class Job:
         for path in self.inputs:
             ours = record_of(path).is_file()  # a file of the user may have any encoding
             digest.update((result_checksum(path) if ours else file_checksum(path)).encode())
-        return {"rule": self.rule, "inputs_hash": digest.hexdigest(), "versions": package_versions()}
+        return {
+            "rule": self.rule,
+            "inputs_hash": digest.hexdigest(),
+            "versions": package_versions(),
+        }
 
     def progress(self, fraction: float, text: str = "") -> None:
         """Tell how far the job is (0 to 1); shown at most every few seconds."""
@@ -98,7 +104,10 @@ def settings_from_job(kind: type[Settings], given: Mapping[str, Any]) -> Setting
     """
     settings = kind.model_validate(dict(given))
     if missing := _missing(given, settings.model_dump(mode="json")):
-        raise KeyError(f"{kind.__name__} without {', '.join(missing)}: the rule must hand the whole section over")
+        raise KeyError(
+            f"{kind.__name__} without {', '.join(missing)}: the rule must hand the whole section"
+            " over"
+        )
     return settings
 
 
@@ -111,10 +120,20 @@ def _missing(given: Mapping[str, Any], complete: Mapping[str, Any], place: str =
 
 
 def own_commit(root: Path) -> str:
-    """Commit of a checkout, with -dirty where files differ; empty in a wheel, which may lie in another repository."""
+    """Commit of a checkout, with -dirty where files differ; empty in a wheel, which may lie in
+    another repository.
+    """
     if not (root / ".git").exists() or not shutil.which("git"):
         return ""
-    command = ["git", "-C", str(root), "-c", "core.fsmonitor=false", "-c", "core.hooksPath=/dev/null"]
+    command = [
+        "git",
+        "-C",
+        str(root),
+        "-c",
+        "core.fsmonitor=false",
+        "-c",
+        "core.hooksPath=/dev/null",
+    ]
     command += ["describe", "--always", "--dirty", "--abbrev=40"]
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
 
@@ -129,7 +148,9 @@ def package_versions() -> dict[str, str]:
 
 
 def result_checksum(path: str | Path) -> str:
-    """SHA-256 of what a file says, machine times apart: the same for two runs with the same seeds."""
+    """SHA-256 of what a file says, machine times apart: the same for two runs with the same
+    seeds.
+    """
     path = Path(path)
     if path.suffix not in (".csv", ".json"):
         return file_checksum(path)
@@ -139,25 +160,40 @@ def result_checksum(path: str | Path) -> str:
 
 
 def without_machine_times(content: Any) -> Any:
-    """The content of a CSV (rows as mappings) or JSON file without the times that its making took."""
+    """The content of a CSV (rows as mappings) or JSON file without the times that its making
+    took.
+    """
     if isinstance(content, dict):
-        return {key: without_machine_times(item) for key, item in content.items() if not MACHINE_TIME.search(str(key))}
-    return [without_machine_times(item) for item in content] if isinstance(content, list) else content
+        return {
+            key: without_machine_times(item)
+            for key, item in content.items()
+            if not MACHINE_TIME.search(str(key))
+        }
+    return (
+        [without_machine_times(item) for item in content] if isinstance(content, list) else content
+    )
 
 
 @contextmanager
 def job(snakemake: Any) -> Iterator[Job]:
-    """Run a script's body: a failure is one line on the console, with the traceback in the rule's log."""
+    """Run a script's body: a failure is one line on the console, with the traceback in the rule's
+    log.
+    """
     log_path = Path(snakemake.log[0])  # results/<scene>/logs/...
     try:
         log_path.parent.mkdir(parents=True, exist_ok=True)
         opened = log_path.open("w", encoding="utf-8")
     except OSError as error:
-        print(f"ERROR {snakemake.rule}: {error}; free the disk or the folder, then run again", file=sys.stderr)
+        print(
+            f"ERROR {snakemake.rule}: {error}; free the disk or the folder, then run again",
+            file=sys.stderr,
+        )
         sys.exit(1)
     with os.fdopen(join(log_path.parent.parent)), _kept(opened) as log:
         inputs = [str(path) for path in snakemake.input]
-        running = Job(snakemake.rule, dict(snakemake.wildcards), inputs, dict(snakemake.params), log)
+        running = Job(
+            snakemake.rule, dict(snakemake.wildcards), inputs, dict(snakemake.params), log
+        )
         try:
             _refuse_damaged(inputs)
             yield running
@@ -187,7 +223,9 @@ class DamagedResult(Exception):
 def _refuse_damaged(paths: list[str]) -> None:
     for path in paths:
         if is_damaged(path):
-            raise DamagedResult(f"{path}: damaged, it differs from its checksum; run again: it is then made again")
+            raise DamagedResult(
+                f"{path}: damaged, it differs from its checksum; run again: it is then made again"
+            )
 
 
 def failures(logs: Path, since: float) -> list[str]:
@@ -206,6 +244,8 @@ def _one_line(error: Exception, log_path: Path) -> str:
     message = " ".join(str(error).split())
     if isinstance(error, (InputError, DamagedResult, UnfitTable)):
         return message
-    if isinstance(error, OSError):  # no permission, disk full, file missing: the system's words name the file
+    if isinstance(
+        error, OSError
+    ):  # no permission, disk full, file missing: the system's words name the file
         return f"{message}; finished results are kept, run again when this is solved"
     return f"internal error ({type(error).__name__}: {message}); details in {log_path}"

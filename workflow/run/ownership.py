@@ -2,13 +2,12 @@
 
 Three files in `results/<scene>/`:
 
-.lock    held by the run (Snakemake's main process) while it lives
-.jobs    held, shared, by each job and its LAMMPS: as long as the last of them lives, nothing else starts
-.scene   the file of the scene whose results these are
+.lock    held by the run (Snakemake's main process) while it lives .jobs    held, shared, by each
+job and its LAMMPS: as long as the last of them lives, nothing else starts .scene   the file of the
+scene whose results these are
 
-The system frees such locks (flock) with the last process that holds them, even after SIGKILL.  A job also ends when its
-run is killed, so that the next run need not wait for it.
-"""
+The system frees such locks (flock) with the last process that holds them, even after SIGKILL.  A
+job also ends when its run is killed, so that the next run need not wait for it."""
 
 import fcntl
 import os
@@ -24,7 +23,19 @@ from typing import NoReturn
 from asperity.guards.environment import READ
 
 RUN = "ASPERITY_RUN"  # environment variable with the process id of the run that a job belongs to
-FILES = {".cir", ".csv", ".data", ".h5", ".html", ".json", ".log", ".sub", ".va", ".xyz", ".yaml"}  # results
+FILES = {
+    ".cir",
+    ".csv",
+    ".data",
+    ".h5",
+    ".html",
+    ".json",
+    ".log",
+    ".sub",
+    ".va",
+    ".xyz",
+    ".yaml",
+}  # results
 PATIENCE_S = 60.0  # for jobs of a killed run to end
 
 
@@ -33,12 +44,13 @@ class Refused(Exception):
 
 
 def inspect(*folders: Path) -> None:
-    """See that a folder of results, which may come from a stranger, holds nothing through which a run would write
-    elsewhere, wait for ever or fail without a word.
+    """See that a folder of results, which may come from a stranger, holds nothing through which a
+    run would write elsewhere, wait for ever or fail without a word.
 
     Raises
     ------
-    Refused : a link that leads out of its folder, a pipe or device, a file or folder that cannot be read, or a lock,
+    Refused : a link that leads out of its folder, a pipe or device, a file or folder that cannot be
+        read, or a lock,
         log or result of another kind.
     """
     for folder in folders:
@@ -49,14 +61,21 @@ def inspect(*folders: Path) -> None:
         inside = folder.resolve()
         for name in (".lock", ".jobs", ".scene"):
             if (folder / name).is_dir():
-                raise Refused(f"{folder / name}: a folder where a file of the run belongs; move it away")
+                raise Refused(
+                    f"{folder / name}: a folder where a file of the run belongs; move it away"
+                )
         if os.path.lexists(folder / "logs") and not (folder / "logs").is_dir():
-            raise Refused(f"{folder / 'logs'}: a file where the folder of logs belongs; move it away")
+            raise Refused(
+                f"{folder / 'logs'}: a file where the folder of logs belongs; move it away"
+            )
         for entry in _entries(folder):
             path = Path(entry.path)
             if entry.is_symlink():
                 if not (os.path.exists(path) and path.resolve().is_relative_to(inside)):
-                    raise Refused(f"{path}: a link to {os.readlink(path)}, to nowhere or out of its folder; remove it")
+                    raise Refused(
+                        f"{path}: a link to {os.readlink(path)}, to nowhere or out of its folder;"
+                        " remove it"
+                    )
             elif entry.name in READ:
                 raise Refused(f"{path}: {READ[entry.name]}; move it away")
             elif entry.is_dir() and path.suffix in FILES:
@@ -95,7 +114,9 @@ def take(results: Path) -> int:
         os.close(run)
         if isinstance(error, Refused):
             raise
-        raise Refused(f"{results}: another run of this scene is working here; wait for it or stop it") from None
+        raise Refused(
+            f"{results}: another run of this scene is working here; wait for it or stop it"
+        ) from None
     return run
 
 
@@ -111,9 +132,15 @@ def _wait_for_jobs(results: Path) -> None:
             except BlockingIOError:
                 waited = time.monotonic() - started
             if waited > PATIENCE_S:
-                raise Refused(f"{results}: jobs of an earlier run still work here; wait for them or stop them")
+                raise Refused(
+                    f"{results}: jobs of an earlier run still work here; wait for them or stop them"
+                )
             if waited > 1 and not announced:
-                print(f"{results}: waiting for jobs of a killed run to end", file=sys.stderr, flush=True)
+                print(
+                    f"{results}: waiting for jobs of a killed run to end",
+                    file=sys.stderr,
+                    flush=True,
+                )
                 announced = True
             time.sleep(0.05)
     finally:
@@ -126,7 +153,8 @@ def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
     Parameters
     ----------
     scene : the scene's file.
-    shipped : folder of the scenes that come with the project; they are known by name, wherever the project lies.
+    shipped : folder of the scenes that come with the project; they are known by name, wherever the
+        project lies.
 
     Raises
     ------
@@ -138,20 +166,21 @@ def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
     known = note.read_text(encoding="utf-8").rstrip("\n") if note.is_file() else ""
     if known and known != owner:
         raise Refused(
-            f"{results}: these are results of {known}, not of {owner}; give one of them another name (key `name`), or "
-            f"empty the file {note} if the scene has moved"
+            f"{results}: these are results of {known}, not of {owner}; give one of them another"
+            f" name (key `name`), or empty the file {note} if the scene has moved"
         )
     if not note.is_file() and (others := sorted(set(os.listdir(results)) - {".lock", ".jobs"})):
         raise Refused(
-            f"{results}: holds {others[0]}, but no file .scene, so that no run made it; give the scene another name "
-            "(key `name`), or move the folder or its link away"
+            f"{results}: holds {others[0]}, but no file .scene, so that no run made it; give the"
+            " scene another name (key `name`), or move the folder or its link away"
         )
     if write:
         note.write_text(owner + "\n", encoding="utf-8")
 
 
 def join(results: Path) -> int:
-    """Make this process a job of the run that started it: it dies with the run, and holds its folder until then.
+    """Make this process a job of the run that started it: it dies with the run, and holds its
+    folder until then.
 
     Returns
     -------
@@ -168,7 +197,9 @@ def join(results: Path) -> int:
 
 
 def _watch() -> int | None:
-    """A file that becomes readable when the run ends; None: started by hand, or no Linux (the lock still holds)."""
+    """A file that becomes readable when the run ends; None: started by hand, or no Linux (the lock
+    still holds).
+    """
     if RUN not in os.environ or not hasattr(os, "pidfd_open"):
         return None
     try:

@@ -39,7 +39,11 @@ CURVES = {
     "rms_ratio": ("1", "RMS height of each cell's place over the median place's", ("cell",)),
     "first_contact_nm": ("nm", "first contact", ("cell",)),
     "settled": ("1", "whether flow came to rest", ("cell",)),
-    "closing_GPa": ("GPa", "repulsive and attractive pressure while closing", ("cell", "force", "separation")),
+    "closing_GPa": (
+        "GPa",
+        "repulsive and attractive pressure while closing",
+        ("cell", "force", "separation"),
+    ),
     "opening_GPa": (
         "GPa",
         "the same while opening from each depth; not a number below it",
@@ -49,9 +53,14 @@ CURVES = {
 
 
 def write_solved(
-    path: str, solved: Mapping[int, Solved], provenance: Mapping[str, Any], design: Design | None = None
+    path: str,
+    solved: Mapping[int, Solved],
+    provenance: Mapping[str, Any],
+    design: Design | None = None,
 ) -> None:
-    """Write switches by their numbers, a group each; with the design, everything that was computed of the pad."""
+    """Write switches by their numbers, a group each; with the design, everything that was computed
+    of the pad.
+    """
     groups: dict[str, dict[str, Dataset]] = {}
     attributes: dict[str, dict[str, Any]] = {}
     for number, one in solved.items():
@@ -68,7 +77,9 @@ def write_solved(
             **(asdict(one.pad.flats) if one.pad else {}),
         }
     if design is not None:
-        drawn = Dataset(design.probability, "1", "probability of what is drawn, by `drawn`", ("point", "drawn"))
+        drawn = Dataset(
+            design.probability, "1", "probability of what is drawn, by `drawn`", ("point", "drawn")
+        )
         groups["design"] = {"probability": drawn}
         attributes["design"] = {"drawn": list(design.names), "varies": list(design.varies)}
     write_h5(path, groups, {}, provenance, attributes)
@@ -96,21 +107,29 @@ class ScenePoints:
     on_grid : the contact on the grid of the pads.
     """
 
-    def __init__(self, table: InputTable, contact: ContactSettings, device: DeviceSettings, count: int):
+    def __init__(
+        self, table: InputTable, contact: ContactSettings, device: DeviceSettings, count: int
+    ):
         self.table, self.contact, self.device = table, contact, device
         self.on_grid = on_pad_grid(contact, table)
         self.cutoffs_nm = cutoff_range(table, contact)
         self.design = plan_points(table, contact, device, count)
-        self.by_number = dict(enumerate((central_point(table, contact, device), *self.design.points)))
+        self.by_number = dict(
+            enumerate((central_point(table, contact, device), *self.design.points))
+        )
 
 
-def points_of(inputs: str, contact: ContactSettings, device: DeviceSettings, count: int) -> ScenePoints:
+def points_of(
+    inputs: str, contact: ContactSettings, device: DeviceSettings, count: int
+) -> ScenePoints:
     """So many points and the central one, from pad/inputs.csv."""
     return ScenePoints(from_rows(load_csv(inputs)), contact, device, count)
 
 
 def points_of_job(snakemake: Any) -> tuple[ScenePoints, PadSettings]:
-    """The points of a job that has the inputs of a cell, and sections `contact`, `device` and `pad` of its scene."""
+    """The points of a job that has the inputs of a cell, and sections `contact`, `device` and `pad`
+    of its scene.
+    """
     contact = contact_settings(snakemake.params.contact, snakemake)
     device = settings_from_job(DeviceSettings, snakemake.params.device)
     pad = settings_from_job(PadSettings, snakemake.params.pad)
@@ -139,15 +158,26 @@ def _check_solved(where: str, said: Mapping[str, Any]) -> None:
     for name in ("halves_V", "refused"):
         _check(where, name in said, f"no attribute {name}")
     halves = np.asarray(said["halves_V"])
-    _check(where, halves.shape == (2,) and halves.dtype.kind == "f" and not (halves < 0.0).any(), "halves_V: no two V")
+    _check(
+        where,
+        halves.shape == (2,) and halves.dtype.kind == "f" and not (halves < 0.0).any(),
+        "halves_V: no two V",
+    )
     _check(where, isinstance(said["refused"], str), "refused: no text")
     for name in STATES:
         if said["refused"]:
             _check(where, name not in said, f"{name} of a point without an answer")
             continue
         value = np.asarray(said.get(name, np.nan))
-        number = value.shape == () and value.dtype.kind in "fiu" and np.isfinite(value) and 0.0 <= value <= 1e9
-        _check(where, bool(number), f"{name} = {said.get(name)!r:.40}: accepted is a number from 0 on")
+        number = (
+            value.shape == ()
+            and value.dtype.kind in "fiu"
+            and np.isfinite(value)
+            and 0.0 <= value <= 1e9
+        )
+        _check(
+            where, bool(number), f"{name} = {said.get(name)!r:.40}: accepted is a number from 0 on"
+        )
 
 
 def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.ndarray]) -> None:
@@ -158,21 +188,44 @@ def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.n
     UnfitModel
     """
     for name in CURVES:
-        _check(where, name in curves and np.asarray(curves[name]).dtype.kind in "fiu", f"no numbers {name}")
+        _check(
+            where,
+            name in curves and np.asarray(curves[name]).dtype.kind in "fiu",
+            f"no numbers {name}",
+        )
     sizes = {"force": 2}
     for name, (_, _, dims) in CURVES.items():
         shape = curves[name].shape
         _check(where, len(shape) == len(dims), f"{name}: {len(shape)} dimensions for {len(dims)}")
         for dim, size in zip(dims, shape, strict=True):
-            _check(where, size == sizes.setdefault(dim, size) and size > 0, f"{name}: {size} along {dim}")
+            _check(
+                where,
+                size == sizes.setdefault(dim, size) and size > 0,
+                f"{name}: {size} along {dim}",
+            )
     separation, depth = curves["separation_nm"], curves["depth"]
     finite = [np.isfinite(curves[name]).all() for name in CURVES if name != "opening_GPa"]
-    _check(where, all(finite) and not np.isinf(curves["opening_GPa"]).any(), "values that are not finite")
-    _check(where, separation.size > 1 and (np.diff(separation) < 0.0).all(), "separation_nm does not fall")
-    places = depth.dtype.kind in "iu" and (np.diff(depth) > 0).all() and depth[0] >= 0 and depth[-1] < separation.size
+    _check(
+        where,
+        all(finite) and not np.isinf(curves["opening_GPa"]).any(),
+        "values that are not finite",
+    )
+    _check(
+        where,
+        separation.size > 1 and (np.diff(separation) < 0.0).all(),
+        "separation_nm does not fall",
+    )
+    places = (
+        depth.dtype.kind in "iu"
+        and (np.diff(depth) > 0).all()
+        and depth[0] >= 0
+        and depth[-1] < separation.size
+    )
     _check(where, bool(places), "depth: no rising positions in separation_nm")
     weight = curves["weight"]
-    _check(where, (weight >= 0.0).all() and abs(weight.sum() - 1.0) < 1e-6, "weight: no shares of 1")
+    _check(
+        where, (weight >= 0.0).all() and abs(weight.sum() - 1.0) < 1e-6, "weight: no shares of 1"
+    )
     _check(where, (curves["rms_ratio"] > 0.0).all(), "rms_ratio: not positive")
     for name in ("closing_GPa", "opening_GPa"):
         repulsive, attractive = np.moveaxis(curves[name], -2, 0)
@@ -181,8 +234,12 @@ def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.n
         _check(where, signs, f"{name}: repulsion is positive and attraction negative")
     for name in ("hamaker", "offset_nm"):
         value = np.asarray(said.get(name, np.nan))
-        number = value.shape == () and value.dtype.kind in "fiu" and np.isfinite(value) and value >= 0.0
-        _check(where, bool(number), f"{name} = {said.get(name)!r:.40}: accepted is a number from 0 on")
+        number = (
+            value.shape == () and value.dtype.kind in "fiu" and np.isfinite(value) and value >= 0.0
+        )
+        _check(
+            where, bool(number), f"{name} = {said.get(name)!r:.40}: accepted is a number from 0 on"
+        )
 
 
 def load_model(paths: Sequence[str], points: ScenePoints) -> PadModel:
@@ -204,7 +261,11 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
         if not name.startswith("point_"):
             continue
         digits, pad, where = name.removeprefix("point_"), None, f"{path}: {name}"
-        _check(where, digits.isascii() and digits.isdigit() and int(digits) in points, "no point of this scene")
+        _check(
+            where,
+            digits.isascii() and digits.isdigit() and int(digits) in points,
+            "no point of this scene",
+        )
         number = int(digits)
         _check_solved(where, said)
         _check(where, name in groups or bool(said["refused"]), "no curves")
@@ -227,7 +288,9 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
 
 
 def population_of_job(snakemake: Any) -> tuple[Population, float]:
-    """All switches of a job that also has section `failure` of its scene, and the share of them that may fail."""
+    """All switches of a job that also has section `failure` of its scene, and the share of them
+    that may fail.
+    """
     asked = settings_from_job(FailureSettings, snakemake.params.failure)
     assert asked.probability is not None, "rules refuse scenes without it"
     points, pad = points_of_job(snakemake)
@@ -239,5 +302,7 @@ def population_of_job(snakemake: Any) -> tuple[Population, float]:
 
     pads = {k: one.pad for k, one in enumerate(model.points) if one.pad}
     known = points.design.probability[np.array(list(pads), int)], list(pads.values())
-    population = Population(points.table, points.device, points.cutoffs_nm, asked.release_V, press, known)
+    population = Population(
+        points.table, points.device, points.cutoffs_nm, asked.release_V, press, known
+    )
     return population, asked.probability

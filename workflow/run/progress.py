@@ -1,4 +1,6 @@
-"""What a run says in the terminal: its plan, and a line for each finished job with the clock and the time left."""
+"""What a run says in the terminal: its plan, and a line for each finished job with the clock and
+the time left.
+"""
 
 import logging
 import re
@@ -18,9 +20,12 @@ from workflow.run.changed_files import change_lines, changed_files
 from workflow.run.cost import Costs, refusal, wall_seconds
 from workflow.run.job import last_line
 
-NO_SUCH_TARGET = re.compile(r"MissingRuleException:\nNo rule to produce (.*) \(if you use input functions")
+NO_SUCH_TARGET = re.compile(
+    r"MissingRuleException:\nNo rule to produce (.*) \(if you use input functions"
+)
 
-IN_OWN_WORDS = re.compile(  # the terminal names the target, the page comes before its job, and a failed job says why
+# the terminal names the target, the page comes before its job, and a failed job says why
+IN_OWN_WORDS = re.compile(
     rf"{NO_SUCH_TARGET.pattern}|Warning: the following output files of rule report were not|"
     r"RuleException:\nCalledProcessError|Exiting because a job|WorkflowError:\nAt least one job"
 )
@@ -31,19 +36,25 @@ class Terminal(logging.Handler):
 
     Parameters
     ----------
-    workflow : Snakemake's, of which it asks what is to run, on how many cores, and whether anything runs at all.
+    workflow : Snakemake's, of which it asks what is to run, on how many cores, and whether anything
+        runs at all.
     costs : of the scene.
     nothing_to_do : what to say when every result is there.
     hours : the longest run on one machine.
 
     Attributes
     ----------
-    refusal : why the planned run is longer than that; empty where it is not, or a cluster takes its jobs.
-    """
+    refusal : why the planned run is longer than that; empty where it is not, or a cluster takes its
+        jobs."""
 
     def __init__(self, workflow: Any, costs: Costs, nothing_to_do: str, hours: float) -> None:
         super().__init__()
-        self._workflow, self._costs, self._nothing_to_do, self._hours = workflow, costs, nothing_to_do, hours
+        self._workflow, self._costs, self._nothing_to_do, self._hours = (
+            workflow,
+            costs,
+            nothing_to_do,
+            hours,
+        )
         self.refusal = ""
         self._planned = False
         self._jobs = self._done = 0
@@ -70,11 +81,18 @@ class Terminal(logging.Handler):
 
     def _refuse_target(self, target: str) -> None:
         rules = self._workflow.rules
-        names = [rule.name for rule in rules] + [str(path) for rule in rules for path in rule.output]
-        _say(f"ERROR {shown(target)}: no such target{did_you_mean(target, names)} (asperity targets lists the stages)")
+        names = [rule.name for rule in rules] + [
+            str(path) for rule in rules for path in rule.output
+        ]
+        _say(
+            f"ERROR {shown(target)}: no such target{did_you_mean(target, names)} (asperity targets"
+            " lists the stages)"
+        )
 
     def _plan(self) -> None:
-        self._left = {job.jobid: job for job in self._workflow.dag.needrun_jobs() if not job.rule.norun}
+        self._left = {
+            job.jobid: job for job in self._workflow.dag.needrun_jobs() if not job.rule.norun
+        }
         self._jobs = len(self._left)
         seconds: defaultdict[str, float] = defaultdict(float)
         for job in self._left.values():
@@ -91,15 +109,22 @@ class Terminal(logging.Handler):
                 *((rule, str(counts[rule]), duration(of)) for rule, of in seconds.items()),
             ]
             width = max(len(row[0]) for row in rows)
-            _say("\n".join(f"{rule:<{width}}  {count:>5}  {cost:>9}" for rule, count, cost in rows) + "\n")
+            _say(
+                "\n".join(f"{rule:<{width}}  {count:>5}  {cost:>9}" for rule, count, cost in rows)
+                + "\n"
+            )
         if self._workflow.dryrun and self.refusal:
             _say(wrapped(f"a run is refused: {self.refusal}"))
         wall = f"about {duration(wall_s)}" if self._left else "no time"
-        guessed = "" if self._costs.known(seconds) else ", a guess until jobs of this scene have run here"
+        guessed = (
+            "" if self._costs.known(seconds) else ", a guess until jobs of this scene have run here"
+        )
         _say(wrapped(f"{self._jobs} jobs, {wall} on {self._cores} cores{guessed}"))
 
     def _changes(self) -> Iterator[str]:
-        """Lines on files that changed since results were made of them, with what they renew and its time."""
+        """Lines on files that changed since results were made of them, with what they renew and its
+        time.
+        """
         changed = changed_files(self._left.values(), self._workflow.persistence.params)
         if not changed:
             return
@@ -116,7 +141,9 @@ class Terminal(logging.Handler):
     def _needs(self) -> dict[int, list[int]]:
         """Numbers of the jobs that each job that is left waits for."""
         needed = self._workflow.dag.job_dependencies
-        return {number: [other.jobid for other in needed(job)] for number, job in self._left.items()}
+        return {
+            number: [other.jobid for other in needed(job)] for number, job in self._left.items()
+        }
 
     @property
     def _cores(self) -> int:
@@ -129,12 +156,16 @@ class Terminal(logging.Handler):
         return self._costs.seconds(job.rule.name, dict(job.wildcards_dict))
 
     def _wall_s(self) -> float:
-        """Time to the end, side by side, by what the jobs took so far; jobs at work have their last part left."""
+        """Time to the end, side by side, by what the jobs took so far; jobs at work have their last
+        part left.
+        """
         seconds = {number: self._seconds(job) for number, job in self._left.items()}
         for number, (_, started) in self._running.items():
             if number in seconds:
                 spent = time.monotonic() - started
-                seconds[number] = max(seconds[number] - spent, 0.1 * spent)  # one that takes longer goes on
+                seconds[number] = max(
+                    seconds[number] - spent, 0.1 * spent
+                )  # one that takes longer goes on
         return wall_seconds(seconds, self._needs(), self._cores)
 
     def _finish(self, number: int) -> None:
@@ -149,27 +180,42 @@ class Terminal(logging.Handler):
         rest = f", {duration(self._wall_s())} left" if self._left else ""
         start = f"{time.strftime('%H:%M')}  {self._done:>{len(str(self._jobs))}} of {self._jobs}  "
         end = f" ({duration(took)}){rest}"
-        _say(start + textwrap.shorten(message, COLUMNS - len(start) - len(end), placeholder=" …") + end)
+        _say(
+            start
+            + textwrap.shorten(message, COLUMNS - len(start) - len(end), placeholder=" …")
+            + end
+        )
         if job.rule.name == "press_pads":
             pressed = [of for of in self._workflow.dag.jobs if of.rule.name == "press_pads"]
-            for line in release_so_far([file for of in pressed if of.jobid not in self._left for file in of.output]):
+            for line in release_so_far(
+                [file for of in pressed if of.jobid not in self._left for file in of.output]
+            ):
                 _say(line)
 
 
 def release_so_far(files: Iterable[str]) -> Iterator[str]:
-    """A line on the switches of these files of pad/points/ together, by the quantiles of the answer."""
+    """A line on the switches of these files of pad/points/ together, by the quantiles of the
+    answer.
+    """
     import h5py  # not while a run is planned
     import numpy as np
 
     release_V = []
     for path in files:
         with h5py.File(path) as file:  # of the central point the job says more
-            release_V += [file[name].attrs.get("release_V", np.nan) for name in file if name != "point_0000"]
+            release_V += [
+                file[name].attrs.get("release_V", np.nan) for name in file if name != "point_0000"
+            ]
     solved = [value for value in release_V if np.isfinite(value)]
     if solved:
-        low, middle, high = (f"{of:.3g} V" if of else "sticks" for of in np.quantile(solved, (0.05, 0.5, 0.95)))
+        low, middle, high = (
+            f"{of:.3g} V" if of else "sticks" for of in np.quantile(solved, (0.05, 0.5, 0.95))
+        )
         stuck = np.mean(np.equal(solved, 0.0))
-        yield f"  release of {len(solved)} switches so far: {middle} (5 %: {low}; 95 %: {high}); {stuck:.0%} stick"
+        yield (
+            f"  release of {len(solved)} switches so far: {middle} (5 %: {low}; 95 %: {high});"
+            f" {stuck:.0%} stick"
+        )
 
 
 def _say_if_silent(about: Mapping[str, Any]) -> None:
@@ -182,7 +228,10 @@ def _say_if_silent(about: Mapping[str, Any]) -> None:
     elif about["log"] and not log.is_file():
         why = "ended before it began, its script has a mistake: see the lines above"
     else:
-        why = "ended by the system without a word, probably out of memory: take fewer --cores or contact.pixels"
+        why = (
+            "ended by the system without a word, probably out of memory: take fewer --cores or"
+            " contact.pixels"
+        )
     _say(f"ERROR {about['rule_name']}: {why}")
 
 
@@ -195,14 +244,22 @@ def duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 90 * 60 else f"{seconds / 3600:.1f} h"
 
 
-def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: str, hours: float) -> Terminal:
+def speak(
+    workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: str, hours: float
+) -> Terminal:
     """Let `Terminal` tell what goes on instead of Snakemake, whose warnings and errors stay."""
 
     def is_needed(record: logging.LogRecord) -> bool:
         event = getattr(record, "event", None)
         in_detail = workflow.dryrun and event == "job_info"  # --dry-run without --quiet
-        replaced = (event == "job_error" and workflow.local_exec) or IN_OWN_WORDS.match(record.getMessage())
-        return (record.levelno > logging.INFO and not replaced) or in_detail or workflow.output_settings.verbose
+        replaced = (event == "job_error" and workflow.local_exec) or IN_OWN_WORDS.match(
+            record.getMessage()
+        )
+        return (
+            (record.levelno > logging.INFO and not replaced)
+            or in_detail
+            or workflow.output_settings.verbose
+        )
 
     for handler in logger.handlers:
         handler.addFilter(is_needed)

@@ -1,4 +1,6 @@
-"""The studies of the stages, each from what its job reads: rows of accuracy/STAGE.csv and stability/STAGE.csv."""
+"""The studies of the stages, each from what its job reads: rows of accuracy/STAGE.csv and
+stability/STAGE.csv.
+"""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -45,11 +47,15 @@ def accuracy_of_topography(snakemake: Any, progress: Progress) -> Iterator[Study
     volts = {}
     if pads := central_pads(snakemake):
         point, on_grid, releases = pads
-        volts = volts_per_percent(point, lambda moved: releases(moved, on_grid, NUMERICS), ("q0", "hurst", "rms"))
+        volts = volts_per_percent(
+            point, lambda moved: releases(moved, on_grid, NUMERICS), ("q0", "hurst", "rms")
+        )
         if "hurst" in volts:
             hurst = point.values["hurst"]
             # 1 % of a slope 2 H + c is 1 % of slope / 2 H of the exponent
-            volts["slope"] = volts["hurst"] * slope_from_hurst(hurst, settings.convention) / (2 * hurst)
+            volts["slope"] = (
+                volts["hurst"] * slope_from_hurst(hurst, settings.convention) / (2 * hurst)
+            )
     return topography_accuracy.accuracy_points(settings, volts, progress)
 
 
@@ -80,11 +86,15 @@ def accuracy_of_uncertainty(snakemake: Any, progress: Progress) -> Iterator[Stud
     table = from_rows(load_csv(snakemake.input.inputs))
     contact = contact_settings(snakemake.params.contact, snakemake)
     direct, again = (
-        direct_runs_of_rows((row for path in paths for row in load_csv(path)), table.names, settings.direct_runs)
+        direct_runs_of_rows(
+            (row for path in paths for row in load_csv(path)), table.names, settings.direct_runs
+        )
         for paths in (snakemake.input.direct, snakemake.input.again)
     )
     nodes = nodes_of_rows(load_csv(snakemake.input.parameters))
-    return uncertainty_accuracy.accuracy_points(direct, again[1], nodes, table, contact, settings, progress)
+    return uncertainty_accuracy.accuracy_points(
+        direct, again[1], nodes, table, contact, settings, progress
+    )
 
 
 def stability_of_uncertainty(_snakemake: Any, progress: Progress) -> Iterator[StudyRow]:

@@ -1,4 +1,6 @@
-"""The studies of the stages of atoms, each from what its job reads, for the driver of all studies."""
+"""The studies of the stages of atoms, each from what its job reads, for the driver of all
+studies.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
@@ -46,14 +48,20 @@ SAMPLES = 2
 def accuracy_of_elastic(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
     """Of the bulk modulus of the scene's glasses."""
     dft = settings_from_job(DftSettings, snakemake.params.elastic["dft"])
-    moduli = trusted_moduli(load_csv(snakemake.input.moduli), [load_json(path) for path in snakemake.input.reports])
+    moduli = trusted_moduli(
+        load_csv(snakemake.input.moduli), [load_json(path) for path in snakemake.input.reports]
+    )
     trusted = [modulus for modulus in moduli if modulus.xc == "GGA" and modulus.trusted]
     structures = {Path(path).stem: path for path in snakemake.input.structures}
     scans = {Path(path).stem: load_csv(path) for path in snakemake.input.scans}
     glasses = []
     seconds = []
     for modulus in trusted:
-        scan = [row for row in scans[modulus.structure] if row["xc"] == "GGA" and row["converged"] == "True"]
+        scan = [
+            row
+            for row in scans[modulus.structure]
+            if row["xc"] == "GGA" and row["converged"] == "True"
+        ]
         seconds.append(sum(float(row["wall_s"]) for row in scan))
         energies_eV = {float(row["strain"]): float(row["energy_eV"]) for row in scan}
         if len(glasses) < SAMPLES:
@@ -76,7 +84,9 @@ def stability_of_elastic(snakemake: Any, progress: Progress) -> Iterator[StudyRo
 def accuracy_of_hardness(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
     """Of the smallest asperity of the scene, pressed in small form; a film is left out."""
     settings = settings_from_job(HardnessSettings, snakemake.params.hardness)
-    smallest = min(settings.asperities, key=lambda asperity: (asperity.tiles, asperity.amplitude_nm))
+    smallest = min(
+        settings.asperities, key=lambda asperity: (asperity.tiles, asperity.amplitude_nm)
+    )
     _, potential, glass, work = atoms_of_job(snakemake)
     closings = hardness_accuracy.SmallClosings(smallest, glass, potential, settings.closing, work)
     # of a film, h_macro is that of its base
@@ -100,13 +110,17 @@ def atoms_of_job(snakemake: Any) -> tuple[Material, Potential, Atoms, Path]:
     return material, potential, glass, work
 
 
-def hard_rows(cases: Sequence[for_studies.HardCase], progress: Progress | None = None) -> Iterator[StudyRow]:
+def hard_rows(
+    cases: Sequence[for_studies.HardCase], progress: Progress | None = None
+) -> Iterator[StudyRow]:
     """Rows of a stability table without the stage."""
     return stability_rows([HardCase(*case) for case in cases], progress)
 
 
 def input_volts(snakemake: Any, names: Sequence[str]) -> dict[str, float]:
-    """What 1 % more of some inputs moves in the release, V; empty where the scene has no switch or none of them."""
+    """What 1 % more of some inputs moves in the release, V; empty where the scene has no switch or
+    none of them.
+    """
     pads = central_pads(snakemake)
     if pads is None:
         return {}
@@ -123,9 +137,15 @@ def knobs_of(variations: Sequence[for_studies.Variation], volts: Mapping[str, fl
     """
     knobs = []
     for variation in variations:
-        quantities = [Quantity(name, unit, volts=volts.get(name)) for name, unit in variation.quantities]
+        quantities = [
+            Quantity(name, unit, volts=volts.get(name)) for name, unit in variation.quantities
+        ]
         choices = [Choice(value, partial(_errors, compute)) for value, compute in variation.values]
-        known = {"shipped": variation.shipped, "reference": variation.reference, "samples": variation.samples}
+        known = {
+            "shipped": variation.shipped,
+            "reference": variation.reference,
+            "samples": variation.samples,
+        }
         knobs.append(Knob(variation.name, quantities, choices, **known))
     return knobs
 

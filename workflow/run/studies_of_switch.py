@@ -1,4 +1,6 @@
-"""The studies of pad, answer, circuit and failure: rows of their tables of accuracy and stability."""
+"""The studies of pad, answer, circuit and failure: rows of their tables of accuracy and
+stability.
+"""
 
 from collections.abc import Callable, Iterator
 from typing import Any

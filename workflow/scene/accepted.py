@@ -1,4 +1,6 @@
-"""What a key of a scene accepts, in words: for messages, for config/config.yaml and for the documentation."""
+"""What a key of a scene accepts, in words: for messages, for config/config.yaml and for the
+documentation.
+"""
 
 import types
 from collections.abc import Iterable
@@ -48,14 +50,22 @@ def _type_words(annotation: Any) -> str:
     origin = get_origin(annotation)
     if origin is Annotated:
         inner, *extras = get_args(annotation)
-        return f"{_type_words(inner)} {_bounds(item for extra in extras for item in extra.metadata)}"
+        return (
+            f"{_type_words(inner)} {_bounds(item for extra in extras for item in extra.metadata)}"
+        )
     if origin is Literal:
         return "one of " + ", ".join(str(choice) for choice in get_args(annotation))
     if origin in (tuple, list):
         return "a list; each entry " + _type_words(get_args(annotation)[0])
     if origin in (Union, types.UnionType):
         return " or ".join(_type_words(member) for member in get_args(annotation))
-    names = {int: "an integer", float: "a number", str: "text", bool: "true or false", type(None): "null"}
+    names = {
+        int: "an integer",
+        float: "a number",
+        str: "text",
+        bool: "true or false",
+        type(None): "null",
+    }
     return names.get(annotation, "a mapping")
 
 
@@ -69,7 +79,9 @@ def _strip_optional(annotation: Any) -> Any:
 
 def _as_model(annotation: Any) -> type[BaseModel] | None:
     annotation = _strip_optional(annotation)
-    return annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
+    return (
+        annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
+    )
 
 
 def field_at(location: tuple[Any, ...]) -> FieldInfo | None:

@@ -1,4 +1,6 @@
-"""A scene: everything a run depends on, as the documented defaults and what a YAML file states instead."""
+"""A scene: everything a run depends on, as the documented defaults and what a YAML file states
+instead.
+"""
 
 from typing import Literal
 
@@ -30,15 +32,20 @@ class Scene(Settings):
         description="name of the scene; results go to results/<name>/ (default: the file's name)",
     )
     extends: str | None = Field(
-        default=None, description="scene whose keys this one takes where it has none of its own, by name or by path"
+        default=None,
+        description=(
+            "scene whose keys this one takes where it has none of its own, by name or by path"
+        ),
     )
     compute: tuple[Literal["hardness", "elastic", "topography"], ...] = Field(
         default=(), description="stages to run and report although no input is taken from them"
     )
     tails: tuple[Literal["law", "pad"], ...] = Field(
         default=("law", "pad"),
-        description="what is made of the inputs and shown: the law of one cell with its uncertainty, as in the paper; "
-        "the pad of many cells and the switch on it; none: the inputs alone",
+        description=(
+            "what is made of the inputs and shown: the law of one cell with its uncertainty, as in"
+            " the paper; the pad of many cells and the switch on it; none: the inputs alone"
+        ),
     )
     inputs: InputsSettings = InputsSettings()
     hardness: HardnessSettings = HardnessSettings()
@@ -58,26 +65,37 @@ class Scene(Settings):
 
     @property
     def cell_follows_film(self) -> bool:
-        """Is the side of a cell chosen with the description of measured scans: does the scene not state it?"""
+        """Is the side of a cell chosen with the description of measured scans: does the scene not
+        state it?
+        """
         return bool(self.topography.scans) and "length_nm" not in self.contact.model_fields_set
 
     @property
     def humid(self) -> bool:
         """Can liquid condense: is there a humidity as an input, or in the air?"""
-        return "humidity" in self.inputs.rows() or bool(self.contact.air and self.contact.air.humidity)
+        return "humidity" in self.inputs.rows() or bool(
+            self.contact.air and self.contact.air.humidity
+        )
 
     @property
     def unequal_places(self) -> bool:
-        """Do the places of the film have RMS heights of their own, by topography or by `pad.rms_scatter`?"""
-        return self.pad.rms_scatter is not None or self.inputs.prior_origins().get("rms") == "topography"
+        """Do the places of the film have RMS heights of their own, by topography or by
+        `pad.rms_scatter`?
+        """
+        return (
+            self.pad.rms_scatter is not None
+            or self.inputs.prior_origins().get("rms") == "topography"
+        )
 
     @model_validator(mode="after")
     def _measurements_for_a_calibration(self) -> "Scene":
         if "calibration" in self.inputs.origins() and not self.measurements.tables:
-            names = [name for name, row in self.inputs.rows().items() if row.origin == "calibration"]
+            names = [
+                name for name, row in self.inputs.rows().items() if row.origin == "calibration"
+            ]
             raise ValueError(
-                f"inputs: {', '.join(names)} of origin calibration, but measurements.tables is empty; name the tables "
-                "of measurements, or take another origin"
+                f"inputs: {', '.join(names)} of origin calibration, but measurements.tables is"
+                " empty; name the tables of measurements, or take another origin"
             )
         return self
 
@@ -91,17 +109,21 @@ class Scene(Settings):
         for key, q1 in wanted.items():
             if q1 is not None and q1 > resolved * (1 + 1e-9):
                 raise ValueError(
-                    f"{key} reaches {q1:g} 1/nm: beyond what contact.pixels = {self.contact.pixels} on "
-                    f"{self.contact.length_nm:g} nm resolve, {resolved:.4g} 1/nm; raise contact.pixels or lower it"
+                    f"{key} reaches {q1:g} 1/nm: beyond what contact.pixels = {self.contact.pixels}"
+                    f" on {self.contact.length_nm:g} nm resolve, {resolved:.4g} 1/nm; raise"
+                    " contact.pixels or lower it"
                 )
         return self
 
     @model_validator(mode="after")
     def _one_exponent_convention(self) -> "Scene":
-        if "topography" in self.inputs.origins() and self.topography.convention != self.contact.reading.convention:
+        if (
+            "topography" in self.inputs.origins()
+            and self.topography.convention != self.contact.reading.convention
+        ):
             raise ValueError(
-                f"topography.convention = {self.topography.convention}, contact.reading.convention = "
-                f"{self.contact.reading.convention}: a Hurst exponent measured by one convention must be used by the "
-                "same; make them equal"
+                f"topography.convention = {self.topography.convention}, contact.reading.convention"
+                f" = {self.contact.reading.convention}: a Hurst exponent measured by one convention"
+                " must be used by the same; make them equal"
             )
         return self

@@ -27,7 +27,10 @@ class HardnessFiles:
 
 
 def hardness_files(
-    settings: HardnessSettings, materials: Mapping[str, Material], config: Path, locate: Callable[[str], str]
+    settings: HardnessSettings,
+    materials: Mapping[str, Material],
+    config: Path,
+    locate: Callable[[str], str],
 ) -> HardnessFiles:
     """Files and runs of a scene.
 
@@ -46,7 +49,12 @@ def hardness_files(
     if potential.endswith((".yaml", ".yml")):
         potential = locate(potential)
     else:
-        _known("potential", potential, [path.stem for path in (config / "potentials").glob("*.yaml")], ", or a path")
+        _known(
+            "potential",
+            potential,
+            [path.stem for path in (config / "potentials").glob("*.yaml")],
+            ", or a path",
+        )
         potential = str(config / "potentials" / f"{potential}.yaml")
     _known("material", settings.material, oxides)
     if settings.base is not None:
@@ -65,8 +73,8 @@ def check_bodies(
 ) -> dict[str, float]:
     """Refuse before the first job what it would refuse.
 
-    That is a bad potential, one without a calibration of the contact area or without the material, and a film that does
-    not fit its asperity or base.
+    That is a bad potential, one without a calibration of the contact area or without the material,
+    and a film that does not fit its asperity or base.
 
     Returns
     -------
@@ -91,4 +99,6 @@ def check_bodies(
 
 def _known(key: str, name: str, known: Iterable[str], more: str = "") -> None:
     if name not in (names := sorted(known)):
-        raise InputError(f"hardness.{key} = {name!r:.60}: not known; known are {', '.join(names)}{more}")
+        raise InputError(
+            f"hardness.{key} = {name!r:.60}: not known; known are {', '.join(names)}{more}"
+        )

@@ -33,7 +33,8 @@ def load_scene(name_or_path: str) -> Scene:
 
     Raises
     ------
-    SceneError : the scene is missing, unreadable or has a mistake; one line per mistake, each naming file,
+    SceneError : the scene is missing, unreadable or has a mistake; one line per mistake, each
+        naming file,
         key, value and what is accepted.
     """
     path, *parents = _lineage(str(name_or_path))
@@ -43,8 +44,8 @@ def load_scene(name_or_path: str) -> Scene:
         content = _merged(content, stated) | {"name": stated.get("name", file.stem)}
     if str(content["name"]) in _shipped() and path.resolve().parent != SCENES:
         raise SceneError(
-            f"{path}: name = {content['name']}: the name of a shipped scene, whose results it would take; "
-            "choose another (key `name`, or the name of the file)"
+            f"{path}: name = {content['name']}: the name of a shipped scene, whose results it would"
+            " take; choose another (key `name`, or the name of the file)"
         )
     try:
         # JSON mode: strict types, yet a YAML list may fill a tuple
@@ -57,7 +58,9 @@ def load_scene(name_or_path: str) -> Scene:
 def _content_of(path: Path) -> dict[str, Any]:
     """The keys of a scene's own file."""
     if not str(path).isprintable():
-        raise SceneError(f"{shown(str(path))}: characters that do not print; rename the file or its folder")
+        raise SceneError(
+            f"{shown(str(path))}: characters that do not print; rename the file or its folder"
+        )
     try:
         return load_mapping(path, "scene")
     except MistakenYaml as error:
@@ -75,21 +78,34 @@ def _lineage(name_or_path: str) -> list[Path]:
     while parent := _content_of(files[-1]).get("extends"):
         child = files[-1]
         if not isinstance(parent, str):
-            raise SceneError(f"{child}: extends = {_cut(json.dumps(parent))}: accepted is the name or path of a scene")
+            raise SceneError(
+                f"{child}: extends = {_cut(json.dumps(parent))}: accepted is the name or path of a"
+                " scene"
+            )
         beside = child.parent / parent
         try:
-            files.append(beside if Path(parent).suffix and os.path.isfile(beside) else find_scene(parent))
+            files.append(
+                beside if Path(parent).suffix and os.path.isfile(beside) else find_scene(parent)
+            )
         except SceneError as error:
             raise SceneError(f"{child}: extends: {error}") from None
         if files[-1].resolve() in [file.resolve() for file in files[:-1]]:
-            raise SceneError(f"{child}: extends = {_cut(parent)}: this scene extends itself; name another or delete it")
+            raise SceneError(
+                f"{child}: extends = {_cut(parent)}: this scene extends itself; name another or"
+                " delete it"
+            )
         if len(files) > MOST_PARENTS:
-            raise SceneError(f"{child}: extends = {_cut(parent)}: more than {MOST_PARENTS} scenes extend each other")
+            raise SceneError(
+                f"{child}: extends = {_cut(parent)}: more than {MOST_PARENTS} scenes extend each"
+                " other"
+            )
     return files
 
 
 def _merged(parent: dict[str, Any], child: dict[str, Any]) -> dict[str, Any]:
-    """The keys of a scene over those of the scene it extends; lists and the rows of `inputs` are replaced whole."""
+    """The keys of a scene over those of the scene it extends; lists and the rows of `inputs` are
+    replaced whole.
+    """
     merged = dict(parent)
     for key, value in child.items():
         former = parent.get(key)
@@ -110,11 +126,15 @@ def find_scene(name_or_path: str) -> Path:
     word = _cut(name_or_path)
     if path.suffix in {".yaml", ".yml"} or len(path.parts) > 1:
         if not os.path.isfile(path):  # unlike Path.is_file, False for a name that is too long
-            raise SceneError(f"scene={word}: no such file; give the path of a YAML file or a scene's name")
+            raise SceneError(
+                f"scene={word}: no such file; give the path of a YAML file or a scene's name"
+            )
         return path
     known = _shipped()
     if name_or_path not in known:
-        raise SceneError(f"scene={word}: unknown scene; accepted: {', '.join(known)}, or the path of a YAML file")
+        raise SceneError(
+            f"scene={word}: unknown scene; accepted: {', '.join(known)}, or the path of a YAML file"
+        )
     return known[name_or_path]
 
 
@@ -132,7 +152,8 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
 
     Raises
     ------
-    SceneError : a file is missing, dated in the future or of the system, or its path has brackets or characters that
+    SceneError : a file is missing, dated in the future or of the system, or its path has brackets
+        or characters that
         do not print; one line per file.
     """
     files, mistakes = [], []
@@ -141,21 +162,33 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
         places = [name, *(os.path.normpath(folder / name) for folder in beside)]
         path = next((place for place in places if os.path.isfile(place)), None)
         if path is None:
-            mistakes.append(f"{scene}: {key} = {_cut(name)}: no such file here or beside the scene; correct the path")
+            mistakes.append(
+                f"{scene}: {key} = {_cut(name)}: no such file here or beside the scene; correct the"
+                " path"
+            )
         elif not path.isprintable():
-            mistakes.append(f"{scene}: {key} = {shown(path)}: characters that do not print; rename the file")
+            mistakes.append(
+                f"{scene}: {key} = {shown(path)}: characters that do not print; rename the file"
+            )
         elif set(path) & set("{}"):
-            mistakes.append(f"{scene}: {key} = {_cut(path)}: braces mean wildcards to Snakemake; rename the file")
+            mistakes.append(
+                f"{scene}: {key} = {_cut(path)}: braces mean wildcards to Snakemake; rename the"
+                " file"
+            )
         elif {"<", ">"} <= set(path):
             mistakes.append(
-                f"{scene}: {key} = {_cut(path)}: angle brackets mean path variables to Snakemake; rename the file"
+                f"{scene}: {key} = {_cut(path)}: angle brackets mean path variables to Snakemake;"
+                " rename the file"
             )
         elif is_of_the_system(path):
-            mistakes.append(f"{scene}: {key} = {_cut(path)}: of the system, not of data; copy what you need of it")
+            mistakes.append(
+                f"{scene}: {key} = {_cut(path)}: of the system, not of data; copy what you need"
+                " of it"
+            )
         elif os.path.getmtime(path) > time.time() + CLOCK_S:
             mistakes.append(
-                f"{scene}: {key} = {_cut(path)}: dated in the future, so that every result of it would seem older; set "
-                "its date (touch) or the clock"
+                f"{scene}: {key} = {_cut(path)}: dated in the future, so that every result of it"
+                " would seem older; set its date (touch) or the clock"
             )
         else:
             files.append(path)
@@ -165,7 +198,8 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
 
 
 def files_of(scene: str, names: Iterable[str]) -> list[str]:
-    """The names that a scene gives, a folder (as seen from here, else beside the scene) replaced by its files.
+    """The names that a scene gives, a folder (as seen from here, else beside the scene) replaced by
+    its files.
 
     Parameters
     ----------
@@ -188,7 +222,9 @@ def files_of(scene: str, names: Iterable[str]) -> list[str]:
 
 
 def _folders_of(scene: str) -> list[Path]:
-    """Folders of the files of a scene, which is given by name or by path, and of those that it extends."""
+    """Folders of the files of a scene, which is given by name or by path, and of those that it
+    extends.
+    """
     return [file.parent for file in _lineage(scene)]
 
 
@@ -204,12 +240,18 @@ def _explain(path: Path, error: Any) -> str:
     if error["type"] == "extra_forbidden":
         owner = model_at(location[:-1])
         known = list(owner.model_fields) if owner else []
-        return f"{path}: {key}: unknown key{did_you_mean(str(location[-1]), known)} (accepted: {', '.join(known)})"
+        return (
+            f"{path}: {key}: unknown key{did_you_mean(str(location[-1]), known)} (accepted:"
+            f" {', '.join(known)})"
+        )
     field = field_at(location)
     accepted = accepted_values(field) if field else error["msg"]
     value = _cut(json.dumps(error["input"], ensure_ascii=False, default=str))
     if error["type"] == "json_invalid":
-        return f"{path}: holds text that is no Unicode (half of a surrogate pair); write the character itself"
+        return (
+            f"{path}: holds text that is no Unicode (half of a surrogate pair); write the character"
+            " itself"
+        )
     if error["type"] == "value_error":
         return f"{path}: {key + ': ' if key else ''}{error['msg'].removeprefix('Value error, ')}"
     return f"{path}: {key} = {value}: accepted is {accepted}"

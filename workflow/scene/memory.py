@@ -21,7 +21,10 @@ def history_MB(history: HistorySettings, contact: SceneContact) -> int:
 
 
 def propagation_MB(uncertainty: UncertaintySettings) -> int:
-    """Memory of the process that fits the responses to all direct runs and resamples these, in MB."""
-    # a direct run in regressions (4000 to 10,000 take 26 MB, a row 1.5 kB) and in each resampling (of 10,000 runs)
+    """Memory of the process that fits the responses to all direct runs and resamples these, in
+    MB.
+    """
+    # a direct run in regressions (4000 to 10,000 take 26 MB, a row 1.5 kB) and in each resampling
+    # (of 10,000 runs)
     run_MB = 6e-3 + 32e-6 * RESAMPLES
     return round(PROCESS_MB + run_MB * uncertainty.direct_runs)

@@ -35,4 +35,6 @@ STAGES: dict[str, tuple[Table, ...]] = {
 
 def schema_of(path: PurePath) -> Table | None:
     """The schema of a result file; None for a file that is not known."""
-    return next((table for tables in STAGES.values() for table in tables if table.is_at(path)), None)
+    return next(
+        (table for tables in STAGES.values() for table in tables if table.is_at(path)), None
+    )

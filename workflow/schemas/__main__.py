@@ -10,9 +10,10 @@ INTRODUCTION = """# Result files
 
 <!-- made by `python -m workflow.schemas`; edit the tables in workflow/schemas/ instead -->
 
-Every CSV file of `results/SCENE/` with its columns. A star in a file's name stands for a run, a scan or a chunk; in a
-column's name it stands for what tells its columns apart. A number that is not determined is `nan`, or empty where the
-table says so. `unit` as a unit: that of the row's own column `unit`. A file that does not fit its table is refused.
+Every CSV file of `results/SCENE/` with its columns. A star in a file's name stands for a run, a
+scan or a chunk; in a column's name it stands for what tells its columns apart. A number that is not
+determined is `nan`, or empty where the table says so. `unit` as a unit: that of the row's own
+column `unit`. A file that does not fit its table is refused.
 """
 
 
@@ -28,7 +29,11 @@ def page() -> str:
 def _section(table: Table) -> str:
     first, *others = table.paths
     also = f" The same: {', '.join(f'`{path}`' for path in others)}." if others else ""
-    lines = ["| column | type | unit | meaning |", "| --- | --- | --- | --- |", *map(_line, table.columns)]
+    lines = [
+        "| column | type | unit | meaning |",
+        "| --- | --- | --- | --- |",
+        *map(_line, table.columns),
+    ]
     return f"\n### `{first}`\n\n{table.row}{also}\n\n" + "\n".join(lines) + "\n"
 
 

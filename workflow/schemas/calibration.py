@@ -21,7 +21,9 @@ TABLES = (
             SEED,
             *_INPUTS,
             *(
-                number(name, name.rpartition("_")[2], "observable of the surface (docs/calibration.md)")
+                number(
+                    name, name.rpartition("_")[2], "observable of the surface (docs/calibration.md)"
+                )
                 for name in NAMES
             ),
         ),
@@ -29,7 +31,10 @@ TABLES = (
     Table(
         ("calibration/samples.csv",),
         "One sample of the posterior; no row if the chain has not converged.",
-        (*_INPUTS, number("log_likelihood", "1", "logarithm of the likelihood of the measurements")),
+        (
+            *_INPUTS,
+            number("log_likelihood", "1", "logarithm of the likelihood of the measurements"),
+        ),
     ),
     Table(
         ("calibration/summary.csv",),
@@ -38,7 +43,8 @@ TABLES = (
     ),
     Table(
         ("calibration/predictive.csv",),
-        "What the next surface or switch shows, before and after the measurements; voltages where some were measured.",
+        "What the next surface or switch shows, before and after the measurements; voltages where"
+        " some were measured.",
         (
             text("quantity", "what is predicted"),
             text("unit", "its unit"),

@@ -40,8 +40,15 @@ TABLES = (
             number("B_prime", "1", "its derivative by pressure", empty=True),
             number("V0_A3", "Å³", "equilibrium volume of the cell", empty=True),
             number("B_vinet_GPa", "GPa", "bulk modulus by Vinet's form", empty=True),
-            number("B_error_GPa", "GPa", "standard error of B by the misfit of the fit", empty=True),
-            number("residual_meV", "meV", "root mean square deviation of the energies from the fit", empty=True),
+            number(
+                "B_error_GPa", "GPa", "standard error of B by the misfit of the fit", empty=True
+            ),
+            number(
+                "residual_meV",
+                "meV",
+                "root mean square deviation of the energies from the fit",
+                empty=True,
+            ),
             integer("points", "volumes used"),
             text("flags", "why the fit is not trusted", empty=True),
             text("failed", "volumes that did not converge, and why", empty=True),

@@ -25,15 +25,24 @@ TABLES = (
             integer("seed", "seed of the glass and of the velocities"),
             integer("atoms", "number of atoms"),
             text("status", "yield, no_yield, or rejected: why"),
-            boolean("sound", "whether energy, temperature, film and range of contact are as they must be"),
-            number("contact_length_nm", "nm", "square root of the contact area, mean over the plateau"),
+            boolean(
+                "sound",
+                "whether energy, temperature, film and range of contact are as they must be",
+            ),
+            number(
+                "contact_length_nm", "nm", "square root of the contact area, mean over the plateau"
+            ),
             number("contact_area_nm2", "nm²", "square of contact_length_nm"),
             number("hardness_GPa", "GPa", "mean contact stress of the plateau"),
             number("hardness_lo", "GPa", "lower end of the 68 % interval of hardness_GPa"),
             number("hardness_hi", "GPa", "upper end of the 68 % interval of hardness_GPa"),
             number("length_min_nm", "nm", "smallest contact length of the plateau"),
             number("length_max_nm", "nm", "largest contact length of the plateau"),
-            number("same_shape_GPa", "GPa", "mean contact stress where the contact is 0.5 to 0.6 wavelengths wide"),
+            number(
+                "same_shape_GPa",
+                "GPa",
+                "mean contact stress where the contact is 0.5 to 0.6 wavelengths wide",
+            ),
             number("same_shape_length_nm", "nm", "mean contact length there"),
             number("plateau_exponent", "1", "n of stress ~ length^n on the plateau"),
             integer("plateau_points", "averages on the plateau"),
@@ -59,9 +68,17 @@ TABLES = (
             integer("exchanged_bonds", "bonds broken or formed since the first snapshot"),
             integer("new_exchanges", "bonds broken or formed since the last snapshot"),
             number("lowering_nm", "nm", "how much lower the top is than in the first snapshot"),
-            number("top_area_nm2", "nm^2", "contact area under load, nan while the contact is small"),
-            number("top_force_over_hamaker", "1/nm", "pull-off force of the rigid top over the Hamaker constant"),
-            number("top_work_over_hamaker", "1", "work of its separation over the Hamaker constant"),
+            number(
+                "top_area_nm2", "nm^2", "contact area under load, nan while the contact is small"
+            ),
+            number(
+                "top_force_over_hamaker",
+                "1/nm",
+                "pull-off force of the rigid top over the Hamaker constant",
+            ),
+            number(
+                "top_work_over_hamaker", "1", "work of its separation over the Hamaker constant"
+            ),
         ),
     ),
     Table(
@@ -78,7 +95,9 @@ TABLES = (
             number("contact_stress_GPa", "GPa", "force over contact area; nan without contact"),
             number("temperature_K", "K", "temperature"),
             number(
-                "energy_drift_meV_per_atom", "meV/atom", "energy less work of what moves and heat of the thermostat"
+                "energy_drift_meV_per_atom",
+                "meV/atom",
+                "energy less work of what moves and heat of the thermostat",
             ),
             number("contact_atoms", "1", "atoms in contact, mean over the samples of the average"),
             integer("atoms", "number of atoms"),

@@ -12,10 +12,22 @@ TABLES = (
             text("knob", "setting that is varied"),
             text("value", "its value"),
             boolean("shipped", "whether it is the value in use"),
-            number("error", "as `unit` says", "root mean square error over the samples", empty=True),
-            number("own_error", "as `unit` says", "standard error of `error`; empty where not known", empty=True),
+            number(
+                "error", "as `unit` says", "root mean square error over the samples", empty=True
+            ),
+            number(
+                "own_error",
+                "as `unit` says",
+                "standard error of `error`; empty where not known",
+                empty=True,
+            ),
             text("unit", "unit of both"),
-            number("release_V", "V", "what the error moves in the release; empty where not known", empty=True),
+            number(
+                "release_V",
+                "V",
+                "what the error moves in the release; empty where not known",
+                empty=True,
+            ),
             text("reference", "what the error is against, and the samples", empty=True),
             number("wall_s", "s", "run time of one computation", empty=True),
             number("cpu_s", "s", "processor time of one computation", empty=True),

@@ -46,7 +46,9 @@ class Column:
         return fnmatchcase(name, self.name)
 
 
-def number(name: str, unit: str, meaning: str, empty: bool = False, optional: bool = False) -> Column:
+def number(
+    name: str, unit: str, meaning: str, empty: bool = False, optional: bool = False
+) -> Column:
     """A column of floating-point numbers."""
     return Column(name, "number", unit, meaning, empty, optional)
 
@@ -87,9 +89,8 @@ class Table:
     def header(self, rows: Sequence[Mapping[str, Any]]) -> list[str]:
         """The columns of rows in the order of the schema, members of a family as they first appear.
 
-        A column that may be empty is there even if no row has it; in a table without rows all are that must be.
-        A name that is not known comes last, for `misfit` to find.
-        """
+        A column that may be empty is there even if no row has it; in a table without rows all are
+        that must be. A name that is not known comes last, for `misfit` to find."""
         names = dict.fromkeys(name for row in rows for name in row)
         names |= {
             column.name: None
@@ -99,15 +100,17 @@ class Table:
         return sorted(names, key=self._place)  # stable
 
     def _place(self, name: str) -> int:
-        return next((k for k, column in enumerate(self.columns) if column.covers(name)), len(self.columns))
+        return next(
+            (k for k, column in enumerate(self.columns) if column.covers(name)), len(self.columns)
+        )
 
     def misfit(self, header: Sequence[str], rows: Sequence[Mapping[Any, str | None]]) -> str:
         """What does not fit the schema, in words; empty if everything does.
 
         Parameters
         ----------
-        rows : text by column, as `csv.DictReader` gives it: None where a row is too short, a key None where too long.
-        """
+        rows : text by column, as `csv.DictReader` gives it: None where a row is too short, a key
+            None where too long."""
         for column in self.columns:
             if not column.optional and not any(map(column.covers, header)):
                 return f"column {column.name} is missing"

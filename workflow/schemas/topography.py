@@ -10,9 +10,15 @@ TABLES = (
             text("scan", "name of the scan"),
             text("description", "power_law, measured_spectrum or measured_heights"),
             boolean("left_out", "whether the description was made without this scan"),
-            text("quantity", "rms, first_contact, separation at 1 and 7 uN on a cell, area at 7 uN"),
+            text(
+                "quantity", "rms, first_contact, separation at 1 and 7 uN on a cell, area at 7 uN"
+            ),
             text("unit", "nm or nm^2"),
-            number("in_contact", "1", "share of the scan in contact at that load; 0 for rms and first_contact"),
+            number(
+                "in_contact",
+                "1",
+                "share of the scan in contact at that load; 0 for rms and first_contact",
+            ),
             number("pressed", "nm or nm²", "of the scan itself"),
             number("median", "nm or nm²", "of the described surfaces"),
             number("low", "nm or nm²", "lower end of the 90 % interval for one more surface"),

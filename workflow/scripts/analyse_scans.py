@@ -27,4 +27,6 @@ with job(snakemake) as run:
             groups[name] = {key: Dataset(values, *DATASETS[key]) for key, values in arrays.items()}
             attributes[name] = {**origin, **described}
         run.progress((number + 1) / len(files), label)
-    write_h5(snakemake.output[0], groups, {"synthetic": not settings.scans}, run.provenance, attributes)
+    write_h5(
+        snakemake.output[0], groups, {"synthetic": not settings.scans}, run.provenance, attributes
+    )

@@ -1,9 +1,7 @@
 """Assemble the pad from its points.
 
-In: inputs.csv, pad/points/*.h5 (GPa against nm; V).
-Out: pad/model.h5, pad/inputs.csv (with the film's typical place, and how much places differ), pad/curves.csv (MPa
-against nm).
-"""
+In: inputs.csv, pad/points/*.h5 (GPa against nm; V). Out: pad/model.h5, pad/inputs.csv (with the
+film's typical place, and how much places differ), pad/curves.csv (MPa against nm)."""
 
 from mesoscale.inputs.table import to_rows
 from mesoscale.pad.memory import curve_rows
@@ -16,5 +14,10 @@ with job(snakemake) as run:
     model = load_model(snakemake.input.chunks, points)
     pad = model.central.pressed
     write_csv(snakemake.output.inputs, to_rows(points.table))
-    write_solved(snakemake.output.model, dict(enumerate((model.central, *model.points))), run.provenance, points.design)
+    write_solved(
+        snakemake.output.model,
+        dict(enumerate((model.central, *model.points))),
+        run.provenance,
+        points.design,
+    )
     write_csv(snakemake.output.table, curve_rows(pad.cells, pad.law))

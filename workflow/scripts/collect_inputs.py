@@ -1,9 +1,8 @@
-"""Collect the table of uncertain inputs, each row from literature or from the stage that computes it.
+"""Collect the table of uncertain inputs, each row from literature or from the stage that computes
+it.
 
-In: hardness/fit.json, elastic/e_star.json, topography/parameters.json (those that the scene wants); the files of
-samples that it names, as samples_<input>.
-Out: inputs.csv.
-"""
+In: hardness/fit.json, elastic/e_star.json, topography/parameters.json (those that the scene wants);
+the files of samples that it names, as samples_<input>. Out: inputs.csv."""
 
 import copy
 
@@ -18,7 +17,9 @@ with job(snakemake) as run:
     given = copy.deepcopy(snakemake.params.settings)
     results = dict(snakemake.input.items())
     for name in [name for name in results if name.startswith("samples_")]:
-        given[name.removeprefix("samples_")]["values"] = results.pop(name)  # found beside the scene, perhaps
+        given[name.removeprefix("samples_")]["values"] = results.pop(
+            name
+        )  # found beside the scene, perhaps
     settings = settings_from_job(InputsSettings, given)
     stages = {stage: load_json(path) for stage, path in results.items()}
     files = {stage: "/".join(path.split("/")[-2:]) for stage, path in results.items()}

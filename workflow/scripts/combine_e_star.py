@@ -17,14 +17,26 @@ from workflow.run.job import job, settings_from_job
 with job(snakemake) as run:
     settings = settings_from_job(ElasticSettings, snakemake.params.settings)
     points = [row for path in snakemake.input.scans for row in load_csv(path)]
-    fits = [fit_scan(list(scan)) for _, scan in groupby(points, lambda row: (row["structure"], row["xc"]))]
+    fits = [
+        fit_scan(list(scan))
+        for _, scan in groupby(points, lambda row: (row["structure"], row["xc"]))
+    ]
     reports = [load_json(path) for path in snakemake.input.structures]
     quenches = [len(load_csv(path)) for path in snakemake.input.attempts]
-    material, counter_body = load_material(snakemake.input.material), load_material(snakemake.input.counter_body)
-    summary, samples = effective_modulus(trusted_moduli(fits, reports), material, counter_body, settings)
+    material, counter_body = (
+        load_material(snakemake.input.material),
+        load_material(snakemake.input.counter_body),
+    )
+    summary, samples = effective_modulus(
+        trusted_moduli(fits, reports), material, counter_body, settings
+    )
     write_csv(snakemake.output.points, points)
     write_csv(snakemake.output.moduli, fits)
     write_csv(snakemake.output.structures, structure_rows(reports, quenches))
-    group = {key: Dataset(values, *SAMPLE_COLUMNS[key], ("sample",)) for key, values in samples.items()}
-    write_h5(snakemake.output.samples, {"samples": group}, {"ions": summary["ions"]}, run.provenance)
+    group = {
+        key: Dataset(values, *SAMPLE_COLUMNS[key], ("sample",)) for key, values in samples.items()
+    }
+    write_h5(
+        snakemake.output.samples, {"samples": group}, {"ions": summary["ions"]}, run.provenance
+    )
     write_json(snakemake.output.e_star, summary, run.provenance)

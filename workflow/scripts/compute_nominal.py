@@ -1,9 +1,10 @@
-"""Contact cycles at the medians of the inputs (the means, where they are symmetric), for figures 4 and 11; a picture.
+"""Contact cycles at the medians of the inputs (the means, where they are symmetric), for figures 4
+and 11; a picture.
 
-In: inputs.csv.  Out: curves/nominal.h5 (groups <model>/closing|opening and load_<F nN>/closing|opening; nm,
-nN, nm^2), with inputs, seed, largest force and flags as attributes of the group of each curve; curves/spots.h5 (the
-surface and where the flat has reached it, on the closing to the largest force); curves/errors.csv (numerical errors).
-"""
+In: inputs.csv.  Out: curves/nominal.h5 (groups <model>/closing|opening and load_<F
+nN>/closing|opening; nm, nN, nm^2), with inputs, seed, largest force and flags as attributes of the
+group of each curve; curves/spots.h5 (the surface and where the flat has reached it, on the closing
+to the largest force); curves/errors.csv (numerical errors)."""
 
 from dataclasses import asdict
 
@@ -36,18 +37,35 @@ with job(snakemake) as run:
         }
         for branch, curve in (("closing", cycle.closing), ("opening", cycle.opening)):
             groups[f"{name}/{branch}"] = {
-                key: Dataset(values, *BRANCH_COLUMNS[key], ("separation_nm",)) for key, values in asdict(curve).items()
+                key: Dataset(values, *BRANCH_COLUMNS[key], ("separation_nm",))
+                for key, values in asdict(curve).items()
             }
     reading = {"cell_area_nm2": settings.length_nm**2, "contact": settings.model_dump(mode="json")}
     write_h5(snakemake.output.curves, groups, reading, run.provenance, attributes)
     spots = spots_under(inputs, settings, max(cycles, key=lambda pair: pair[0])[1])
     datasets = {
-        "towards_flat_nm": Dataset(spots.towards_flat_nm, "nm", "height towards the flat", ("x", "y")),
-        "step": Dataset(spots.step, "1", "first step at which the flat reaches the pixel; -1: never", ("x", "y")),
-        "separation_nm": Dataset(spots.separation_nm, "nm", "mean separation of the step", ("number",)),
+        "towards_flat_nm": Dataset(
+            spots.towards_flat_nm, "nm", "height towards the flat", ("x", "y")
+        ),
+        "step": Dataset(
+            spots.step, "1", "first step at which the flat reaches the pixel; -1: never", ("x", "y")
+        ),
+        "separation_nm": Dataset(
+            spots.separation_nm, "nm", "mean separation of the step", ("number",)
+        ),
         "repulsive_nN": Dataset(spots.repulsive_nN, "nN", "repulsive force", ("number",)),
         "asperities": Dataset(spots.asperities, "1", "asperities in contact", ("number",)),
-        "cut_share": Dataset(spots.cut_share, "1", "share of the area that the flat has reached", ("number",)),
+        "cut_share": Dataset(
+            spots.cut_share, "1", "share of the area that the flat has reached", ("number",)
+        ),
     }
-    write_h5(snakemake.output.spots, {"spots": datasets}, {"length_nm": settings.length_nm}, run.provenance)
-    write_csv(snakemake.output.errors, ({"stage": "contact", **row} for row in of_contact(inputs, settings)))
+    write_h5(
+        snakemake.output.spots,
+        {"spots": datasets},
+        {"length_nm": settings.length_nm},
+        run.provenance,
+    )
+    write_csv(
+        snakemake.output.errors,
+        ({"stage": "contact", **row} for row in of_contact(inputs, settings)),
+    )

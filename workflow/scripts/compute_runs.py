@@ -1,7 +1,7 @@
 """Compute a chunk of contact cycles of the collocation.
 
-In: inputs.csv.  Out: curves/runs/chunk_NNN.h5 (groups run_NNNN/closing and run_NNNN/opening; nm, nN, nm^2).
-"""
+In: inputs.csv.  Out: curves/runs/chunk_NNN.h5 (groups run_NNNN/closing and run_NNNN/opening; nm,
+nN, nm^2)."""
 
 from dataclasses import asdict
 
@@ -33,7 +33,8 @@ with job(snakemake) as run:
         }
         for branch, curve in (("closing", cycle.closing), ("opening", cycle.opening)):
             groups[f"{name}/{branch}"] = {
-                key: Dataset(values, *BRANCH_COLUMNS[key], ("separation_nm",)) for key, values in asdict(curve).items()
+                key: Dataset(values, *BRANCH_COLUMNS[key], ("separation_nm",))
+                for key, values in asdict(curve).items()
             }
     reading = {"cell_area_nm2": contact.length_nm**2, "contact": contact.model_dump(mode="json")}
     write_h5(snakemake.output[0], groups, reading, run.provenance, attributes)

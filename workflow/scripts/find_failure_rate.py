@@ -1,4 +1,5 @@
-"""Find how often the switch fails, down to one in a million, and what is allowed of hold voltage, film and spring.
+"""Find how often the switch fails, down to one in a million, and what is allowed of hold voltage,
+film and spring.
 
 In: inputs.csv, pad/model.h5.  Out: device/failure.json, device/failure.csv (V).
 """

@@ -1,8 +1,10 @@
 """Hardness of each closing run, or the reason why there is none; the fit to all of them.
 
-In:  curves, witnesses (GPa, nm) and summaries of the runs, glass/*.json, potential (YAML), material and, below films,
+In:  curves, witnesses (GPa, nm) and summaries of the runs, glass/*.json, potential (YAML), material
+and, below films,
      base_material (YAML); samples of H_macro (GPa) where the scene has a file of them.
-Out: points.csv (GPa, nm), fit.json (H_macro in GPa, H' in GPa nm^0.5, law of films, cut-off D0 of the attraction in nm,
+Out: points.csv (GPa, nm), fit.json (H_macro in GPa, H' in GPa nm^0.5, law of films, cut-off D0 of
+the attraction in nm,
      gate).
 """
 
@@ -22,15 +24,21 @@ with job(snakemake) as run:
     given, params = snakemake.input, snakemake.params
     summaries = {summary["run"]: summary for summary in map(load_json, given.summaries)}
     curves, witnesses = (
-        dict(zip(summaries, map(load_numbers, files), strict=True)) for files in (given.curves, given.witnesses)
+        dict(zip(summaries, map(load_numbers, files), strict=True))
+        for files in (given.curves, given.witnesses)
     )
-    rows = [point(curves[name], witnesses[name], summaries[name], params.potential) for name in summaries]
+    rows = [
+        point(curves[name], witnesses[name], summaries[name], params.potential)
+        for name in summaries
+    ]
     write_csv(snakemake.output.points, rows)
     points, glasses = load_csv(snakemake.output.points), [load_json(path) for path in given.glasses]
     area_error = calibrated(load_potential(given.potential))
     measured = load_material(given.material).part("oxide_glass").indentation_GPa
     if given.base_material:
-        area_error = max(area_error, load_material(given.base_material).part("film_base").area_error)
+        area_error = max(
+            area_error, load_material(given.base_material).part("film_base").area_error
+        )
         fit = fit_films(points, curves, glasses, area_error, params.energies, measured)
     else:
         row = settings_from_job(InputRow, params.h_macro)
@@ -41,7 +49,9 @@ with job(snakemake) as run:
     used = {
         point["run"]: int(point["seed"])
         for point in points
-        if point["status"] == "yield" and not point["film_nm"] and float(point["energy_scale"]) == 1.0
+        if point["status"] == "yield"
+        and not point["film_nm"]
+        and float(point["energy_scale"]) == 1.0
     }
     if cutoff := gap_cutoff({name: witnesses[name] for name in used}, used):
         fit["tops"] = cutoff.pop("runs")

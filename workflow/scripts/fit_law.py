@@ -1,8 +1,8 @@
-"""Fit the force-separation law to both branches of every curve, of the runs and of the nominal cycles.
+"""Fit the force-separation law to both branches of every curve, of the runs and of the nominal
+cycles.
 
-In: inputs.csv, curves/runs/chunk_NNN.h5, curves/nominal.h5 (nm, nN).
-Out: law/parameters.csv, one row per run and branch; law/nominal.csv, one row per nominal curve and branch.
-"""
+In: inputs.csv, curves/runs/chunk_NNN.h5, curves/nominal.h5 (nm, nN). Out: law/parameters.csv, one
+row per run and branch; law/nominal.csv, one row per nominal curve and branch."""
 
 from mesoscale.inputs.table import from_rows
 from mesoscale.law.branches import stored_rows
@@ -18,7 +18,10 @@ with job(snakemake) as run:
             attrs = attributes[name]
             head = {key: attrs[key] for key in ("run", "node", "seed")}
             values = {key: attrs[key] for key in names}
-            rows += [{**head, **row, **values} for row in stored_rows(curves, name, attrs, root["cell_area_nm2"])]
+            rows += [
+                {**head, **row, **values}
+                for row in stored_rows(curves, name, attrs, root["cell_area_nm2"])
+            ]
         run.progress((done + 1) / len(snakemake.input.chunks), "curves fitted")
     write_csv(snakemake.output.parameters, sorted(rows, key=lambda row: row["run"]))
 
@@ -26,5 +29,8 @@ with job(snakemake) as run:
     curves, root, attributes = load_h5(snakemake.input.nominal)
     for name in sorted({key.rpartition("/")[0] for key in curves if "/" in key}):
         about = {**root, **attributes.get(name, {})}
-        nominal += [{"curve": name, **row} for row in stored_rows(curves, name, about, float(about["cell_area_nm2"]))]
+        nominal += [
+            {"curve": name, **row}
+            for row in stored_rows(curves, name, about, float(about["cell_area_nm2"]))
+        ]
     write_csv(snakemake.output.nominal, nominal)

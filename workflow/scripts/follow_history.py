@@ -1,4 +1,5 @@
-"""Close and open surfaces again and again at the medians of the inputs, held closed under creep if asked.
+"""Close and open surfaces again and again at the medians of the inputs, held closed under creep if
+asked.
 
 In: inputs.csv.  Out: history/cycles.csv (nm, nN), history/dwell.csv (s, nm).
 """

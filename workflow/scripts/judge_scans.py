@@ -25,11 +25,19 @@ with job(snakemake) as run:
         groups |= part
         attributes |= described
     alike = copies(in_order(groups, attributes), attributes)
-    spectra = [trusted_record(name, data, attributes[name]) for name, data in groups.items() if name not in alike]
+    spectra = [
+        trusted_record(name, data, attributes[name])
+        for name, data in groups.items()
+        if name not in alike
+    ]
     scans = []
     for number, path in enumerate(snakemake.input.scans):
         measured = load_measurements(path, f"{number + 1:02d}_{Path(path).stem}", settings)
-        scans += [item.data for item in measured if has_square_pixels(item.data) and item.data.name not in alike]
+        scans += [
+            item.data
+            for item in measured
+            if has_square_pixels(item.data) and item.data.name not in alike
+        ]
     name = load_json(snakemake.input.parameters)["description"]["name"]
     values = medians(load_csv(snakemake.input.inputs))
     inputs, contact = contact_of(values, contact_settings(snakemake.params.contact, snakemake))

@@ -1,4 +1,6 @@
-"""Melt and quench one amorphous cell.  In: material file, cells before it.  Out: elastic/quenched/NAME.{xyz,csv}."""
+"""Melt and quench one amorphous cell.  In: material file, cells before it.  Out:
+elastic/quenched/NAME.{xyz,csv}.
+"""
 
 from pathlib import Path
 
@@ -17,6 +19,11 @@ with job(snakemake) as run:
     number = int(snakemake.wildcards.amorphous[1:])
     seed = int(np.random.SeedSequence([snakemake.params.seed, number]).generate_state(1)[0])
     others = {Path(path).stem: load_structure(path) for path in snakemake.input.others}
-    atoms, attempts = make_glass(material, settings, seed, Path(snakemake.params.work), run.progress, others)
-    write_csv(snakemake.output.attempts, [{"structure": snakemake.wildcards.amorphous, **row} for row in attempts])
+    atoms, attempts = make_glass(
+        material, settings, seed, Path(snakemake.params.work), run.progress, others
+    )
+    write_csv(
+        snakemake.output.attempts,
+        [{"structure": snakemake.wildcards.amorphous, **row} for row in attempts],
+    )
     write_text(snakemake.output.structure, structure_text(atoms))

@@ -1,6 +1,7 @@
 """Make a cell of what lies below a film: a metal is annealed, a glass is quenched.
 
-In:  material (YAML); glass (LAMMPS data file), of which so many `tiles` are as wide as the asperity.  Out: LAMMPS data
+In:  material (YAML); glass (LAMMPS data file), of which so many `tiles` are as wide as the
+asperity.  Out: LAMMPS data
      file, Å.
 """
 

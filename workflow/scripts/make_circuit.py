@@ -1,8 +1,7 @@
 """Make the switch for circuit simulators: central, corners and draws, and its slow C-V loop.
 
-In: inputs.csv, pad/model.h5.
-Out: device/circuit/*.sub and *.va, device/circuit.json, device/circuit.csv, device/loop.csv (fF, V).
-"""
+In: inputs.csv, pad/model.h5. Out: device/circuit/*.sub and *.va, device/circuit.json,
+device/circuit.csv, device/loop.csv (fF, V)."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -22,11 +21,17 @@ with job(snakemake) as run:
     central, errors = central_switch(points.device, pad.law)
     spread = spread_switches(model, points.table, points.on_grid, points.cutoffs_nm, errors.lumps)
     run.progress(0.5, "draws and corners")
-    write_csv(snakemake.output.loop, loops(central, [switch for switch in spread if not switch.row["deviations"]]))
+    write_csv(
+        snakemake.output.loop,
+        loops(central, [switch for switch in spread if not switch.row["deviations"]]),
+    )
     write_json(snakemake.output.summary, {"lumps": asdict(errors)}, run.provenance)
     write_csv(snakemake.output.table, [switch.row for switch in spread])
     for switch in (central, *spread):
-        lumps, path = lumps_of(switch.settings, errors.lumps), Path(snakemake.output.models) / switch.row["switch"]
+        lumps, path = (
+            lumps_of(switch.settings, errors.lumps),
+            Path(snakemake.output.models) / switch.row["switch"],
+        )
         netlist = spice_switch(lumps, errors, switch.law, pad.cells.count, switch.row["pull_in_V"])
         write_text(path.with_suffix(".sub"), netlist)
         write_text(path.with_suffix(".va"), verilog_lump(lumps, switch.law, pad.cells.count))

@@ -20,7 +20,9 @@ with job(snakemake) as run:
     settings = settings_from_job(GlassSettings, snakemake.params.glass)
     potential = load_potential(snakemake.input.potential)
     started = time.perf_counter()
-    glass = make_glass(material, potential, settings, seed, Path(snakemake.params.work), run.progress)
+    glass = make_glass(
+        material, potential, settings, seed, Path(snakemake.params.work), run.progress
+    )
     properties = glass_properties(material, potential, glass)
     with atomic_path(snakemake.output.atoms) as path:
         write_data(path, glass, potential.masses_u)

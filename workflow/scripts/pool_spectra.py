@@ -1,4 +1,5 @@
-"""Describe the surface behind all measurements: q0, q1, slope and RMS, one spectrum, and what random surfaces follow.
+"""Describe the surface behind all measurements: q0, q1, slope and RMS, one spectrum, and what
+random surfaces follow.
 
 In: topography/spectra/chunk_*.h5, truth.json for synthetic scans.
 Out: topography/spectra.h5 (figures 9 and 10), topography/parameters.json (1/nm, 1, nm).
@@ -38,7 +39,9 @@ with job(snakemake) as run:
         for group, content in curves.items()
     }
     for name, data in arrays.items():
-        groups[f"scans/{name}"] = {key: Dataset(data[key], *DATASETS[key]) for key in KEPT if key in data}
+        groups[f"scans/{name}"] = {
+            key: Dataset(data[key], *DATASETS[key]) for key in KEPT if key in data
+        }
     write_h5(
         snakemake.output.spectra,
         groups,
@@ -46,4 +49,6 @@ with job(snakemake) as run:
         run.provenance,
         {f"scans/{name}": values for name, values in attributes.items()},
     )
-    write_json(snakemake.output.parameters, parameters(pooled, attributes, settings, truth), run.provenance)
+    write_json(
+        snakemake.output.parameters, parameters(pooled, attributes, settings, truth), run.provenance
+    )

@@ -1,8 +1,7 @@
 """Press the pads of some points, and solve the switch on each.
 
-In: inputs.csv.  Out: pad/points/chunk_NNN.h5 (GPa against nm; V). Number 0 is the point at central inputs, whose job
-also writes report.html, as far as it is known then.
-"""
+In: inputs.csv.  Out: pad/points/chunk_NNN.h5 (GPa against nm; V). Number 0 is the point at central
+inputs, whose job also writes report.html, as far as it is known then."""
 
 from pathlib import Path
 
@@ -15,20 +14,32 @@ with job(snakemake) as run:
     points, pad = points_of_job(snakemake)
     numbers, solved, follows = range(*snakemake.params.bounds), {}, False
     if 0 in numbers:
-        solved[0] = solve_point(points.by_number[0], points.on_grid, pad.cells, surfaces_of(0), run.progress)
+        solved[0] = solve_point(
+            points.by_number[0], points.on_grid, pad.cells, surfaces_of(0), run.progress
+        )
         follows = pad.points > 0 and not solved[0].refused
-        run.say(f"at central inputs {solved[0].outcome}{'; its interval follows' if follows else ''}")
+        run.say(
+            f"at central inputs {solved[0].outcome}{'; its interval follows' if follows else ''}"
+        )
     else:
         asked = [(number, points.by_number[number]) for number in numbers]
-        for number, one in zip(numbers, solve_points(asked, points.on_grid, pad.point_cells), strict=True):
+        for number, one in zip(
+            numbers, solve_points(asked, points.on_grid, pad.point_cells), strict=True
+        ):
             solved[number] = one
             run.progress(len(solved) / len(numbers), f"{len(solved)} of {len(numbers)} points")
     write_solved(snakemake.output[0], solved, run.provenance)
-    if follows and snakemake.rule.endswith("press_pads"):  # not where a calibration presses pads of the prior
+    if follows and snakemake.rule.endswith(
+        "press_pads"
+    ):  # not where a calibration presses pads of the prior
         from workflow.report.early import early_page  # the other jobs draw nothing
 
         root, central = Path(snakemake.output[0]).parents[2], PadModel(solved[0], points.design, ())
-        spectra = [path.replace("parameters.json", "spectra.h5") for path in snakemake.input]  # of the same job
+        spectra = [
+            path.replace("parameters.json", "spectra.h5") for path in snakemake.input
+        ]  # of the same job
         files, area = sorted({*snakemake.input, *spectra}), points.contact.length_nm**2
-        write_text(root / "report.html", early_page(root, files, central, area, dict(snakemake.params)))
+        write_text(
+            root / "report.html", early_page(root, files, central, area, dict(snakemake.params))
+        )
         run.say(f"{root / 'report.html'} shows it, and at the end of the run its interval")

@@ -1,9 +1,8 @@
 """Propagate the inputs' uncertainty through the responses, validate these, and rank the inputs.
 
-In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, uq/direct/chunk_again.csv, the paper's Tables 2 and 3.
-Out: uq/outputs.csv (Table 2), uq/sensitivity.csv (Table 3), uq/surrogate.json, uq/samples.csv, uq/validation.csv,
-uq/law.csv (nm, GPa/nm, GPa).
-"""
+In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, uq/direct/chunk_again.csv, the paper's
+Tables 2 and 3. Out: uq/outputs.csv (Table 2), uq/sensitivity.csv (Table 3), uq/surrogate.json,
+uq/samples.csv, uq/validation.csv, uq/law.csv (nm, GPa/nm, GPa)."""
 
 import numpy as np
 
@@ -27,7 +26,9 @@ with job(snakemake) as run:
     paper = table2(paper_rows)
 
     direct = direct_runs_of_rows(
-        (row for path in snakemake.input.direct for row in load_csv(path)), table.names, settings.direct_runs
+        (row for path in snakemake.input.direct for row in load_csv(path)),
+        table.names,
+        settings.direct_runs,
     )
 
     result = propagate(nodes, table, settings, direct)
@@ -37,16 +38,26 @@ with job(snakemake) as run:
     constants = {"rho_a_nm": Law.rho_a_nm, "alpha_nm": Law.shield_nm, "most_GPa": most_GPa}
     write_json(snakemake.output.surrogate, surrogate_json(result, table, constants), run.provenance)
     names, values = [*table.names, *FITTED], np.hstack([result.samples, result.outputs])
-    write_csv(snakemake.output.samples, (dict(zip(names, line, strict=True)) for line in values.tolist()))
+    write_csv(
+        snakemake.output.samples, (dict(zip(names, line, strict=True)) for line in values.tolist())
+    )
     columns = dict(zip(names, values.T, strict=True))
     write_csv(snakemake.output.law, band_rows(columns))
 
     repeated = (row for path in snakemake.input.again for row in load_csv(path))
     again = direct_runs_of_rows(repeated, table.names, settings.direct_runs)[1]
-    write_csv(snakemake.output.validation, validation_rows(direct, table, result, settings, again, most_GPa))
+    write_csv(
+        snakemake.output.validation,
+        validation_rows(direct, table, result, settings, again, most_GPa),
+    )
 
     run.progress(0.5, "validated; ranks the inputs")
-    seeds_shares = np.array([row["seed_share"] for row in outputs], dtype=float)  # None is not a number
+    seeds_shares = np.array(
+        [row["seed_share"] for row in outputs], dtype=float
+    )  # None is not a number
     effects = load_csv(snakemake.input.table3)
     printed = table3(effects), table3(effects, as_printed=True)
-    write_csv(snakemake.output.sensitivity, sensitivity_rows(nodes, table, settings, seeds_shares, *printed, direct))
+    write_csv(
+        snakemake.output.sensitivity,
+        sensitivity_rows(nodes, table, settings, seeds_shares, *printed, direct),
+    )

@@ -1,8 +1,8 @@
-"""Write the report page from the result files of the scene's stages, and record what the run depends on.
+"""Write the report page from the result files of the scene's stages, and record what the run
+depends on.
 
-In: result files of all stages that the scene needs.
-Out: report.html, self-contained; scene.yaml with the resolved settings, package versions, git commit.
-"""
+In: result files of all stages that the scene needs. Out: report.html, self-contained; scene.yaml
+with the resolved settings, package versions, git commit."""
 
 import yaml
 
@@ -14,8 +14,15 @@ from workflow.run.job import job, own_commit, package_versions
 
 with job(snakemake) as run:
     scene, root = snakemake.params.scene, snakemake.params.root
-    record = {"scene": scene, "versions": package_versions(), "git_commit": own_commit(ROOT) or "not a git checkout"}
-    write_text(snakemake.output.record, yaml.safe_dump(record, sort_keys=False, allow_unicode=True, width=100))
+    record = {
+        "scene": scene,
+        "versions": package_versions(),
+        "git_commit": own_commit(ROOT) or "not a git checkout",
+    }
+    write_text(
+        snakemake.output.record,
+        yaml.safe_dump(record, sort_keys=False, allow_unicode=True, width=100),
+    )
     shown = [path for path in snakemake.input if path not in set(snakemake.input.style)]
     shown += [snakemake.output.record, *snakemake.params.studies]
     write_text(snakemake.output.page, render(Results(root, shown, scene["name"])))

@@ -1,6 +1,7 @@
 """Close one asperity against a flat.
 
-In:  material, potential (YAML), glass (LAMMPS data file); base (LAMMPS data file), base_material (YAML) where another
+In:  material, potential (YAML), glass (LAMMPS data file); base (LAMMPS data file), base_material
+(YAML) where another
      body lies below.
 Out: curve (GPa, nm), witness (bond exchanges, nm), summary.
 """
@@ -32,7 +33,15 @@ with job(snakemake) as run:
         base = below, load_data(cell, below.elements)
     started = time.perf_counter()
     closing = run_closing(
-        closing_run, material, glass, potential, settings, Path(snakemake.params.work), protocol, run.progress, base
+        closing_run,
+        material,
+        glass,
+        potential,
+        settings,
+        Path(snakemake.params.work),
+        protocol,
+        run.progress,
+        base,
     )
     lammps = resource.getrusage(resource.RUSAGE_CHILDREN)
     write_csv(snakemake.output.curve, closing.curve)

@@ -1,15 +1,20 @@
 """Sample the posterior of the inputs, given the scene's measurements.
 
-In: the tables of measurements, calibration/priors.csv, calibration/cycles/chunk_NNN.csv; with voltages of switches
-calibration/pads/chunk_NNN.h5 (GPa against nm; V).
-Out: calibration/posterior.json, samples.csv, summary.csv (prior and posterior of the inputs), predictive.csv (what the
-next surface and switch show).
-"""
+In: the tables of measurements, calibration/priors.csv, calibration/cycles/chunk_NNN.csv; with
+voltages of switches calibration/pads/chunk_NNN.h5 (GPa against nm; V). Out:
+calibration/posterior.json, samples.csv, summary.csv (prior and posterior of the inputs),
+predictive.csv (what the next surface and switch show)."""
 
 from mesoscale.calibration.measurements import load_measurements
 from mesoscale.calibration.observables import cycles_of_rows
 from mesoscale.calibration.posterior import Model, calibrate
-from mesoscale.calibration.summary import checks, posterior_json, predictive_rows, sample_rows, summary_rows
+from mesoscale.calibration.summary import (
+    checks,
+    posterior_json,
+    predictive_rows,
+    sample_rows,
+    summary_rows,
+)
 from mesoscale.calibration.voltages import fit_voltages
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import MeasurementsSettings

@@ -1,4 +1,6 @@
-"""E(V) of a crystal with both functionals.  In: its material.  Out: elastic/scans/NAME.csv (Å3, eV)."""
+"""E(V) of a crystal with both functionals.  In: its material.  Out: elastic/scans/NAME.csv (Å3,
+eV).
+"""
 
 from pathlib import Path
 

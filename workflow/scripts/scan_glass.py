@@ -1,7 +1,7 @@
 """Relax one amorphous cell by DFT and scan its E(V).
 
-In:  elastic/quenched/NAME.{xyz,csv}.  Out: elastic/structures/NAME.{xyz (Å),json}, elastic/scans/NAME.csv (Å3, eV).
-"""
+In:  elastic/quenched/NAME.{xyz,csv}.  Out: elastic/structures/NAME.{xyz (Å),json},
+elastic/scans/NAME.csv (Å3, eV)."""
 
 from pathlib import Path
 

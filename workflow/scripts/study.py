@@ -1,10 +1,10 @@
-"""Error of a stage against run time, one numerical choice at a time, or the stage in stiff and extreme cases.
+"""Error of a stage against run time, one numerical choice at a time, or the stage in stiff and
+extreme cases.
 
-In: of studies of pad, answer, circuit, failure and contact inputs.csv and pad/model.h5; of uncertainty inputs.csv and
-the direct runs; of topography nothing (synthetic scans with known truth); of hardness and elastic their materials, and
-what the stage made.
-Out: accuracy/STAGE.csv (s), stability/STAGE.csv.
-"""
+In: of studies of pad, answer, circuit, failure and contact inputs.csv and pad/model.h5; of
+uncertainty inputs.csv and the direct runs; of topography nothing (synthetic scans with known
+truth); of hardness and elastic their materials, and what the stage made. Out: accuracy/STAGE.csv
+(s), stability/STAGE.csv."""
 
 import shutil
 

@@ -1,1 +1,3 @@
-"""Contact of rough surfaces whose asperities carry load each on its own, as in the paper (docs/contact.md)."""
+"""Contact of rough surfaces whose asperities carry load each on its own, as in the paper
+(docs/contact.md).
+"""

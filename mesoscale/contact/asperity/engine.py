@@ -21,7 +21,11 @@ class AsperityContact(Contact):
     """A surface, its contacting sites and its asperities at the current separation."""
 
     def __init__(
-        self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
+        self,
+        surface: np.ndarray,
+        inputs: ContactInputs,
+        settings: ContactSettings,
+        numerics: Numerics = NUMERICS,
     ):
         super().__init__(surface, inputs, settings, numerics)
         self.mechanics = state.Mechanics(
@@ -104,16 +108,28 @@ class AsperityContact(Contact):
         if self.adhesion is None:
             return 0.0
         self.adhesion.take_out(self.changes)
-        self._sort_to(min(self.adhesion.near_nm - separation + 2.0 * self.adhesion.bin_width, self.highest))
+        self._sort_to(
+            min(self.adhesion.near_nm - separation + 2.0 * self.adhesion.bin_width, self.highest)
+        )
         force = self.adhesion.undeformed(
             self.heights, separation, self.order, self.order_heights, self.changes, self.changed
         )
-        return force if self.adhesion.menisci is None else force + self._liquid(self.adhesion, separation)
+        return (
+            force
+            if self.adhesion.menisci is None
+            else force + self._liquid(self.adhesion, separation)
+        )
 
     def _liquid(self, law: Attraction, separation: float) -> float:
         """What liquid adds to the attraction, nN."""
         far, edge = law.far_edge(law.near_nm, separation)
-        near = self.order if far == len(law.moments) else self.order[: np.searchsorted(self.order_heights, edge)]
+        near = (
+            self.order
+            if far == len(law.moments)
+            else self.order[: np.searchsorted(self.order_heights, edge)]
+        )
         moved = self.changes.sites[: self.changed_sites]
         gap = self.heights[np.concatenate((near[self.changed[near] == 0], moved))] + separation
-        return law.liquid(gap, np.ones_like(gap) if law.touching else (gap >= 0.0).astype(float), separation, far)
+        return law.liquid(
+            gap, np.ones_like(gap) if law.touching else (gap >= 0.0).astype(float), separation, far
+        )

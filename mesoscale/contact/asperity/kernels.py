@@ -1,4 +1,5 @@
-"""Compiled loops: which sites touch and belong together, asperities' forces, plastic flow (section 2.2).
+"""Compiled loops: which sites touch and belong together, asperities' forces, plastic flow (section
+2.2).
 
 A site touches where h < level, with level = -separation. Connected touching sites (periodic, 8
 neighbours) form an asperity. The set is kept up to date locally: sites that come into contact start
@@ -16,7 +17,9 @@ REACH = 3.0  # a flow ends 3 s2 away from the peak, at 1 % of the second Gaussia
 
 @njit(cache=True, inline="always")
 def site_curvature(height, north, south, west, east, spacing):
-    """Mean of the two profile curvatures at a site, 1/nm; positive at a minimum (eq. 2 as corrected)."""
+    """Mean of the two profile curvatures at a site, 1/nm; positive at a minimum (eq. 2 as
+    corrected).
+    """
     slope_x = (east - west) / (2.0 * spacing)
     slope_y = (south - north) / (2.0 * spacing)
     fx = 1.0 + slope_x * slope_x
@@ -57,9 +60,19 @@ def grow(asperities, heights, n, level, spacing, seed):
         west = -1 if col > 0 else n - 1
         east = 1 if col < n - 1 else 1 - n
         around[0], around[1], around[2], around[3] = north, south, site + west, site + east
-        around[4], around[5], around[6], around[7] = north + west, north + east, south + west, south + east
+        around[4], around[5], around[6], around[7] = (
+            north + west,
+            north + east,
+            south + west,
+            south + east,
+        )
         curvature += site_curvature(
-            height, heights[north], heights[south], heights[site + west], heights[site + east], spacing
+            height,
+            heights[north],
+            heights[south],
+            heights[site + west],
+            heights[site + east],
+            spacing,
         )
         for k in range(8):
             other = np.uint64(around[k])
@@ -128,7 +141,19 @@ def clear(asperities):
 
 
 @njit(cache=True)
-def touch(asperities, heights, n, level, spacing, order, start, stop, changed, changed_sites, changed_count):
+def touch(
+    asperities,
+    heights,
+    n,
+    level,
+    spacing,
+    order,
+    start,
+    stop,
+    changed,
+    changed_sites,
+    changed_count,
+):
     """Bring all sites below ``level`` into contact.
 
     Looks at ``order[start:stop]``, the sites whose original height lies between the last level and
@@ -150,9 +175,9 @@ def touch(asperities, heights, n, level, spacing, order, start, stop, changed, c
 def shape(asperities, number, level, mechanics):
     """Indentation, radius, area (nm, nm, nm^2) and whether the bound on R acts, of one asperity.
 
-    The radius is bounded so that no asperity is stiffer than a rigid flat punch of its own area,
-    R <= 9 A / (4 pi delta): sites of mean curvature <= 0 (flattened tops) have no radius of their own.
-    """
+    The radius is bounded so that no asperity is stiffer than a rigid flat punch of its own area, R
+    <= 9 A / (4 pi delta): sites of mean curvature <= 0 (flattened tops) have no radius of their
+    own."""
     count = asperities.sites[number]
     area = count * mechanics.site_area
     indentation = level - asperities.lowest[number]
@@ -187,8 +212,8 @@ def hardness(area, mechanics):
 def total_force(asperities, level, mechanics, capped):
     """Repulsive force; ``capped``: at most H A each (eq. 4).
 
-    Returns the force (nN), sites, asperities, bounds on R in use, and the largest F / (H A) before the cap.
-    """
+    Returns the force (nN), sites, asperities, bounds on R in use, and the largest F / (H A) before
+    the cap."""
     force = 0.0
     sites = 0
     alive = 0
@@ -228,9 +253,8 @@ def _gaussian(width, half, spacing, values):
 def _add_flow(heights, n, spacing, peak, amplitude, narrow, rule, changes, g1, g2):
     """Add amplitude * (G1 - c G2) around a peak, with c such that the sum over the grid is zero.
 
-    Return mapping: scaled so that the peak moves by exactly the amplitude. ``g1``, ``g2``: room for the two
-    Gaussians. Returns the patch's half-width.
-    """
+    Return mapping: scaled so that the peak moves by exactly the amplitude. ``g1``, ``g2``: room for
+    the two Gaussians. Returns the patch's half-width."""
     wide = rule.ratio * narrow
     half = min(int(np.ceil(REACH * wide / spacing)), (n - 1) // 2)
     balance = (_gaussian(narrow, half, spacing, g1) / _gaussian(wide, half, spacing, g2)) ** 2
@@ -285,11 +309,17 @@ def _add_flow(heights, n, spacing, peak, amplitude, narrow, rule, changes, g1, g
 
 @njit(cache=True)
 def _release(heights, n, level, peak, reach, asperities, seeds, waiting):
-    """Break up the asperities within ``reach`` of a peak; their touching sites wait to be joined again.
+    """Break up the asperities within ``reach`` of a peak; their touching sites wait to be joined
+    again.
 
     A waiting site has label -1. Returns the number of waiting sites.
     """
-    label, arena, firsts, counts = asperities.label, asperities.arena, asperities.first, asperities.sites
+    label, arena, firsts, counts = (
+        asperities.label,
+        asperities.arena,
+        asperities.first,
+        asperities.sites,
+    )
     width = 2 * reach + 1
     top = peak // n - reach
     left = peak % n - reach
@@ -307,7 +337,9 @@ def _release(heights, n, level, peak, reach, asperities, seeds, waiting):
             count = np.uint64(before_edge if part == 0 else width - before_edge)
             reached = 0
             for m in range(count):
-                reached += (label[origin + m] > 0) | ((label[origin + m] == 0) & (heights[origin + m] < level))
+                reached += (label[origin + m] > 0) | (
+                    (label[origin + m] == 0) & (heights[origin + m] < level)
+                )
             if reached == 0:
                 continue
             for m in range(count):
@@ -336,8 +368,8 @@ def _release(heights, n, level, peak, reach, asperities, seeds, waiting):
 def _find_yielding(heights, level, asperities, mechanics, rule, work, actives):
     """List the asperities above their hardness by the site of their peak; returns how many.
 
-    None yields where every site touches: flow keeps the volume, and there is nowhere left to flow to.
-    """
+    None yields where every site touches: flow keeps the volume, and there is nowhere left to flow
+    to."""
     yielding = 0
     for k in range(actives):
         number = work.active[k]
@@ -353,8 +385,11 @@ def _find_yielding(heights, level, asperities, mechanics, rule, work, actives):
         # the indentation at which eq. 3 gives the limit, R and A unchanged
         work.goal[yielding] = level - indentation * (ceiling / force) ** (2.0 / 3.0)
         work.margin[yielding] = rule.tolerance * indentation / 3.0
-        # no wider than the contact itself (flattened tops have no curvature), no narrower than the floor
-        work.width[yielding] = max(rule.floor, min(np.sqrt(rule.width * radius), np.sqrt(area / np.pi)))
+        # no wider than the contact itself (flattened tops have no curvature), no narrower than the
+        # floor
+        work.width[yielding] = max(
+            rule.floor, min(np.sqrt(rule.width * radius), np.sqrt(area / np.pi))
+        )
         yielding += 1
     return yielding
 
@@ -363,8 +398,8 @@ def _find_yielding(heights, level, asperities, mechanics, rule, work, actives):
 def _sites_to_raise(heights, asperities, number, goal, margin, work):
     """List the sites of an asperity that lie below a height, the lowest first; returns how many.
 
-    Depths are compared in whole margins, and among equals the site's number decides: rounding does not.
-    """
+    Depths are compared in whole margins, and among equals the site's number decides: rounding does
+    not."""
     first = asperities.first[number]
     count = asperities.sites[number]
     if count == 1:
@@ -390,9 +425,9 @@ def _sites_to_raise(heights, asperities, number, goal, margin, work):
 def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, work):
     """Let all yielding asperities flow, sweep after sweep, until none is above its hardness.
 
-    Fixed increments: one at each peak. Return mapping: one asperity after the other, by the number of
-    their lowest sites, each has all its sites raised to its goal, the lowest first.
-    Only asperities that flowed or whose sites or neighbours moved are looked at again.
+    Fixed increments: one at each peak. Return mapping: one asperity after the other, by the number
+    of their lowest sites, each has all its sites raised to its goal, the lowest first. Only
+    asperities that flowed or whose sites or neighbours moved are looked at again.
 
     Returns the sweeps done and whether no asperity is left above its hardness.
     """
@@ -413,21 +448,34 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
             low = 1
             work.low[0] = work.peak[k]
             if not rule.fixed:
-                low = _sites_to_raise(heights, asperities, work.yielding[k], goal - margin, margin, work)
+                low = _sites_to_raise(
+                    heights, asperities, work.yielding[k], goal - margin, margin, work
+                )
             for m in range(low):
                 site = work.low[m]
                 rise = rule.increment if rule.fixed else goal - heights[site]
                 if rise > margin:
                     work.site[flows] = site
                     work.half[flows] = _add_flow(
-                        heights, n, spacing, site, rise, work.width[k], rule, changes, work.narrow, work.wide
+                        heights,
+                        n,
+                        spacing,
+                        site,
+                        rise,
+                        work.width[k],
+                        rule,
+                        changes,
+                        work.narrow,
+                        work.wide,
                     )
                     flows += 1
         waiting = np.int64(0)  # else the callee is compiled for the number 0, too
         for k in range(flows):
             # one ring more than the flow: a site's curvature sees its neighbours
             reach = min(work.half[k] + 1, (n - 1) // 2)
-            waiting = _release(heights, n, level, work.site[k], reach, asperities, work.seeds, waiting)
+            waiting = _release(
+                heights, n, level, work.site[k], reach, asperities, work.seeds, waiting
+            )
         if asperities.used[1] > 2 * heights.size or asperities.used[0] > heights.size:
             compact(asperities)
         actives = np.int64(0)

@@ -1,4 +1,6 @@
-"""What a contact of single asperities consists of: its asperities, its constants, and room for the loops."""
+"""What a contact of single asperities consists of: its asperities, its constants, and room for the
+loops.
+"""
 
 from typing import NamedTuple
 
@@ -54,7 +56,8 @@ class Mechanics(NamedTuple):
     stiffness : p E*, GPa.
     hardness : hardness against area (eq. 4).
     site_area : area of a site, nm^2.
-    curvature_radius : radius from the mean curvature of an asperity's sites, else from its truncation.
+    curvature_radius : radius from the mean curvature of an asperity's sites, else from its
+        truncation.
     area_of_sites : area from the number of sites, else Hertz's.
     """
 
@@ -87,7 +90,8 @@ class FlowRule(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Lists that a sweep fills anew; preallocated because growing arrays are slow in compiled loops.
+    """Lists that a sweep fills anew; preallocated because growing arrays are slow in compiled
+    loops.
 
     Attributes
     ----------

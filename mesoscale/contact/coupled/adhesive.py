@@ -1,16 +1,17 @@
 """The coupled contact with an attraction that deforms it, and with the jumps that follow.
 
-The stress t on the surface is the pressure p of touching sites less the attraction s(g) of all sites, and the gap is
-g = h + d + G t >= 0. Where p > 0 the surfaces touch (g = 0), and t <= H. This is a minimum of the energy
+The stress t on the surface is the pressure p of touching sites less the attraction s(g) of all
+sites, and the gap is g = h + d + G t >= 0. Where p > 0 the surfaces touch (g = 0), and t <= H. This
+is a minimum of the energy
 
     E(g) = elastic energy + sum of W(g) a^2, with W' = s.
 
-W is concave, so it lies below its tangent. With s kept from the last gap the energy is a bound on E that is convex: the
-repulsive contact under given stresses, which the coupled engine solves. Its minimum has a lower E than the last gap
-(a convex-concave procedure, Yuille and Rangarajan, doi:10.1162/08997660360581958). The iteration therefore ends in a
-stable state next to the last one. Where the branch ends it goes on to the next, and the energy between is lost.
-Anderson's mixing (doi:10.1145/321296.321305) makes it faster; a mix that raises the energy is left out.
-"""
+W is concave, so it lies below its tangent. With s kept from the last gap the energy is a bound on E
+that is convex: the repulsive contact under given stresses, which the coupled engine solves. Its
+minimum has a lower E than the last gap (a convex-concave procedure, Yuille and Rangarajan,
+doi:10.1162/08997660360581958). The iteration therefore ends in a stable state next to the last one.
+Where the branch ends it goes on to the next, and the energy between is lost. Anderson's mixing
+(doi:10.1145/321296.321305) makes it faster; a mix that raises the energy is left out."""
 
 import math
 from collections import deque
@@ -57,28 +58,42 @@ class Pulled(NamedTuple):
 
 
 class AdhesiveContact(CoupledContact):
-    """A surface on an elastic half-space that attraction deforms, too, and its stresses at the current separation."""
+    """A surface on an elastic half-space that attraction deforms, too, and its stresses at the
+    current separation.
+    """
 
     REVERSIBLE = False
-    DENSE_TIMES_PIXELS = 2**20  # each step of the iteration solves anew, and needs no other sites for it
+    DENSE_TIMES_PIXELS = (
+        2**20
+    )  # each step of the iteration solves anew, and needs no other sites for it
     FORCE_TOLERANCE = 1e-4
     SMALLEST_STEP = 1e-4
     LONGEST_GUESS = math.inf  # but one step is taken at most
-    JUMP_STEP = 3e-3  # over the roughness: a step that jumps on the way to a separation is halved down to this
+    # over the roughness: a step that jumps on the way to a separation is halved down to this
+    JUMP_STEP = 3e-3
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
-    UNMOVED = 6e-4  # of D0: pressures that displace no site by more displace only the known ones until the next step
-    MIXED_PULL = 1e-3  # of the largest attraction: sites below are not mixed, energies of smaller steps not compared
+    # of D0: pressures that displace no site by more displace only the known ones until the next
+    # step
+    UNMOVED = 6e-4
+    # of the largest attraction: sites below are not mixed, energies of smaller steps not compared
+    MIXED_PULL = 1e-3
 
     def __init__(
-        self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
+        self,
+        surface: np.ndarray,
+        inputs: ContactInputs,
+        settings: ContactSettings,
+        numerics: Numerics = NUMERICS,
     ):
         super().__init__(surface, inputs, settings, numerics)
         self._check_range()
         self.unknown_work = numerics.unknown_work
         law, gap = self.adhesion, self.heights + self.touching_separation
-        self.parting = -0.5 * law.cutoff * law.deformed(gap, np.ones_like(gap)) if law else 0.0  # nN nm, roughly
+        self.parting = (
+            -0.5 * law.cutoff * law.deformed(gap, np.ones_like(gap)) if law else 0.0
+        )  # nN nm, roughly
 
     def _check_range(self) -> None:
         """Refuse an attraction that falls off so fast that single sites jump (InputError)."""
@@ -86,14 +101,16 @@ class AdhesiveContact(CoupledContact):
             return
         law = self.adhesion
         steepest = 3.0 * self.dispersion / law.cutoff
-        if law.menisci is not None:  # a site that fills must fall by less than the depth of the liquid
+        if (
+            law.menisci is not None
+        ):  # a site that fills must fall by less than the depth of the liquid
             steepest = max(steepest, law.menisci.pull_GPa / law.reach_nm)
         if steepest > self.stiffness:
             pixels = int(np.ceil(self.n * steepest / self.stiffness))
             raise InputError(
-                f"contact.mechanics = adhesive: the attraction changes by {steepest:.3g} GPa per nm, the grid resolves "
-                f"{self.stiffness:.3g} GPa per nm; take {advised_grid(pixels)}a larger contact.gap_cutoff_nm, or "
-                "mechanics: coupled"
+                f"contact.mechanics = adhesive: the attraction changes by {steepest:.3g} GPa per"
+                f" nm, the grid resolves {self.stiffness:.3g} GPa per nm; take"
+                f" {advised_grid(pixels)}a larger contact.gap_cutoff_nm, or mechanics: coupled"
             )
 
     def _forget(self) -> None:
@@ -108,7 +125,9 @@ class AdhesiveContact(CoupledContact):
     def dispersion(self) -> float:
         """Attraction of touching sites across air, GPa."""
         law = self.adhesion
-        return self.hamaker / (6.0 * np.pi) * float(inverse_cube(law.cutoff, law.rate)) if law else 0.0
+        return (
+            self.hamaker / (6.0 * np.pi) * float(inverse_cube(law.cutoff, law.rate)) if law else 0.0
+        )
 
     @property
     def strongest(self) -> float:
@@ -118,7 +137,9 @@ class AdhesiveContact(CoupledContact):
 
     @property
     def liquid_law(self) -> tuple[float, float]:
-        """Share of the dispersion that is left across the liquid, and Laplace's pressure in it, GPa; (1, 0): dry."""
+        """Share of the dispersion that is left across the liquid, and Laplace's pressure in it,
+        GPa; (1, 0): dry.
+        """
         menisci = self.adhesion.menisci if self.adhesion else None
         return (menisci.dispersion, menisci.pull_GPa) if menisci else (1.0, 0.0)
 
@@ -145,14 +166,17 @@ class AdhesiveContact(CoupledContact):
         self.now = self.now._replace(net=self.force + self.attraction(self.separation))
         loss, smooth = self._loss(with_flow)
         lost = self.saved[0].lost + (loss if loss > smooth else 0.0)
-        self.now = self.now._replace(lost=lost, energy=self.now.energy - (self.now.flowing if with_flow else 0.0))
+        self.now = self.now._replace(
+            lost=lost, energy=self.now.energy - (self.now.flowing if with_flow else 0.0)
+        )
 
     def _loss(self, with_flow: bool) -> tuple[float, float]:
-        """What the energy fell by in the last step beyond the work of its mean force, and how much a jump exceeds.
+        """What the energy fell by in the last step beyond the work of its mean force, and how much
+        a jump exceeds.
 
-        Both nN nm. Up to a third of abs(F2 - F1) step / 2 may be the curvature of F (a parabola), with either sign;
-        beyond half of it the contact has jumped. Flow loses energy by itself, so steps that flow tell nothing.
-        """
+        Both nN nm. Up to a third of abs(F2 - F1) step / 2 may be the curvature of F (a parabola),
+        with either sign; beyond half of it the contact has jumped. Flow loses energy by itself, so
+        steps that flow tell nothing."""
         was, now = self.saved[0], self.now
         step = now.separation - was.separation
         if not math.isfinite(step) or (with_flow and now.flowing > 0.0):
@@ -161,7 +185,9 @@ class AdhesiveContact(CoupledContact):
         return loss, 0.25 * abs((now.net - was.net) * step)
 
     def _expect(self, separation: float) -> None:
-        """Take the attraction, too, and the displacement by all stresses, or those on the way to an undone state."""
+        """Take the attraction, too, and the displacement by all stresses, or those on the way to an
+        undone state.
+        """
         super()._expect(separation)
         now, other, share = self.now, self.last, self._share(separation)
         if self.undone is not None and (towards := self._undone_share(separation)):
@@ -176,7 +202,9 @@ class AdhesiveContact(CoupledContact):
         return 0.0 if self._undone_share(separation) else min(super()._share(separation), 1.0)
 
     def _undone_share(self, separation: float) -> float:
-        """How far a separation is on the way to an undone state; 0 where there is none, or sites touch."""
+        """How far a separation is on the way to an undone state; 0 where there is none, or sites
+        touch.
+        """
         if self.undone is None or self.before.pressure.any():
             return 0.0
         whole = self.undone.separation - self.now.separation
@@ -195,22 +223,26 @@ class AdhesiveContact(CoupledContact):
         return moved.row(separation, self.attraction(separation))
 
     def way(self, separation: float) -> list[Row]:
-        """The same, in steps whose work is known to `Numerics.unknown_work`, and a jump as far as the forces beside it.
+        """The same, in steps whose work is known to `Numerics.unknown_work`, and a jump as far as
+        the forces beside it.
 
-        A peak of the force, or a jump amid a step, can leave just the loss that a smooth force has: then only the
-        change of the force tells that the step is too long.
-        """
+        A peak of the force, or a jump amid a step, can leave just the loss that a smooth force has:
+        then only the change of the force tells that the step is too long."""
         start, unsettled = self.separation, self.unsettled
         row = self.away(separation)
         unknown = max(map(abs, self._loss(self.flows and separation < start)))
-        if unknown > self.unknown_work * self.parting and abs(separation - start) > self.JUMP_STEP * self.rms:
+        if (
+            unknown > self.unknown_work * self.parting
+            and abs(separation - start) > self.JUMP_STEP * self.rms
+        ):
             self.back()
             self.unsettled = unsettled
             return self.way(0.5 * (start + separation)) + self.way(separation)
         return [row]
 
     def opened(self, separations: np.ndarray) -> np.ndarray:
-        """Repulsion and attraction (nN) on the way back over separations of a closing, shape (2, n).
+        """Repulsion and attraction (nN) on the way back over separations of a closing, shape (2,
+        n).
 
         The last separation is the present one; the contact is as before afterwards.
         """
@@ -233,7 +265,9 @@ class AdhesiveContact(CoupledContact):
         """Stress (GPa, compression positive) and gap (nm) of all sites, shapes (N, N)."""
         shape = (self.n, self.n)
         gap = np.maximum(self.heights + self.separation + self.now.moved, 0.0)
-        return (self.whole.spread(self.sites, self.pressure) - self.now.pull).reshape(shape), gap.reshape(shape)
+        return (self.whole.spread(self.sites, self.pressure) - self.now.pull).reshape(
+            shape
+        ), gap.reshape(shape)
 
     def filled_share(self, separation: float) -> float:
         """Share of the cell that liquid fills at the current separation."""
@@ -241,7 +275,9 @@ class AdhesiveContact(CoupledContact):
         return float(np.mean(np.maximum(self.heights + separation + self.now.moved, 0.0) < reach))
 
     def _bent(self, stress: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """Displacement (nm) by stresses (GPa), changed in place by what is added to the known sites."""
+        """Displacement (nm) by stresses (GPa), changed in place by what is added to the known
+        sites.
+        """
         stress[self.sites] += change
         return self.whole.displacement(stress) if stress.any() else stress
 
@@ -261,10 +297,11 @@ class AdhesiveContact(CoupledContact):
         return self._solve_rounds()[1]
 
     def _solve_rounds(self) -> tuple[int, bool]:
-        """Find the stresses; each step of the iteration is a round of hardness, too, until the clusters keep theirs.
+        """Find the stresses; each step of the iteration is a round of hardness, too, until the
+        clusters keep theirs.
 
-        The displacement follows from the pressures before and the attraction at hand. What the new pressures add is
-        known at the known sites; elsewhere a transform adds it unless it is small.
+        The displacement follows from the pressures before and the attraction at hand. What the new
+        pressures add is known at the known sites; elsewhere a transform adds it unless it is small.
         """
         law, strongest = self.adhesion, self.strongest
         changes = (self.CHANGE * strongest, self.MIXED_PULL * strongest)
@@ -277,13 +314,19 @@ class AdhesiveContact(CoupledContact):
             pressure, sites = self.pressure.copy(), self.sites
             shift = moved.copy()
             shift[sites] -= before
-            self.now, self.highest_shift = self.now._replace(pull=wanted, shift=shift), -float(shift.min())
+            self.now, self.highest_shift = (
+                self.now._replace(pull=wanted, shift=shift),
+                -float(shift.min()),
+            )
             settled = super()._solve()
             if self.sites is not sites:  # more can touch: once more, with what moves them
                 moved = self._bent(np.negative(wanted, dtype=np.float32), self.pressure)
                 before = self.displacement.copy()
                 continue
-            if np.abs(self.displacement - before).max(initial=0.0) > self.UNMOVED * self.settings.gap_cutoff_nm:
+            if (
+                np.abs(self.displacement - before).max(initial=0.0)
+                > self.UNMOVED * self.settings.gap_cutoff_nm
+            ):
                 moved += self._bent(np.zeros(moved.size, np.float32), self.pressure - pressure)
             before = self.displacement.copy()
             moved[sites] = shift[sites] + before
@@ -334,7 +377,9 @@ class AdhesiveContact(CoupledContact):
 
 
 def mix(steps: deque[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-    """Where the iteration tends to, from its last steps, pairs of what went in and what came out, shape (sites,)."""
+    """Where the iteration tends to, from its last steps, pairs of what went in and what came out,
+    shape (sites,).
+    """
     start, end = (np.array(arrays) for arrays in zip(*steps, strict=True))
     change = end - start
     shares = np.linalg.lstsq(np.diff(change, axis=0).T, change[-1], rcond=1e-8)[0]
@@ -345,14 +390,14 @@ def mix(steps: deque[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
 def attract(heights, separation, moved, pull, hamaker, walls, liquid, changes, reached):
     """Attraction (GPa) of the sites of a deformed surface, into `reached`.
 
-    The energy of flats s apart is -A_H / (12 pi s^2 (1 + c s)); within the least distance the attraction is constant.
-    Gaps below `reach` hold liquid: a share of that attraction, and a pressure (`liquid`).
+    The energy of flats s apart is -A_H / (12 pi s^2 (1 + c s)); within the least distance the
+    attraction is constant. Gaps below `reach` hold liquid: a share of that attraction, and a
+    pressure (`liquid`).
 
     Returns
     -------
-    Elastic and adhesive energy of the attraction, nN/nm, the sum of `reached`, GPa, and how many sites change by more
-    than each of two `changes` from `pull`.
-    """
+    Elastic and adhesive energy of the attraction, nN/nm, the sum of `reached`, GPa, and how many
+    sites change by more than each of two `changes` from `pull`."""
     strength, (least, offset, rate, reach) = hamaker / (6.0 * np.pi), walls
     (share, laplace), outer = liquid, max(reach, least) + offset
     edge = 0.5 * strength / (outer * outer * (1.0 + rate * outer))
@@ -367,7 +412,9 @@ def attract(heights, separation, moved, pull, hamaker, walls, liquid, changes, r
         parting += force * max(least - gap, 0.0)
         wet = gap < reach
         reached[k] = share * force + laplace if wet else force
-        energy -= share * parting + (1.0 - share) * edge + laplace * (reach - gap) if wet else parting
+        energy -= (
+            share * parting + (1.0 - share) * edge + laplace * (reach - gap) if wet else parting
+        )
         energy -= 0.5 * pull[k] * moved[k]
         total += reached[k]
         some += abs(reached[k] - pull[k]) > changes[0]

@@ -10,8 +10,8 @@ from mesoscale.contact.coupled.dense import wrapped
 def label(sites, place, pressure, pixels, number):
     """Number the clusters of connected sites under pressure, from 0; -1 for the sites apart.
 
-    `place` holds the position of each site of the cell in `sites`, or -1. Returns how many clusters there are.
-    """
+    `place` holds the position of each site of the cell in `sites`, or -1. Returns how many clusters
+    there are."""
     clusters = 0
     number[:] = -1
     waiting = np.empty(sites.size, np.int32)
@@ -27,7 +27,9 @@ def label(sites, place, pressure, pixels, number):
             row, col = site // pixels, site % pixels
             for rows in range(-1, 2):
                 for cols in range(-1, 2):
-                    other = place[wrapped(row + rows, pixels) * pixels + wrapped(col + cols, pixels)]
+                    other = place[
+                        wrapped(row + rows, pixels) * pixels + wrapped(col + cols, pixels)
+                    ]
                     if other >= 0 and number[other] < 0 and pressure[other] > 0.0:
                         number[other] = clusters
                         waiting[end] = other
@@ -53,7 +55,9 @@ def displace(table, scale, pixels, sites, pressure, others, displacement):
         total = 0.0
         for k in range(count):
             dr, dc = abs(row - rows[k]), abs(col - cols[k])
-            total += value[k] * table[np.uint64(min(dr, pixels - dr)), np.uint64(min(dc, pixels - dc))]
+            total += (
+                value[k] * table[np.uint64(min(dr, pixels - dr)), np.uint64(min(dc, pixels - dc))]
+            )
         displacement[m] += total
 
 
@@ -75,11 +79,12 @@ def _record(heights, site, changes):
 
 @njit(cache=True)
 def flatten(heights, sites, separation, displacement, pressure, limit, changes):
-    """Lower the sites at their hardness by their overlap (contact is at the minima, so their heights rise).
+    """Lower the sites at their hardness by their overlap (contact is at the minima, so their
+    heights rise).
 
-    What flows is left out of the surface. Up to E* tan(slope)/Y of some 30 the half-space around an indentation takes
-    its volume up by expanding elastically (K. L. Johnson, Contact Mechanics, 1985, section 6.3).
-    """
+    What flows is left out of the surface. Up to E* tan(slope)/Y of some 30 the half-space around an
+    indentation takes its volume up by expanding elastically (K. L. Johnson, Contact Mechanics,
+    1985, section 6.3)."""
     for k in range(sites.size):
         site = sites[k]
         gap = heights[site] + separation + displacement[k]

@@ -1,13 +1,13 @@
 """Pressures between bounds on a few thousand sites, by active sets; all compiled.
 
-The pressures p of the known sites make the gap g = g0 + G p complementary to 0 <= p <= limit: g >= 0 where p = 0,
-g = 0 between the bounds, g <= 0 where p = limit. This is a convex quadratic programme. A primal-dual active set, which
-is a semismooth Newton iteration (Hueeber and Wohlmuth, doi:10.1016/j.cma.2004.08.006), solves it with one linear
-system for the sites between the bounds at a time. Conjugate gradients solve this system, because they need some tens of
-products with a matrix whose factors cost as much as a hundred. These products are in single precision: each step starts
-from gaps in double precision, so that only the number of steps can suffer. `grid` holds the same for whole grids, and
-what takes over where the sets do not come to rest.
-"""
+The pressures p of the known sites make the gap g = g0 + G p complementary to 0 <= p <= limit: g >=
+0 where p = 0, g = 0 between the bounds, g <= 0 where p = limit. This is a convex quadratic
+programme. A primal-dual active set, which is a semismooth Newton iteration (Hueeber and Wohlmuth,
+doi:10.1016/j.cma.2004.08.006), solves it with one linear system for the sites between the bounds at
+a time. Conjugate gradients solve this system, because they need some tens of products with a matrix
+whose factors cost as much as a hundred. These products are in single precision: each step starts
+from gaps in double precision, so that only the number of steps can suffer. `grid` holds the same
+for whole grids, and what takes over where the sets do not come to rest."""
 
 import numpy as np
 from numba import njit
@@ -15,14 +15,17 @@ from numba import njit
 NEWTON_STEPS = 40
 FACE_STEPS = 1000
 FACE_SHARE = 1e-3
-# sums in any order, so that they run in parallel lanes; what compiled loops call is put into them (forceinline): each
-# library has a copy of its own, and which of them runs, and so the last digits, would depend on what was loaded first
+# sums in any order, so that they run in parallel lanes; what compiled loops call is put into them
+# (forceinline): each library has a copy of its own, and which of them runs, and so the last digits,
+# would depend on what was loaded first
 FAST = {"contract", "reassoc", "nsz"}
 
 
 @njit(cache=True, inline="always")
 def wrapped(index, pixels):
-    """A row or column of the cell that lies beyond its edge by less than a side: many times faster than a remainder."""
+    """A row or column of the cell that lies beyond its edge by less than a side: many times faster
+    than a remainder.
+    """
     return index + pixels if index < 0 else index - pixels if index >= pixels else index
 
 
@@ -48,7 +51,9 @@ def block(table, scale, sites, pixels):
 
 @njit(cache=True, fastmath=FAST, forceinline=True)
 def multiply(matrix, n, x, y):
-    """y = matrix[:n, :n] x for a symmetric matrix; its cost is that of the values of x that are not 0."""
+    """y = matrix[:n, :n] x for a symmetric matrix; its cost is that of the values of x that are not
+    0.
+    """
     y[:n] = 0.0
     for k in range(n):
         if x[k] != 0.0:
@@ -70,7 +75,9 @@ def _multiply_block(block, x, y):
 
 @njit(cache=True)
 def residual(gap, pressure, displacement, limit, stiffness, n):
-    """Largest abs(p - min(max(p - k g, 0), limit)) over the largest pressure: 0 where all conditions are met."""
+    """Largest abs(p - min(max(p - k g, 0), limit)) over the largest pressure: 0 where all
+    conditions are met.
+    """
     worst = 0.0
     largest = 0.0
     for k in range(n):
@@ -83,11 +90,12 @@ def residual(gap, pressure, displacement, limit, stiffness, n):
 
 @njit(cache=True)
 def classify(gap, pressure, displacement, limit, stiffness, n, state):
-    """Sort the sites into those apart (0), between the bounds (1) and at the limit (2); returns how many moved.
+    """Sort the sites into those apart (0), between the bounds (1) and at the limit (2); returns how
+    many moved.
 
-    From one bound to the other a site goes by way of the state between: where steps jump over it, all sites at the
-    limit can change places with those apart for ever (seen in second cycles, where whole tops yield again at once).
-    """
+    From one bound to the other a site goes by way of the state between: where steps jump over it,
+    all sites at the limit can change places with those apart for ever (seen in second cycles, where
+    whole tops yield again at once)."""
     moved = 0
     for k in range(n):
         open_gap = gap[k] + displacement[k]
@@ -108,7 +116,9 @@ def classify(gap, pressure, displacement, limit, stiffness, n, state):
 
 @njit(cache=True)
 def bind(pressure, limit, state, change, n):
-    """Put the sites apart and those at their limit on their bounds, the others between them; whether any changes."""
+    """Put the sites apart and those at their limit on their bounds, the others between them;
+    whether any changes.
+    """
     changed = False
     for k in range(n):
         new = min(max(pressure[k], 0.0), limit[k])
@@ -124,7 +134,8 @@ def bind(pressure, limit, state, change, n):
 
 @njit(cache=True)
 def neighbours(sites, place, pixels, places, number):
-    """Numbers of some sites and their neighbours, row by row of each three by three; -1 where one has none.
+    """Numbers of some sites and their neighbours, row by row of each three by three; -1 where one
+    has none.
 
     Parameters
     ----------
@@ -146,7 +157,9 @@ def neighbours(sites, place, pixels, places, number):
 
 @njit(cache=True, fastmath=FAST, forceinline=True)
 def stiffen(around, stencil, gap, pressure):
-    """Pressures from the gaps of some sites (`neighbours`) by `half_space.stiffness_between_neighbours`, flat."""
+    """Pressures from the gaps of some sites (`neighbours`) by
+    `half_space.stiffness_between_neighbours`, flat.
+    """
     for m in range(around.shape[0]):
         total = gap[around[m, 4]] * stencil[4]
         for j in range(9):
@@ -157,11 +170,11 @@ def stiffen(around, stencil, gap, pressure):
 
 @njit(cache=True)
 def close_gaps(block, around, stencil, gap, goal, share):
-    """Pressures that close the gaps of some sites, by conjugate gradients that `stiffen` preconditions.
+    """Pressures that close the gaps of some sites, by conjugate gradients that `stiffen`
+    preconditions.
 
-    Ends where the largest gap is below `goal`, or below a share of the first one: the next step goes on from
-    there, and the block need not be exact.
-    """
+    Ends where the largest gap is below `goal`, or below a share of the first one: the next step
+    goes on from there, and the block need not be exact."""
     x = np.zeros(gap.size)
     z = np.empty(gap.size)
     r = -gap
@@ -194,7 +207,8 @@ def solve(matrix, cell, gap, limit, tolerance, pressure, displacement):
     Parameters
     ----------
     matrix : (>= n, >= n), displacement of one site from the pressure on another, nm/GPa
-    cell : numbers of the n sites, position of each site of the cell among them or -1 (N^2,), sites a side (N), and
+    cell : numbers of the n sites, position of each site of the cell among them or -1 (N^2,), sites
+        a side (N), and
         `half_space.stiffness_between_neighbours`
     gap : (n,), gap of the undeformed surface, nm
     limit : (n,), largest pressures, GPa, may be infinite
@@ -235,7 +249,9 @@ def solve(matrix, cell, gap, limit, tolerance, pressure, displacement):
                 for j in range(count):
                     block[k, j] = matrix[free[k], free[j]]
         open_gap = gap[free] + displacement[free]
-        closed_gaps = close_gaps(block, around, stencil, open_gap, 0.1 * tolerance * largest / stiffness, FACE_SHARE)
+        closed_gaps = close_gaps(
+            block, around, stencil, open_gap, 0.1 * tolerance * largest / stiffness, FACE_SHARE
+        )
         change[:] = 0.0
         change[free] = closed_gaps
         pressure[free] += closed_gaps

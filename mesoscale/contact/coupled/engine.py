@@ -1,10 +1,10 @@
 """The contact of a rough surface with a flat where all asperities share one elastic half-space.
 
-The gap g = h + d + u holds the displacement u of a half-space of modulus E* under the pressure p; d is the separation
-of the mean planes. Where p = 0 the surfaces are apart (g >= 0), where 0 < p < H they touch (g = 0), and where p = H,
-the hardness, the surface yields (g <= 0). Unknown are only the sites that can touch: a force F raises the surface
-nowhere by more than F times the depth of the Green's function, so all sites higher than that are apart.
-"""
+The gap g = h + d + u holds the displacement u of a half-space of modulus E* under the pressure p; d
+is the separation of the mean planes. Where p = 0 the surfaces are apart (g >= 0), where 0 < p < H
+they touch (g = 0), and where p = H, the hardness, the surface yields (g <= 0). Unknown are only the
+sites that can touch: a force F raises the surface nowhere by more than F times the depth of the
+Green's function, so all sites higher than that are apart."""
 
 import math
 from functools import cached_property, partial
@@ -37,26 +37,35 @@ class CoupledContact(Contact):
     TOLERANCE = 1e-9  # aimed at, residual of the pressures over the largest one
     GRID_TOLERANCE = 5e-7  # the same where the whole grid is transformed: half the time of 1e-9
     SETTLED = 1e-6  # demanded
-    COARSER = 100.0  # tolerances to which pressures are solved while hardness still changes with the clusters
-    # Bounds of the sites that a dense matrix holds: over the pixels of a side, and times these. Beyond, transforms of
-    # the whole grid cost less: pads of 128^2 sites take 0.8 of the time with 4 or 8 per pixel instead of 16.
+    # tolerances to which pressures are solved while hardness still changes with the clusters
+    COARSER = 100.0
+    # Bounds of the sites that a dense matrix holds: over the pixels of a side, and times these.
+    # Beyond, transforms of the whole grid cost less: pads of 128^2 sites take 0.8 of the time with
+    # 4 or 8 per pixel instead of 16.
     DENSE_PER_PIXEL, DENSE_TIMES_PIXELS = 8, 2**18
     LONGEST_GUESS = 2.0  # over the last step: so far pressures are taken to go on as in it
-    # D0, and largest displacements: sites nearer than both count with their displacement in the attraction, the others
-    # without. Errs by at most 1.2 % at a single step (128^2 and 256^2, elastic and plastic, RMS 2 to 15 nm, to 10 MPa);
-    # without the second by 30 % on the roughest
+    # D0, and largest displacements: sites nearer than both count with their displacement in the
+    # attraction, the others without. Errs by at most 1.2 % at a single step (128^2 and 256^2,
+    # elastic and plastic, RMS 2 to 15 nm, to 10 MPa); without the second by 30 % on the roughest
     NEAR_CUTOFFS = 12.0
     NEAR_DISPLACEMENTS = 4.0
-    # share of the cell: so few sites near liquid count with their displacement. Where it fills more, its edge is far
-    # from most contacts, and the others err by at most 0.5 % (128^2 and 256^2, 20 nN to 20 uN, RMS 2 and 5 nm)
+    # share of the cell: so few sites near liquid count with their displacement. Where it fills
+    # more, its edge is far from most contacts, and the others err by at most 0.5 % (128^2 and
+    # 256^2, 20 nN to 20 uN, RMS 2 and 5 nm)
     NEAR_LIQUID = 0.1
-    TRANSFORM_PAIRS = 8  # pairs of sites for each of the cell that take as long as a transform there and back
+    TRANSFORM_PAIRS = (
+        8  # pairs of sites for each of the cell that take as long as a transform there and back
+    )
     AIMS_AT_END = True
     ROUNDS = 40
     FALLING_ROUNDS = 10  # from here on hardness may only fall, so that the rounds come to an end
 
     def __init__(
-        self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
+        self,
+        surface: np.ndarray,
+        inputs: ContactInputs,
+        settings: ContactSettings,
+        numerics: Numerics = NUMERICS,
     ):
         super().__init__(surface, inputs, settings, numerics)
         self.e_star = float(inputs.e_star)
@@ -65,9 +74,12 @@ class CoupledContact(Contact):
         self.table = half_space.influence(self.n, self.length, self.bodies)
         self.scale = self.length / self.e_star
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
-        # how far 1 nN raises the surface at most, anywhere: it does, because the mean of the displacement is 0
+        # how far 1 nN raises the surface at most, anywhere: it does, because the mean of the
+        # displacement is 0
         self.rise = -self.scale * float(self.table.min()) / self.site_area
-        self.dense = min(self.DENSE_PER_PIXEL * self.n, self.DENSE_TIMES_PIXELS // self.n, self.heights.size - 1)
+        self.dense = min(
+            self.DENSE_PER_PIXEL * self.n, self.DENSE_TIMES_PIXELS // self.n, self.heights.size - 1
+        )
         self.matrix = np.empty((0, 0))
         self.place = np.full(self.heights.size, -1, np.int32)
         self.mean = self.offset
@@ -97,9 +109,8 @@ class CoupledContact(Contact):
     def capacity(self) -> float:
         """Largest force (nN) to which the contact is followed.
 
-        Full elastic contact: there the separation of the mean planes is 0 and stays so. With a hardness,
-        `BEARING_SHARE` of what it carries on the whole cell if this is less.
-        """
+        Full elastic contact: there the separation of the mean planes is 0 and stays so. With a
+        hardness, `BEARING_SHARE` of what it carries on the whole cell if this is less."""
         full = (1.0 - 1e-6) * self.e_star * self.roughness.flattening * self.length**2
         if not (self.flows or self.capped):
             return full
@@ -145,7 +156,13 @@ class CoupledContact(Contact):
         number, count = self._clusters()
         if with_flow:
             clusters.flatten(
-                self.heights, self.sites, separation, self.displacement, self.pressure, self._bounds(), self.changes
+                self.heights,
+                self.sites,
+                separation,
+                self.displacement,
+                self.pressure,
+                self._bounds(),
+                self.changes,
             )
         touching = int(np.count_nonzero(number >= 0))
         hardness = self._hardness_of(number)
@@ -153,7 +170,9 @@ class CoupledContact(Contact):
         return State(self.force, touching, count, 0, load, rounds, settled, False)
 
     def _expect(self, separation: float) -> None:
-        """Take the pressures for those at a separation if they go on as in the last step: a first guess."""
+        """Take the pressures for those at a separation if they go on as in the last step: a first
+        guess.
+        """
         before, share = self.earlier, self._share(separation)
         if share:
             change = self.before.pressure.copy()
@@ -161,11 +180,17 @@ class CoupledContact(Contact):
             self.pressure += share * change
         if self.grid is not None:
             self.guessed = True
-            self.ahead = (share, before.field) if share and before.field is not None else (0.0, self.grid.field)
+            self.ahead = (
+                (share, before.field)
+                if share and before.field is not None
+                else (0.0, self.grid.field)
+            )
             self.displacement = self._expected_field(self.sites)
 
     def _share(self, separation: float) -> float:
-        """How far a first guess goes on as in the last step, over that step; 0 where it does not."""
+        """How far a first guess goes on as in the last step, over that step; 0 where it does
+        not.
+        """
         now, before = self.before, self.earlier
         last = now.separation - before.separation
         share = (separation - now.separation) / last if last and math.isfinite(last) else 0.0
@@ -178,7 +203,9 @@ class CoupledContact(Contact):
         return field + share * (field - before[sites]) if share else field
 
     def remarks(self) -> dict[str, float]:
-        """What says whether the model holds, for the flags of a cycle (`validity`); the contact as it is now."""
+        """What says whether the model holds, for the flags of a cycle (`validity`); the contact as
+        it is now.
+        """
         number, count = self._clusters()
         touching = number >= 0
         area = self.site_area * max(int(touching.sum()) / max(count, 1), 1.0)
@@ -188,14 +215,18 @@ class CoupledContact(Contact):
         return {
             "rms_slope": self.roughness.slope,
             "rms_curvature_per_nm": self.roughness.curvature,
-            "plasticity_index": self.modulus * self.roughness.slope / hardness if hardness > 0.0 else math.inf,
+            "plasticity_index": (
+                self.modulus * self.roughness.slope / hardness if hardness > 0.0 else math.inf
+            ),
             "yielded_share": yielded,
             **validity.adhesion_numbers(self.hamaker, self.settings, self.modulus, self.roughness),
         }
 
     @property
     def modulus(self) -> float:
-        """E* (GPa) of waves as short as the contacts are, h''/h': theirs where the bodies have layers."""
+        """E* (GPa) of waves as short as the contacts are, h''/h': theirs where the bodies have
+        layers.
+        """
         if not self.bodies or self.roughness.slope == 0.0:
             return self.e_star
         q = self.roughness.curvature / self.roughness.slope
@@ -224,20 +255,24 @@ class CoupledContact(Contact):
         return self.heights[self.sites] + self.separation
 
     def fields(self) -> tuple[np.ndarray, np.ndarray]:
-        """Pressure (GPa) and gap (nm; 0 in contact) of all sites at the current separation, shapes (N, N)."""
+        """Pressure (GPa) and gap (nm; 0 in contact) of all sites at the current separation, shapes
+        (N, N).
+        """
         pressure = self.whole.spread(self.sites, self.pressure.copy())
         displacement = self.whole.displacement(pressure)
-        gap = np.where(pressure > 0.0, 0.0, np.maximum(self.heights + self.separation + displacement, 0.0))
+        gap = np.where(
+            pressure > 0.0, 0.0, np.maximum(self.heights + self.separation + displacement, 0.0)
+        )
         return pressure.reshape(self.n, self.n), gap.reshape(self.n, self.n)
 
     def _solve_rounds(self) -> tuple[int, bool]:
         """Solve with the hardness of each cluster until the clusters are those it belongs to.
 
-        A larger cluster is softer and a softer one larger, so the rounds, which start from the clusters of the
-        separation before, mostly go one way. Attraction can hold clusters together that part once they are as soft as
-        one: then no state has the hardness of its clusters, and those that have touched in the last rounds keep the
-        lower one. Returns the rounds and whether they settled.
-        """
+        A larger cluster is softer and a softer one larger, so the rounds, which start from the
+        clusters of the separation before, mostly go one way. Attraction can hold clusters together
+        that part once they are as soft as one: then no state has the hardness of its clusters, and
+        those that have touched in the last rounds keep the lower one. Returns the rounds and
+        whether they settled."""
         for rounds in range(1, self.ROUNDS + 1):
             if not self.hardness.constant:
                 self._solve(self.COARSER)
@@ -249,7 +284,9 @@ class CoupledContact(Contact):
         return self.ROUNDS, False
 
     def _hardens(self, rounds: int) -> bool:
-        """Take the hardness of the clusters, after many rounds only a lower one; whether that changes any limit."""
+        """Take the hardness of the clusters, after many rounds only a lower one; whether that
+        changes any limit.
+        """
         wanted = self._hardness_of(self._clusters()[0])
         if rounds >= self.FALLING_ROUNDS:
             wanted = np.minimum(wanted, self.limit)
@@ -260,17 +297,25 @@ class CoupledContact(Contact):
         return True
 
     def _clusters(self) -> tuple[np.ndarray, int]:
-        """Number of the cluster of each known site, -1 where it is apart, and how many there are."""
+        """Number of the cluster of each known site, -1 where it is apart, and how many there
+        are.
+        """
         number = np.empty(self.sites.size, np.int32)
         return number, clusters.label(self.sites, self.place, self.pressure, self.n, number)
 
     def _hardness_of(self, number: np.ndarray) -> np.ndarray:
-        """Hardness (GPa) of the clusters, for each known site; for one apart that of a single site."""
-        sites = np.append(np.bincount(number[number >= 0]), 1)  # the last for those apart, number -1
+        """Hardness (GPa) of the clusters, for each known site; for one apart that of a single
+        site.
+        """
+        sites = np.append(
+            np.bincount(number[number >= 0]), 1
+        )  # the last for those apart, number -1
         return np.broadcast_to(self.hardness.pressure(self.site_area * sites), sites.shape)[number]
 
     def _solve(self, coarser: float = 1.0) -> bool:
-        """Find the pressures with the limits at hand, to so many tolerances; True if they settled."""
+        """Find the pressures with the limits at hand, to so many tolerances; True if they
+        settled.
+        """
         while True:
             self._know(self._pressed)
             gap, limit = self._open_gap(), self._bounds()
@@ -333,7 +378,10 @@ class CoupledContact(Contact):
             self.grid.split.forget()
             self.displacement = self.grid.displace(self.sites, self.pressure)
         sites, pressure = np.append(self.sites, new), np.append(self.pressure, np.zeros(new.size))
-        limit, displacement = np.append(self.limit, np.full(new.size, self._fresh_limit)), np.zeros(count)
+        limit, displacement = (
+            np.append(self.limit, np.full(new.size, self._fresh_limit)),
+            np.zeros(count),
+        )
         displacement[:old] = self.displacement
         if self.grid is not None:
             if self.guessed:
@@ -347,7 +395,9 @@ class CoupledContact(Contact):
         self.sites, self.pressure, self.limit, self.displacement = known
         self.place[self.sites] = np.arange(count, dtype=np.int32)
         if self.grid is None:
-            if self.matrix.size == 0:  # memory is touched only as sites come in; the odd length keeps cache lines apart
+            if (
+                self.matrix.size == 0
+            ):  # memory is touched only as sites come in; the odd length keeps cache lines apart
                 self.matrix = np.empty((self.dense, self.dense + 8))
             dense.extend(self.matrix, self.table, self.scale, self.sites, old, count, self.n)
 
@@ -369,14 +419,15 @@ class CoupledContact(Contact):
     def attraction(self, separation: float) -> float:
         """Attractive force in nN, negative (eq. 1), at the current separation or before contact.
 
-        The gap is the deformed one at sites whose undeformed gap is small; the others count undeformed, through the
-        histogram (`NEAR_CUTOFFS` states the error).
-        """
+        The gap is the deformed one at sites whose undeformed gap is small; the others count
+        undeformed, through the histogram (`NEAR_CUTOFFS` states the error)."""
         law = self.adhesion
         if law is None:
             return 0.0
         if self.grid is not None:
-            return law.around(self.heights, separation, self.grid.field, self.sites, self.place, self.pressure)
+            return law.around(
+                self.heights, separation, self.grid.field, self.sites, self.place, self.pressure
+            )
         known = self.sites.size
         raised = self.rise * self.force + 2.0 * law.bin_width
         moved = self.NEAR_DISPLACEMENTS * self.displacement.max(initial=0.0)
@@ -386,7 +437,11 @@ class CoupledContact(Contact):
         if self.force == 0.0 or law.share_before(wet) > self.NEAR_LIQUID:
             wet, wet_edge = far, edge
         self._sort_to(min(wet_edge + law.bin_width, self.highest))
-        count = int(np.searchsorted(self.order_heights, wet_edge)) if wet < len(law.moments) else self.heights.size
+        count = (
+            int(np.searchsorted(self.order_heights, wet_edge))
+            if wet < len(law.moments)
+            else self.heights.size
+        )
         sites = self.order[: max(count, known)]
         displacement = np.zeros(sites.size)
         if self.force > 0.0:
@@ -396,11 +451,15 @@ class CoupledContact(Contact):
         return law.deformed(gap, self._weight(sites[:count]), separation, wet)
 
     def _displace(self, others: np.ndarray, displacement: np.ndarray) -> None:
-        """Add the displacements (nm) of other sites by the pressures: of many pairs of sites by a transform."""
+        """Add the displacements (nm) of other sites by the pressures: of many pairs of sites by a
+        transform.
+        """
         if others.size * np.count_nonzero(self.pressure) > self.TRANSFORM_PAIRS * self.heights.size:
             displacement += self.whole.displacement_by(self.sites, self.pressure)[others]
             return
-        clusters.displace(self.table, self.scale, self.n, self.sites, self.pressure, others, displacement)
+        clusters.displace(
+            self.table, self.scale, self.n, self.sites, self.pressure, others, displacement
+        )
 
     def _weight(self, sites: np.ndarray) -> np.ndarray:
         touching = self.adhesion is not None and self.adhesion.touching

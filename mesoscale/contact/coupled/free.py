@@ -1,10 +1,10 @@
 """The coupled contact of a map that stands alone on an elastic half-space, with nothing beside it.
 
-The map lies in a corner of a periodic cell of at least twice its side, whose other sites are too low to touch. The
-half-space is free: its influences are those of Love for pressed squares (Johnson, Contact Mechanics, 1985, eq. 3.25),
-exact up to the side of the map, so that neighbouring cells do not count (Hockney; doi:10.1016/S0043-1648(99)00113-1).
-The displacement vanishes far away: the separation is that of the flat from the undeformed mean plane.
-"""
+The map lies in a corner of a periodic cell of at least twice its side, whose other sites are too
+low to touch. The half-space is free: its influences are those of Love for pressed squares (Johnson,
+Contact Mechanics, 1985, eq. 3.25), exact up to the side of the map, so that neighbouring cells do
+not count (Hockney; doi:10.1016/S0043-1648(99)00113-1). The displacement vanishes far away: the
+separation is that of the flat from the undeformed mean plane."""
 
 import math
 from functools import cached_property
@@ -27,7 +27,11 @@ class FreeContact(CoupledContact):
         pixels = 2 * side
         padded = np.full((pixels, pixels), float(surface.max()) + 10.0 * pixels * spacing)
         padded[: surface.shape[0], : surface.shape[1]] = surface
-        super().__init__(padded, inputs, settings.model_copy(update={"pixels": pixels, "length_nm": pixels * spacing}))
+        super().__init__(
+            padded,
+            inputs,
+            settings.model_copy(update={"pixels": pixels, "length_nm": pixels * spacing}),
+        )
         self.map_shape, self.rms = surface.shape, float(surface.std())
         self.table = free_influence(pixels)
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
@@ -40,7 +44,9 @@ class FreeContact(CoupledContact):
         return self.BEARING_SHARE * self.hardness.pressure(area) * area if self.flows else math.inf
 
     def fields(self) -> tuple[np.ndarray, np.ndarray]:
-        """Pressure (GPa) and gap (nm; 0 in contact) of the map at the current separation, shapes (nx, ny)."""
+        """Pressure (GPa) and gap (nm; 0 in contact) of the map at the current separation, shapes
+        (nx, ny).
+        """
         rows, columns = self.map_shape
         pressure, gap = (field[:rows, :columns] for field in super().fields())
         return pressure, gap
@@ -51,13 +57,16 @@ class FreeContact(CoupledContact):
         whole = super().whole
         whole.table = self.table
         distance = np.minimum(np.arange(self.n), self.n - np.arange(self.n))
-        whole.compliance = self.scale * np.real(np.asarray(fft.rfft2(self.table[np.ix_(distance, distance)])))
+        whole.compliance = self.scale * np.real(
+            np.asarray(fft.rfft2(self.table[np.ix_(distance, distance)]))
+        )
         whole.single_compliance = whole.compliance.astype(np.float32)
         return whole
 
 
 def free_influence(pixels: int) -> np.ndarray:
-    """Displacement (in L / E*) at sites 0 .. pixels/2 in x and y from a unit pressure on one site (in E*).
+    """Displacement (in L / E*) at sites 0 .. pixels/2 in x and y from a unit pressure on one site
+    (in E*).
 
     Shape (pixels // 2 + 1, pixels // 2 + 1), as `half_space.influence` of a periodic cell.
     """

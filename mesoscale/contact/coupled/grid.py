@@ -1,9 +1,10 @@
-"""Pressures between bounds where many sites can touch: active sets, with the half-space applied by FFT.
+"""Pressures between bounds where many sites can touch: active sets, with the half-space applied by
+FFT.
 
-The problem is that of `dense`. Here the linear system of each step is solved by conjugate gradients that are
-preconditioned with the stiffness of the half-space (Vollebregt, doi:10.1007/s10957-013-0433-z) between neighbours, or
-with their matrix where few sites are free. Steps are in single precision, which adds to the displacements; double
-precision has the last word.
+The problem is that of `dense`. Here the linear system of each step is solved by conjugate gradients
+that are preconditioned with the stiffness of the half-space (Vollebregt,
+doi:10.1007/s10957-013-0433-z) between neighbours, or with their matrix where few sites are free.
+Steps are in single precision, which adds to the displacements; double precision has the last word.
 """
 
 from collections.abc import Callable
@@ -21,14 +22,20 @@ NEWTON_STEPS = 60
 FACE_STEPS = 500
 GRADIENT_STEPS = 500
 SINGLE_SHARE = 1e-6  # single precision gets a linear system at least this far
-FACE_SHARE = 0.3  # each linear system is solved to this share of its first gap: the sets change before more pays
+# each linear system is solved to this share of its first gap: the sets change before more pays
+FACE_SHARE = 0.3
 SPLIT_ERROR = 2e-3  # of `Split`, roughly
-# of the pressures: larger changes are not followed by `Split` while hardness still changes, and more is not changed in
-# single precision, which errs by 2e-6 of what changes
+# of the pressures: larger changes are not followed by `Split` while hardness still changes, and
+# more is not changed in single precision, which errs by 2e-6 of what changes
 SMALL = 0.1
 COARSE = 1e-5  # tolerances beyond it need no displacements in double precision
-DIRECT, DIRECT_PER_PIXEL = 256, 2  # free sites up to which a linear system has a matrix; the same over pixels a side
-TABLE_SHARE = 1.5  # of the grid's sites: so many pairs of sites cost less by the table than a transform
+DIRECT, DIRECT_PER_PIXEL = (
+    256,
+    2,
+)  # free sites up to which a linear system has a matrix; the same over pixels a side
+TABLE_SHARE = (
+    1.5  # of the grid's sites: so many pairs of sites cost less by the table than a transform
+)
 
 Array = np.ndarray
 Apply = Callable[[Array], Array]
@@ -52,7 +59,11 @@ class Grid:
         self.field = np.zeros(pixels**2)
         self.rows = np.arange(pixels)
         nowhere = self.rows[:0]
-        self.located = nowhere, nowhere, nowhere  # the sites asked for last, their rows, and their places in these
+        self.located = (
+            nowhere,
+            nowhere,
+            nowhere,
+        )  # the sites asked for last, their rows, and their places in these
         self.room = np.empty(self.compliance.size, np.complex128)
         self.table = half_space.influence(pixels, length, bodies)
         self.drifted = False  # whether displacements at hand are by `split`
@@ -92,7 +103,9 @@ class Grid:
         return everywhere
 
     def _pressed(self, sites: Array, pressure: Array) -> tuple[Array, Array, Array]:
-        """Pressures of all sites in the rows of some, these rows, and where the sites are in them."""
+        """Pressures of all sites in the rows of some, these rows, and where the sites are in
+        them.
+        """
         if self.located[0] is not sites:
             rows, place = half_space.rows_of(sites // self.shape[1], self.shape[0])
             self.located = sites, rows, place * self.shape[1] + sites % self.shape[1]
@@ -102,7 +115,9 @@ class Grid:
         return everywhere, rows, place
 
     def displacement_at(self, sites: Array, pressure: Array) -> Array:
-        """Displacement (nm) of some sites by their pressures (GPa), in the precision of the pressures."""
+        """Displacement (nm) of some sites by their pressures (GPa), in the precision of the
+        pressures.
+        """
         everywhere, rows, place = self._pressed(sites, pressure)
         return self._between(everywhere, rows, rows)[place]
 
@@ -114,7 +129,11 @@ class Grid:
     def nearly(self, sites: Array, pressure: Array) -> Array:
         """The same in single precision, by `split` where it pays."""
         self.drifted = self.split.open
-        return self.split.displacement(pressure) if self.split.open else self.displacement_at(sites, pressure)
+        return (
+            self.split.displacement(pressure)
+            if self.split.open
+            else self.displacement_at(sites, pressure)
+        )
 
     def displace(self, sites: Array, pressure: Array) -> Array:
         """The same; that of all sites is kept in `field`, which nothing changes in place."""
@@ -123,12 +142,17 @@ class Grid:
         return self.field[sites]
 
     def follow(self, sites: Array, place: Array, pressure: Array, keep: bool) -> Array:
-        """The same from what `field` is under, by the change alone in single precision, where rounding allows it."""
+        """The same from what `field` is under, by the change alone in single precision, where
+        rounding allows it.
+        """
         before, pressed = self.under
         change = pressure.copy()
         change[place[before]] -= pressed
         size = np.abs(change)
-        largest, rounded = float(size.max()), self.rounded + float(size.sum()) / max(float(pressure.sum()), 1e-300)
+        largest, rounded = (
+            float(size.max()),
+            self.rounded + float(size.sum()) / max(float(pressure.sum()), 1e-300),
+        )
         if largest == 0.0 or (keep and rounded > SMALL):
             return self.displace(sites, pressure)
         self.drifted = False
@@ -153,7 +177,8 @@ def solve(
 ) -> tuple[int, bool]:
     """Find the pressures of n sites of a grid; the arguments are those of `dense.solve`.
 
-    Displacements are followed with an error until the sets are found, then corrected on the whole grid.
+    Displacements are followed with an error until the sets are found, then corrected on the whole
+    grid.
 
     Returns
     -------
@@ -163,11 +188,20 @@ def solve(
     state, numbers = np.full(gap.size, 1, np.int8), np.arange(gap.size)
     aim, coarse, error = tolerance, tolerance > COARSE, SPLIT_ERROR if grid.split.open else 0.0
     direct = min(max(DIRECT, DIRECT_PER_PIXEL * grid.shape[0]), grid.field.size - 1)
-    change, around, exact, corrected, solved = np.zeros(gap.size), np.empty((0, 9), np.int32), coarse, True, False
+    change, around, exact, corrected, solved = (
+        np.zeros(gap.size),
+        np.empty((0, 9), np.int32),
+        coarse,
+        True,
+        False,
+    )
     if grid.drifted and not coarse:
         displacement[:] = grid.follow(sites, place, pressure, False)
     for step in range(NEWTON_STEPS):
-        moved = dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0 or step == 0
+        moved = (
+            dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0
+            or step == 0
+        )
         worst = dense.residual(gap, pressure, displacement, limit, stiffness, gap.size)
         if corrected and not coarse:
             aim = max(tolerance, error * worst)
@@ -202,22 +236,38 @@ def solve(
             goal = 0.3 * aim * float(pressure.max()) / stiffness
             around = dense.neighbours(sites, place, grid.shape[0], places, numbers)
             share = FACE_SHARE if moved else 0.0
-            _close_gaps(grid, sites, state == 1, (around, stencil), gap, (pressure, displacement), goal, share)
-            if places.size == grid.field.size:  # a uniform pressure moves nothing: take the least, so that sets change
+            _close_gaps(
+                grid,
+                sites,
+                state == 1,
+                (around, stencil),
+                gap,
+                (pressure, displacement),
+                goal,
+                share,
+            )
+            if (
+                places.size == grid.field.size
+            ):  # a uniform pressure moves nothing: take the least, so that sets change
                 pressure -= pressure.min()
     displacement[:] = grid.displace(sites, pressure)
     return NEWTON_STEPS, False
 
 
-def _follow(grid: Grid, sites: Array, pressed: tuple[Array, Array], places: Array, displacement: Array) -> None:
-    """Add to the displacements of some of the sites what a change of the pressures (GPa) of all makes.
+def _follow(
+    grid: Grid, sites: Array, pressed: tuple[Array, Array], places: Array, displacement: Array
+) -> None:
+    """Add to the displacements of some of the sites what a change of the pressures (GPa) of all
+    makes.
 
-    Of few sites it is taken from the table, of many in single precision, by `Split` where the change is small.
-    """
+    Of few sites it is taken from the table, of many in single precision, by `Split` where the
+    change is small."""
     pressure, change = pressed
     size = np.abs(change)
     if np.count_nonzero(size) * places.size <= TABLE_SHARE * grid.field.size:
-        clusters.displace(grid.table, grid.scale, grid.shape[0], sites, change, sites[places], displacement)
+        clusters.displace(
+            grid.table, grid.scale, grid.shape[0], sites, change, sites[places], displacement
+        )
         return
     largest, small = float(size.max()), float(size.sum()) <= SMALL * float(pressure.sum())
     unit = (change / largest).astype(np.float32)
@@ -234,7 +284,8 @@ def _close_gaps(
     goal: float,
     share: float,
 ) -> None:
-    """Change the pressures of the free sites, and with them the displacements, so that the gaps there close.
+    """Change the pressures of the free sites, and with them the displacements, so that the gaps
+    there close.
 
     Both change in place. Single precision is three times as fast.
     """
@@ -286,13 +337,19 @@ def _advance(step, d, q, free, x, u, r):
 
 
 def project(
-    apply: Apply, norm: float, gap: Array, limit: Array, stiffness: float, tolerance: float, guess: Array
+    apply: Apply,
+    norm: float,
+    gap: Array,
+    limit: Array,
+    stiffness: float,
+    tolerance: float,
+    guess: Array,
 ) -> tuple[Array, Array, int, bool]:
-    """The same by modified proportioning with reduced gradient projections, which converges from any guess.
+    """The same by modified proportioning with reduced gradient projections, which converges from
+    any guess.
 
-    Dostal and Schoeberl, doi:10.1007/s10589-005-5395-6. `apply` makes displacements of pressures, `norm` bounds its
-    largest eigenvalue (nm/GPa).
-    """
+    Dostal and Schoeberl, doi:10.1007/s10589-005-5395-6. `apply` makes displacements of pressures,
+    `norm` bounds its largest eigenvalue (nm/GPa)."""
     fixed = 1.0 / norm
     pressure = np.clip(guess, 0.0, limit)
     displacement = apply(pressure)
@@ -306,7 +363,9 @@ def project(
         gradient = gap + displacement
         low, high = pressure <= 0.0, pressure >= limit
         free = np.where(low | high, 0.0, gradient)
-        chopped = np.where(low, np.minimum(gradient, 0.0), np.where(high, np.maximum(gradient, 0.0), 0.0))
+        chopped = np.where(
+            low, np.minimum(gradient, 0.0), np.where(high, np.maximum(gradient, 0.0), 0.0)
+        )
         # the part of the free gradient that a step of fixed length can follow
         reduced = np.clip(free, (pressure - limit) / fixed, pressure / fixed)
         if chopped @ chopped > free @ reduced:  # let sites off their bounds
@@ -321,7 +380,9 @@ def project(
         dq = float(d @ q)
         best = float(free @ d) / dq if dq > 0.0 else np.inf
         with np.errstate(divide="ignore", invalid="ignore"):
-            room = np.where(d > 0.0, pressure / d, np.where(d < 0.0, (pressure - limit) / d, np.inf))
+            room = np.where(
+                d > 0.0, pressure / d, np.where(d < 0.0, (pressure - limit) / d, np.inf)
+            )
         longest = float(room.min())
         if best <= longest:
             pressure = pressure - best * d

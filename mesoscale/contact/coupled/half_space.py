@@ -1,9 +1,9 @@
 """The elastic half-space under a periodic cell: its Green's function, as a table and by FFT.
 
-A pressure of wave vector q bends the surface by 2 / (E* abs(q)) times itself (K. L. Johnson, Contact Mechanics, 1985,
-section 13.2), times the softness of its layers (`layers`). The mean is left out: it shifts the half-space as a whole,
-and the separation of the mean planes is what is prescribed.
-"""
+A pressure of wave vector q bends the surface by 2 / (E* abs(q)) times itself (K. L. Johnson,
+Contact Mechanics, 1985, section 13.2), times the softness of its layers (`layers`). The mean is
+left out: it shifts the half-space as a whole, and the separation of the mean planes is what is
+prescribed."""
 
 from functools import lru_cache
 
@@ -18,12 +18,16 @@ BLOCK = 2**17  # sites whose rows are transformed at a time, so that they stay i
 
 def wave_numbers(pixels: int) -> np.ndarray:
     """abs(q) L / 2 pi of the modes of a real transform, shape (pixels, pixels // 2 + 1)."""
-    return np.hypot(np.fft.fftfreq(pixels, 1 / pixels)[:, None], np.fft.rfftfreq(pixels, 1 / pixels)[None, :])
+    return np.hypot(
+        np.fft.fftfreq(pixels, 1 / pixels)[:, None], np.fft.rfftfreq(pixels, 1 / pixels)[None, :]
+    )
 
 
 @lru_cache(maxsize=4)
 def softness(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarray:
-    """Compliance of all modes over that of the bases alone, shape (pixels, pixels // 2 + 1) or (); 1 for the mean."""
+    """Compliance of all modes over that of the bases alone, shape (pixels, pixels // 2 + 1) or ();
+    1 for the mean.
+    """
     if not bodies:
         return np.ones(())
     number = wave_numbers(pixels)
@@ -36,34 +40,45 @@ def softness(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarray
 
 @lru_cache(maxsize=4)
 def influence(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarray:
-    """Displacement (in L / E*) at sites 0 .. pixels/2 in x and y from a unit pressure on one site (in E*).
+    """Displacement (in L / E*) at sites 0 .. pixels/2 in x and y from a unit pressure on one site
+    (in E*).
 
     Shape (pixels // 2 + 1, pixels // 2 + 1); the rest of the cell follows by its symmetry.
     """
     half = pixels // 2 + 1
     number = wave_numbers(pixels)
     number[0, 0] = np.inf
-    table = np.asarray(fft.irfft2(softness(pixels, length, bodies) / number, s=(pixels, pixels))) / np.pi
+    table = (
+        np.asarray(fft.irfft2(softness(pixels, length, bodies) / number, s=(pixels, pixels)))
+        / np.pi
+    )
     table = np.ascontiguousarray(table[:half, :half])
     table.flags.writeable = False
     return table
 
 
 def convolve(
-    pressure: np.ndarray, rows: np.ndarray, compliance: np.ndarray, room: np.ndarray, wanted: np.ndarray
+    pressure: np.ndarray,
+    rows: np.ndarray,
+    compliance: np.ndarray,
+    room: np.ndarray,
+    wanted: np.ndarray,
 ) -> np.ndarray:
-    """Displacements (nm) of wanted rows of a cell by the pressures (GPa) on some rows, the others having none.
+    """Displacements (nm) of wanted rows of a cell by the pressures (GPa) on some rows, the others
+    having none.
 
-    Only these rows are transformed, and the columns in place. On 2048^2 sites this takes two thirds of the time of
-    `rfft2` and `irfft2` for all rows, and half for a quarter of them.
+    Only these rows are transformed, and the columns in place. On 2048^2 sites this takes two thirds
+    of the time of `rfft2` and `irfft2` for all rows, and half for a quarter of them.
 
     Parameters
     ----------
     pressure : (rows, N), single or double precision, as `compliance` (N, N // 2 + 1), nm/GPa
     rows, wanted : numbers of rows, rising
-    room : for the spectrum, as large as `compliance`, complex in double precision; its contents are lost
-    """
-    spectrum = room.view(np.result_type(pressure, np.complex64))[: compliance.size].reshape(compliance.shape)
+    room : for the spectrum, as large as `compliance`, complex in double precision; its contents are
+        lost"""
+    spectrum = room.view(np.result_type(pressure, np.complex64))[: compliance.size].reshape(
+        compliance.shape
+    )
     moved = np.empty((wanted.size, pressure.shape[1]), pressure.dtype)
     step = max(BLOCK // pressure.shape[1], 1)
     if rows.size < len(spectrum):
@@ -74,7 +89,9 @@ def convolve(
     spectrum *= compliance
     spectrum = np.asarray(fft.ifft(spectrum, axis=0, overwrite_x=True))
     for start in range(0, wanted.size, step):
-        moved[start : start + step] = fft.irfft(spectrum[wanted[start : start + step]], n=pressure.shape[1])
+        moved[start : start + step] = fft.irfft(
+            spectrum[wanted[start : start + step]], n=pressure.shape[1]
+        )
     return moved
 
 
@@ -85,11 +102,12 @@ def rows_of(row: np.ndarray, pixels: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def stiffness_between_neighbours(table: np.ndarray) -> np.ndarray:
-    """Pressures (E* / L) on a site and the eight around it that move this site alone by 1, row by row, shape (9,).
+    """Pressures (E* / L) on a site and the eight around it that move this site alone by 1, row by
+    row, shape (9,).
 
-    The stiffness of the half-space falls off with the third power of the distance. So these precondition a contact
-    nearly as well as the stiffness of all sites: 11 to 16 steps to 1e-6 for 10 to 15, at 1 to 75 % contact.
-    """
+    The stiffness of the half-space falls off with the third power of the distance. So these
+    precondition a contact nearly as well as the stiffness of all sites: 11 to 16 steps to 1e-6 for
+    10 to 15, at 1 to 75 % contact."""
     row, col = np.divmod(np.arange(9), 3)
     between = table[np.abs(row[:, None] - row), np.abs(col[:, None] - col)]
     return np.linalg.inv(between)[4]

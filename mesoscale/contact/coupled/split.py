@@ -1,9 +1,9 @@
 """Influences of some sites of a half-space on each other, without a transform of the whole grid.
 
-The Green's function is split as in an Ewald sum. A table has its short range, 1/q times erf(q s), which falls off with
-the distance r as exp(-r^2 / 4 s^2). Transforms of a coarser grid have the rest, between cubic splines around the sites
-(the particle-mesh method of Essmann et al., doi:10.1063/1.470117).
-"""
+The Green's function is split as in an Ewald sum. A table has its short range, 1/q times erf(q s),
+which falls off with the distance r as exp(-r^2 / 4 s^2). Transforms of a coarser grid have the
+rest, between cubic splines around the sites (the particle-mesh method of Essmann et al.,
+doi:10.1063/1.470117)."""
 
 import math
 
@@ -16,7 +16,9 @@ from mesoscale.contact.coupled import dense, half_space
 
 COARSER = 3  # sites for each of the coarser grid
 WIDTH = 0.7  # s over the distance of coarse sites
-REACH = 7  # sites: farther ones have no short range; with these three displacements err by some 1e-3 of the largest
+# sites: farther ones have no short range; with these three displacements err by some 1e-3 of the
+# largest
+REACH = 7
 PAIRS_PER_SITE = 2  # of the whole grid: more pairs of near sites cost more than its transform
 
 Array = np.ndarray
@@ -31,23 +33,32 @@ class Split:
     """
 
     def __init__(self, compliance: Array, scale: float):
-        """Take the compliance (nm/GPa) of the modes of a grid, shape (N, N // 2 + 1), and L / E* (nm/GPa)."""
+        """Take the compliance (nm/GPa) of the modes of a grid, shape (N, N // 2 + 1), and L / E*
+        (nm/GPa).
+        """
         self.pixels = pixels = len(compliance)
         self.coarse: int = fft.next_fast_len(max(pixels // COARSER, 4), real=True)  # pyright: ignore[reportAttributeAccessIssue]
         narrow = 2.0 * math.pi * WIDTH / self.coarse
         short = compliance * erf(narrow * half_space.wave_numbers(pixels))
         short[0, 0] = 2.0 * scale * narrow / math.pi**1.5  # the limit of small q
-        self.table = np.asarray(fft.irfft2(short, s=(pixels, pixels)))[: REACH + 1, : REACH + 1].astype(np.float32)
+        self.table = np.asarray(fft.irfft2(short, s=(pixels, pixels)))[
+            : REACH + 1, : REACH + 1
+        ].astype(np.float32)
         modes = np.fft.fftfreq(self.coarse, 1 / self.coarse).astype(int)
-        spline = ((2.0 + np.cos(2.0 * np.pi * modes / self.coarse)) / 3.0) ** 2 * (pixels / self.coarse)
-        kept = modes[: self.coarse // 2 + 1]
-        self.rest = ((compliance - short)[modes][:, np.abs(kept)] / spline[:, None] / spline[: kept.size]).astype(
-            np.float32
+        spline = ((2.0 + np.cos(2.0 * np.pi * modes / self.coarse)) / 3.0) ** 2 * (
+            pixels / self.coarse
         )
+        kept = modes[: self.coarse // 2 + 1]
+        self.rest = (
+            (compliance - short)[modes][:, np.abs(kept)] / spline[:, None] / spline[: kept.size]
+        ).astype(np.float32)
         at = np.arange(pixels) * (self.coarse / pixels)
         self.nodes = ((at.astype(int)[:, None] + np.arange(4)) % self.coarse).astype(np.int32)
         x = (at % 1.0)[:, None]
-        weights = np.hstack([(1 - x) ** 3, 3 * x**3 - 6 * x**2 + 4, 3 * (x + x**2 - x**3) + 1, x**3]) / 6.0
+        weights = (
+            np.hstack([(1 - x) ** 3, 3 * x**3 - 6 * x**2 + 4, 3 * (x + x**2 - x**3) + 1, x**3])
+            / 6.0
+        )
         self.weights = weights.astype(np.float32)
         self.room = np.empty(self.rest.size, np.complex128)
         self.others = np.empty(PAIRS_PER_SITE * pixels**2, np.int32)
@@ -60,31 +71,58 @@ class Split:
         self.rows, self.cols = np.empty((2, 0), np.int32)
 
     def know(self, sites: Array, place: Array) -> bool:
-        """Take in further sites at the end of the known ones; whether there are few enough pairs."""
+        """Take in further sites at the end of the known ones; whether there are few enough
+        pairs.
+        """
         old, new = self.rows.size, sites.size - self.rows.size
         if self.open and new:
-            self.rows, self.cols = (index.astype(np.int32) for index in np.divmod(sites, self.pixels))
-            self.coarse_rows, places = half_space.rows_of(self.nodes[self.rows].ravel(), self.coarse)
+            self.rows, self.cols = (
+                index.astype(np.int32) for index in np.divmod(sites, self.pixels)
+            )
+            self.coarse_rows, places = half_space.rows_of(
+                self.nodes[self.rows].ravel(), self.coarse
+            )
             self.row_nodes = places.reshape(-1, 4).astype(np.int32)
             self.first = np.append(self.first, np.zeros(new, np.int64))
             self.open = pair(
-                self.rows, self.cols, place, self.pixels, self.table, old, self.first, self.others, self.values
+                self.rows,
+                self.cols,
+                place,
+                self.pixels,
+                self.table,
+                old,
+                self.first,
+                self.others,
+                self.values,
             )
         return self.open
 
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) of the known sites by their pressures (GPa), in single precision."""
-        coarse, moved = np.zeros((self.coarse_rows.size, self.coarse), np.float32), np.empty_like(pressure)
+        coarse, moved = (
+            np.zeros((self.coarse_rows.size, self.coarse), np.float32),
+            np.empty_like(pressure),
+        )
         around = (self.rows, self.cols, self.row_nodes, self.nodes, self.weights)
         spread(around, pressure, coarse)
-        coarse = half_space.convolve(coarse, self.coarse_rows, self.rest, self.room, self.coarse_rows)
-        gather(around, coarse, (self.first, self.others, self.values, self.table[0, 0]), pressure, moved)
+        coarse = half_space.convolve(
+            coarse, self.coarse_rows, self.rest, self.room, self.coarse_rows
+        )
+        gather(
+            around,
+            coarse,
+            (self.first, self.others, self.values, self.table[0, 0]),
+            pressure,
+            moved,
+        )
         return moved
 
 
 @njit(cache=True)
 def pair(rows, cols, place, pixels, table, old, first, others, values):
-    """List the earlier sites near each of the sites from `old` on; False where there are too many."""
+    """List the earlier sites near each of the sites from `old` on; False where there are too
+    many.
+    """
     reach = table.shape[0] - 1
     end = first[old]
     for k in range(old, rows.size):
@@ -103,7 +141,9 @@ def pair(rows, cols, place, pixels, table, old, first, others, values):
 
 @njit(cache=True, fastmath=dense.FAST)
 def spread(around, pressure, coarse):
-    """Add the pressures of sites to the coarse sites around them; `coarse` has the rows in which these lie."""
+    """Add the pressures of sites to the coarse sites around them; `coarse` has the rows in which
+    these lie.
+    """
     rows, cols, row_nodes, nodes, weights = around
     for k in range(pressure.size):
         if pressure[k] != 0.0:
@@ -115,7 +155,9 @@ def spread(around, pressure, coarse):
 
 @njit(cache=True, fastmath=dense.FAST)
 def gather(around, coarse, pairs, pressure, moved):
-    """Displacements of sites from those of the coarse sites around them, and from the pairs of near sites."""
+    """Displacements of sites from those of the coarse sites around them, and from the pairs of near
+    sites.
+    """
     rows, cols, row_nodes, nodes, weights = around
     first, others, values, itself = pairs
     for k in range(moved.size):
@@ -123,7 +165,11 @@ def gather(around, coarse, pairs, pressure, moved):
         total = itself * here
         for i in range(4):
             for j in range(4):
-                total += coarse[row_nodes[k, i], nodes[cols[k], j]] * weights[rows[k], i] * weights[cols[k], j]
+                total += (
+                    coarse[row_nodes[k, i], nodes[cols[k], j]]
+                    * weights[rows[k], i]
+                    * weights[cols[k], j]
+                )
         for m in range(first[k], first[k + 1]):
             total += values[m] * pressure[others[m]]
             moved[others[m]] += values[m] * here

@@ -1,1 +1,3 @@
-"""What the measurements say about the surface: its spectrum, its heights, and the parameters in use."""
+"""What the measurements say about the surface: its spectrum, its heights, and the parameters in
+use.
+"""

@@ -1,4 +1,6 @@
-"""The spectrum of one measurement on bands of log q, and what its mean square height holds besides."""
+"""The spectrum of one measurement on bands of log q, and what its mean square height holds
+besides.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -40,16 +42,19 @@ def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 @dataclass(frozen=True)
 class Seen:
-    """Which waves a levelled measurement has in its mean square height, and which of these its bands have, too.
+    """Which waves a levelled measurement has in its mean square height, and which of these its
+    bands have, too.
 
-    Surfaces of C ~ q^-1 to q^-4 without a plateau hold, levelled by a plane, the waves from 0.63 to 0.81 a side on; so
-    do lines (Brownian ones from 0.76 on). A parabola takes waves 1.3 times as short with it.
+    Surfaces of C ~ q^-1 to q^-4 without a plateau hold, levelled by a plane, the waves from 0.63 to
+    0.81 a side on; so do lines (Brownian ones from 0.76 on). A parabola takes waves 1.3 times as
+    short with it.
 
     Attributes
     ----------
     length_nm : side of a map, or length of a line.
     parabola : it was levelled by one.
-    line : of a line only the waves along it count, from which those across it are seen as longer ones.
+    line : of a line only the waves along it count, from which those across it are seen as longer
+        ones.
     low, high : ends of the waves in its bands, 1/nm.
     in_bands_nm2 : their mean square height as its window sees them.
     """
@@ -68,15 +73,20 @@ class Seen:
 
     @property
     def common(self) -> float:
-        """Share of the chance in the bands that is in the mean square, too: 1 over the variance that a window adds.
+        """Share of the chance in the bands that is in the mean square, too: 1 over the variance
+        that a window adds.
 
-        Of a window w it is <w^2>^2 / <w^4>: 18/35 for Hann's, once a side, and `COVER` for the tapers of a line.
-        """
+        Of a window w it is <w^2>^2 / <w^4>: 18/35 for Hann's, once a side, and `COVER` for the
+        tapers of a line."""
         return COVER if self.line else (18 / 35) ** 2
 
     def share(self, q: np.ndarray, first: float | None = None) -> np.ndarray:
         """Part of the isotropic waves at q (m,) in 1/nm, all at least the first."""
-        return 2 / np.pi * np.arccos(np.minimum((first or self.first) / q, 1.0)) if self.line else np.ones_like(q)
+        return (
+            2 / np.pi * np.arccos(np.minimum((first or self.first) / q, 1.0))
+            if self.line
+            else np.ones_like(q)
+        )
 
     def share_in_bands(self, q: np.ndarray) -> np.ndarray:
         """Part of the isotropic waves at q (m,) in 1/nm that is in the bands."""
@@ -106,7 +116,9 @@ def at_points(points: np.ndarray, q: np.ndarray, values: np.ndarray) -> np.ndarr
 
 
 def seen_by(item: TrustedSpectrum) -> Seen | None:
-    """Which waves the levelled heights of a measurement have; None where its size or its bands are not known."""
+    """Which waves the levelled heights of a measurement have; None where its size or its bands are
+    not known.
+    """
     line = item.line is not None
     length_nm = 2 * np.pi / item.spectrum.spacing if line else item.side_nm
     numbers, level, _ = on_bands(item)
@@ -114,6 +126,12 @@ def seen_by(item: TrustedSpectrum) -> Seen | None:
         return None
     width = np.log(10) / BANDS_PER_DECADE
     q = 10 ** ((numbers + 0.5) / BANDS_PER_DECADE)
-    seen = Seen(length_nm, item.parabola, line, float(q[0] * np.exp(-width / 2)), float(q[-1] * np.exp(width / 2)))
+    seen = Seen(
+        length_nm,
+        item.parabola,
+        line,
+        float(q[0] * np.exp(-width / 2)),
+        float(q[-1] * np.exp(width / 2)),
+    )
     square = float(np.sum(2 * np.pi * q**2 * np.exp(level) * seen.share_in_bands(q)) * width)
     return replace(seen, in_bands_nm2=square)

@@ -1,9 +1,10 @@
-"""The side of the cells that the contact is computed on: what measurements see of it, and what the device has room for.
+"""The side of the cells that the contact is computed on: what measurements see of it, and what the
+device has room for.
 
-A cell holds the shortest waves that were measured several times, and as much of the film's RMS height as its grid and
-the electrode allow: cells without the long waves release too early (`python -m evidence pad.cell_side`). Waves shorter
-than the measured ones are an assumption, and its effect is stated.
-"""
+A cell holds the shortest waves that were measured several times, and as much of the film's RMS
+height as its grid and the electrode allow: cells without the long waves release too early (`python
+-m evidence pad.cell_side`). Waves shorter than the measured ones are an assumption, and its effect
+is stated."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -28,7 +29,8 @@ HELD = 0.9
 
 
 def suited_cell(spectra: Sequence[TrustedSpectrum], electrode_nm: float = math.inf) -> float:
-    """Side (nm) of cells: eight of the shortest measured waves, at least the usual, at most the electrode's.
+    """Side (nm) of cells: eight of the shortest measured waves, at least the usual, at most the
+    electrode's.
 
     Parameters
     ----------
@@ -41,9 +43,9 @@ def suited_cell(spectra: Sequence[TrustedSpectrum], electrode_nm: float = math.i
     finest, seen = _shortest_wave(spectra)
     if electrode_nm < FINEST_WAVES * seen:
         raise InputError(
-            f"topography: the shortest wave that {finest} shows is {seen:.3g} nm long, and the electrode has a side of "
-            f"{electrode_nm:.3g} nm (device), so that no roughness below it was measured; measure on a finer scale, or "
-            "correct the size of the device"
+            f"topography: the shortest wave that {finest} shows is {seen:.3g} nm long, and the"
+            f" electrode has a side of {electrode_nm:.3g} nm (device), so that no roughness below"
+            " it was measured; measure on a finer scale, or correct the size of the device"
         )
     return min(max(ContactSettings().length_nm, float(f"{SUITED_WAVES * seen:.2g}")), electrode_nm)
 
@@ -51,7 +53,8 @@ def suited_cell(spectra: Sequence[TrustedSpectrum], electrode_nm: float = math.i
 def grown_cell(
     side_nm: float, held: Callable[[float], float], shortest_nm: float, pixels: int, room_nm: float
 ) -> float:
-    """The side (nm), doubled until a cell holds `HELD` of the RMS height, as far as grid and electrode go along.
+    """The side (nm), doubled until a cell holds `HELD` of the RMS height, as far as grid and
+    electrode go along.
 
     Parameters
     ----------
@@ -69,11 +72,15 @@ def grown_cell(
 
 
 def cell_waves(cell_nm: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Wave vectors (1/nm) of a periodic cell, the area (1/nm^2) that each stands for, and where an integral takes over.
+    """Wave vectors (1/nm) of a periodic cell, the area (1/nm^2) that each stands for, and where an
+    integral takes over.
 
     The mean plane counts as one more wave of the longest: the spectrum of the film is flat there.
     """
-    step, summed = 2.0 * np.pi / cell_nm, 16  # beyond, sum and integral differ by less than a per cent
+    step, summed = (
+        2.0 * np.pi / cell_nm,
+        16,
+    )  # beyond, sum and integral differ by less than a per cent
     numbers = np.arange(-summed, summed + 1)
     squared, count = np.unique(numbers[:, None] ** 2 + numbers**2, return_counts=True)
     inside = squared <= summed**2
@@ -84,17 +91,22 @@ def mean_square_of_cells(one: OneSpectrum, psd: np.ndarray, cell_nm: float) -> n
     """Mean square height (nm^2) of cells by spectra (..., m) on the bands of `one`."""
     waves, areas, end = cell_waves(cell_nm)
     logs, known = np.log(psd).reshape(-1, len(one.q)), waves <= one.q[-1]
-    summed = [np.exp(np.interp(np.log(waves[known]), np.log(one.q), row)) @ areas[known] for row in logs]
+    summed = [
+        np.exp(np.interp(np.log(waves[known]), np.log(one.q), row)) @ areas[known] for row in logs
+    ]
     return np.reshape(summed, psd.shape[:-1]) + one.moment(0, low=end, psd=psd) + one.tail(psd)
 
 
-def share_on_cells(topography: Topography, one: OneSpectrum | None, cell_nm: float) -> tuple[float, float]:
-    """Share that cells have of the mean square height (nm^2) of all measured waves, and that mean square.
+def share_on_cells(
+    topography: Topography, one: OneSpectrum | None, cell_nm: float
+) -> tuple[float, float]:
+    """Share that cells have of the mean square height (nm^2) of all measured waves, and that mean
+    square.
 
     Parameters
     ----------
-    one : the measured spectrum, where it is used; None: eq. 9, flat beyond the longest wave of a cell.
-    """
+    one : the measured spectrum, where it is used; None: eq. 9, flat beyond the longest wave of a
+        cell."""
     if one is not None:
         whole = float(one.moment(0, low=one.seen, psd=one.psd) + one.tail(one.psd))
         return float(mean_square_of_cells(one, one.psd, cell_nm)) / whole, whole
@@ -105,14 +117,19 @@ def share_on_cells(topography: Topography, one: OneSpectrum | None, cell_nm: flo
     if fitted.q0 >= 2.0 * np.pi / cell_nm:
         return 1.0, all_of_it
     waves, areas, end = cell_waves(cell_nm)
-    whole, summed = (mean_square(1.0, fitted.q0, fitted.slope, high) for high in (topography.cutoff, end))
-    areas = np.where(waves <= topography.cutoff, areas, 0.0)  # a coarse film ends before the sum does
+    whole, summed = (
+        mean_square(1.0, fitted.q0, fitted.slope, high) for high in (topography.cutoff, end)
+    )
+    areas = np.where(
+        waves <= topography.cutoff, areas, 0.0
+    )  # a coarse film ends before the sum does
     share = ((waves / fitted.q0) ** -fitted.slope @ areas + max(whole - summed, 0.0)) / whole
     return float(share), all_of_it
 
 
 def refuse_coarse_measurements(spectra: Sequence[TrustedSpectrum], cell_nm: float) -> None:
-    """Refuse measurements that see next to no wave of a cell, before surfaces are made of what nobody saw.
+    """Refuse measurements that see next to no wave of a cell, before surfaces are made of what
+    nobody saw.
 
     Raises
     ------
@@ -121,10 +138,10 @@ def refuse_coarse_measurements(spectra: Sequence[TrustedSpectrum], cell_nm: floa
     finest, seen = _shortest_wave(spectra)
     if cell_nm < FINEST_WAVES * seen:
         raise InputError(
-            f"topography: the shortest wave that {finest} shows is {seen:.3g} nm long, so that a cell of "
-            f"contact.length_nm = {cell_nm:g} holds next to none that was measured; measure on a finer scale, or set "
-            f"contact.length_nm to {SUITED_WAVES * seen:.2g} or more (leave it out: it is chosen) for the contact of "
-            "the scales that were measured"
+            f"topography: the shortest wave that {finest} shows is {seen:.3g} nm long, so that a"
+            f" cell of contact.length_nm = {cell_nm:g} holds next to none that was measured;"
+            f" measure on a finer scale, or set contact.length_nm to {SUITED_WAVES * seen:.2g} or"
+            " more (leave it out: it is chosen) for the contact of the scales that were measured"
         )
 
 
@@ -144,32 +161,48 @@ def finer_waves_doubt(
     effects = []
     for last in (end, 10.0 * end):
         q = np.geomspace(step, last, 400)
-        rms, slope = (float(np.sqrt(np.trapezoid(2 * np.pi * q**power * psd(q), q))) for power in (1, 3))
+        rms, slope = (
+            float(np.sqrt(np.trapezoid(2 * np.pi * q**power * psd(q), q))) for power in (1, 3)
+        )
         surfaces = (synthesize_spectrum(256, cell_nm, psd, rms, seed, last) for seed in range(8))
         effects.append((slope, float(np.mean([heights.max() for heights in surfaces]))))
     (cut_slope, cut_nm), (slope, contact_nm) = effects
     text = (
-        f"cells of {cell_nm:g} nm are computed; the shortest wave that was measured is {seen:.3g} nm long ({finest}); "
-        f"if the spectrum went on for a decade, the RMS slope would be {slope:.2g} instead of {cut_slope:.2g}, and "
-        f"cells would touch at {contact_nm:.3g} instead of {cut_nm:.3g} nm"
+        f"cells of {cell_nm:g} nm are computed; the shortest wave that was measured is {seen:.3g}"
+        f" nm long ({finest}); if the spectrum went on for a decade, the RMS slope would be"
+        f" {slope:.2g} instead of {cut_slope:.2g}, and cells would touch at {contact_nm:.3g}"
+        f" instead of {cut_nm:.3g} nm"
     )
-    remedy = "the answer is that of the scales measured; measure finer ones, or end the surfaces there (inputs.q1)"
+    remedy = (
+        "the answer is that of the scales measured; measure finer ones, or end the surfaces there"
+        " (inputs.q1)"
+    )
     return [Doubt("finer_waves", text, remedy, "contact")]
 
 
-def rms_in_cells(heights: np.ndarray, lengths_nm: Sequence[float], cell_nm: float) -> tuple[float, float] | None:
-    """RMS height (nm) of levelled heights, a map or a line, within cells of a side, without and with their noise.
+def rms_in_cells(
+    heights: np.ndarray, lengths_nm: Sequence[float], cell_nm: float
+) -> tuple[float, float] | None:
+    """RMS height (nm) of levelled heights, a map or a line, within cells of a side, without and
+    with their noise.
 
-    Noise is at most what neighbouring points differ by. None where a cell has next to no points. A measurement smaller
-    than the cell is taken as a whole.
-    """
-    sides = [round(n * cell_nm / length) for n, length in zip(heights.shape, lengths_nm, strict=True)]
+    Noise is at most what neighbouring points differ by. None where a cell has next to no points. A
+    measurement smaller than the cell is taken as a whole."""
+    sides = [
+        round(n * cell_nm / length) for n, length in zip(heights.shape, lengths_nm, strict=True)
+    ]
     if min(sides) < 4:
         return None
     for axis, side in enumerate(sides):
         count = max(heights.shape[axis] // side, 1)
-        heights = np.stack(np.split(np.take(heights, range(min(count * side, heights.shape[axis])), axis), count, axis))
-        heights = np.moveaxis(heights, 0, -1)  # cells behind, so that the axes of a cell keep their places
+        heights = np.stack(
+            np.split(
+                np.take(heights, range(min(count * side, heights.shape[axis])), axis), count, axis
+            )
+        )
+        heights = np.moveaxis(
+            heights, 0, -1
+        )  # cells behind, so that the axes of a cell keep their places
     inside = tuple(range(len(sides)))
     square = float(np.mean(np.var(heights, axis=inside)))
     noise = 0.5 * float(np.mean(np.diff(heights, axis=0) ** 2))
@@ -179,7 +212,8 @@ def rms_in_cells(heights: np.ndarray, lengths_nm: Sequence[float], cell_nm: floa
 def unlike_measured(
     rms_nm: float, measured: Mapping[str, tuple[np.ndarray, Sequence[float]]], cell_nm: float
 ) -> list[Doubt]:
-    """A doubt that stops, where cells get less than half or more than twice the RMS height that measurements have.
+    """A doubt that stops, where cells get less than half or more than twice the RMS height that
+    measurements have.
 
     Parameters
     ----------
@@ -193,14 +227,17 @@ def unlike_measured(
     if 0.5 * low <= rms_nm <= 2.0 * high:
         return []
     text = (
-        f"cells of {cell_nm:g} nm would get an RMS height of {rms_nm:.3g} nm; on that length the measurements have "
-        f"{low:.3g} to {high:.3g} nm"
+        f"cells of {cell_nm:g} nm would get an RMS height of {rms_nm:.3g} nm; on that length the"
+        f" measurements have {low:.3g} to {high:.3g} nm"
     )
-    remedy = "measure an area that is larger than a cell, or set contact.length_nm to at most the size of the largest"
+    remedy = (
+        "measure an area that is larger than a cell, or set contact.length_nm to at most the size"
+        " of the largest"
+    )
     if any(min(lengths) > cell_nm for _, lengths in measured.values()):
         remedy = (
-            "look for steps, particles or pits, which no random surface has, and crop them; if they belong to it, set "
-            "topography.on_doubt to warn"
+            "look for steps, particles or pits, which no random surface has, and crop them; if they"
+            " belong to it, set topography.on_doubt to warn"
         )
     return [Doubt("rms_unlike_measured", text, remedy, "rms", fatal=True)]
 
@@ -210,8 +247,9 @@ def unseen_doubt(rms: Mapping[str, float], longest: float, cell_nm: float) -> li
     if cell_nm <= 1.05 * longest:
         return []
     text = (
-        f"cells of {cell_nm:g} nm are computed, and the largest measurement has {longest:.4g} nm; longer waves are a "
-        f"guess, which makes the RMS height of a cell {rms['a']:.3g} to {rms.get('b', rms['a']):.3g} nm"
+        f"cells of {cell_nm:g} nm are computed, and the largest measurement has {longest:.4g} nm;"
+        f" longer waves are a guess, which makes the RMS height of a cell {rms['a']:.3g} to"
+        f" {rms.get('b', rms['a']):.3g} nm"
     )
     return [Doubt("unseen_waves", text, "measure a larger area", "rms")]
 

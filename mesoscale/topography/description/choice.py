@@ -12,32 +12,62 @@ from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import HeightTest, not_gaussian
 from mesoscale.topography.description.one_spectrum import OneSpectrum
 from mesoscale.topography.description.parameters import Topography
-from mesoscale.topography.measurements.cleaning import FORM_TAKEN, LINES_CUT, MANY_SPIKES, MARKED, STAND_INS
+from mesoscale.topography.measurements.cleaning import (
+    FORM_TAKEN,
+    LINES_CUT,
+    MANY_SPIKES,
+    MARKED,
+    STAND_INS,
+)
 from mesoscale.topography.measurements.profiles import OVERHANG, THERE_AND_BACK
 
 DESCRIPTIONS = {
     "power_law": "plateau and power law of eq. 9, normal heights",
     "measured_spectrum": "the measured spectrum with its band, normal heights",
-    "measured_heights": "the measured spectrum with its band, and the measured distribution of heights",
+    "measured_heights": (
+        "the measured spectrum with its band, and the measured distribution of heights"
+    ),
 }
 
 
 STEPS_TO_TELL = {
-    FORM_TAKEN: ("form", "if this is roughness, set topography.detrend to plane, and measure a larger area"),
+    FORM_TAKEN: (
+        "form",
+        "if this is roughness, set topography.detrend to plane, and measure a larger area",
+    ),
     LINES_CUT: ("aborted_scan", "measure the whole area again"),
     THERE_AND_BACK: ("there_and_back", "give one of both directions a file"),
-    OVERHANG: ("overhang", "the contact is on top: nothing to do where the heights are seen from above"),
-    MARKED: ("marked_pixels", "if these pixels are wrong, replace them by data of their surroundings, and save again"),
-    STAND_INS: ("missing_points", "they were filled from their neighbours: if they are heights, measure again"),
-    MANY_SPIKES: ("spikes", "look at the map: dust, noise or a wrong number for missing points; measure again"),
+    OVERHANG: (
+        "overhang",
+        "the contact is on top: nothing to do where the heights are seen from above",
+    ),
+    MARKED: (
+        "marked_pixels",
+        "if these pixels are wrong, replace them by data of their surroundings, and save again",
+    ),
+    STAND_INS: (
+        "missing_points",
+        "they were filled from their neighbours: if they are heights, measure again",
+    ),
+    MANY_SPIKES: (
+        "spikes",
+        "look at the map: dust, noise or a wrong number for missing points; measure again",
+    ),
 }
 """Steps of a measurement that a user should hear of: code of the doubt and remedy."""
 
 
 TREATED = {
-    "smoothed": "smoothed or filtered: its spectrum falls as that of no measured map; what the filter took is put back",
-    "median": "smoothed by a median, or pixels are repeated: neighbours have exactly the same height",
-    "interpolated": "interpolated: it is smoother at even distances, between the points that were measured",
+    "smoothed": (
+        "smoothed or filtered: its spectrum falls as that of no measured map; what the filter took"
+        " is put back"
+    ),
+    "median": (
+        "smoothed by a median, or pixels are repeated: neighbours have exactly the same height"
+    ),
+    "interpolated": (
+        "interpolated: it is smoother at even distances, between the points that were measured"
+    ),
 }
 """Signs by which a map shows what was done to it, by the kind of `treatment.Treatment`."""
 
@@ -59,33 +89,55 @@ class Choice:
 
 
 def choose(
-    topography: Topography, one: OneSpectrum | None, tests: Sequence[HeightTest], settings: TopographySettings
+    topography: Topography,
+    one: OneSpectrum | None,
+    tests: Sequence[HeightTest],
+    settings: TopographySettings,
 ) -> Choice:
     """The first description that the measurements do not contradict, or the scene's."""
     power_law, strange = not topography.doubts, not_gaussian(tests)
     heights = (
-        f"as Gaussian surfaces of the same spectrum ({len(tests)} scans)" if tests else "no map of heights: not tested"
+        f"as Gaussian surfaces of the same spectrum ({len(tests)} scans)"
+        if tests
+        else "no map of heights: not tested"
     )
-    bands = f"{int((one.count > 0).sum())} bands of {one.first:.2g} to {one.q[-1]:.2g} /nm" if one else "no"
+    bands = (
+        f"{int((one.count > 0).sum())} bands of {one.first:.2g} to {one.q[-1]:.2g} /nm"
+        if one
+        else "no"
+    )
     asked = (
-        ("spectrum has the shape of eq. 9", "; ".join(topography.reasons) or _fitted(topography), power_law),
+        (
+            "spectrum has the shape of eq. 9",
+            "; ".join(topography.reasons) or _fitted(topography),
+            power_law,
+        ),
         ("heights and highest point are a Gaussian surface's", strange or heights, not strange),
         ("spectrum is measured band by band", bands, one is not None),
     )
-    evidence = tuple({"test": test, "outcome": outcome, "passed": passed} for test, outcome, passed in asked)
+    evidence = tuple(
+        {"test": test, "outcome": outcome, "passed": passed} for test, outcome, passed in asked
+    )
     if settings.description != "auto":
         return Choice(settings.description, evidence, overridden=True)
     if strange and one is not None:
         return Choice("measured_heights", evidence, overridden=False)
-    return Choice("power_law" if power_law or one is None else "measured_spectrum", evidence, overridden=False)
+    return Choice(
+        "power_law" if power_law or one is None else "measured_spectrum", evidence, overridden=False
+    )
 
 
 def _fitted(topography: Topography) -> str:
     fitted = topography.likelihood
     if fitted is None:
         return ""
-    apart = f"; each measurement at a level of its own, a factor of {np.exp(fitted.amplitude_sd):.2g} apart in C"
-    return f"misses the bands by {np.expm1(fitted.misfit):.0%} (RMS)" + (apart if fitted.amplitude_sd > 0 else "")
+    apart = (
+        f"; each measurement at a level of its own, a factor of {np.exp(fitted.amplitude_sd):.2g}"
+        " apart in C"
+    )
+    return f"misses the bands by {np.expm1(fitted.misfit):.0%} (RMS)" + (
+        apart if fitted.amplitude_sd > 0 else ""
+    )
 
 
 def description_doubts(
@@ -111,24 +163,39 @@ def description_doubts(
             f"{np.sqrt(whole * (1 - share)):.3g} nm, is in longer waves, which no stage has"
         )
         remedy = (
-            "a larger contact.length_nm with as many more contact.pixels holds more of them; on a wide electrode they "
-            "lift and tilt whole cells: device.spread.bow_nm can stand for those as long as the electrode"
+            "a larger contact.length_nm with as many more contact.pixels holds more of them; on a"
+            " wide electrode they lift and tilt whole cells: device.spread.bow_nm can stand for"
+            " those as long as the electrode"
         )
         yield Doubt("waves_beyond_cell", text, remedy, "rms")
     for measured, values in attributes.items():
         yield from _doubts_of_record(measured, values)
     for test in tests:
-        if test.anisotropy > 2.0:  # isotropic surfaces C ~ q^-2.5 to q^-4 without a plateau reach 1.4
-            text = f"{test.name}: slopes are {test.anisotropy:.2g} times as steep in one direction as across it"
-            remedy = "random surfaces are isotropic: trust the pressed scan, and look for ridges or noise of lines"
+        if (
+            test.anisotropy > 2.0
+        ):  # isotropic surfaces C ~ q^-2.5 to q^-4 without a plateau reach 1.4
+            text = (
+                f"{test.name}: slopes are {test.anisotropy:.2g} times as steep in one direction as"
+                " across it"
+            )
+            remedy = (
+                "random surfaces are isotropic: trust the pressed scan, and look for ridges or"
+                " noise of lines"
+            )
             yield Doubt("anisotropic", text, remedy, "contact")
     if one is not None:
         gap = one.q[(one.count == 0) & (np.cumsum(one.count) > 0)]
         if len(gap):
-            text = f"nothing is measured from {gap[0]:.2g} to {gap[-1]:.2g} /nm; the spectrum is bridged there"
+            text = (
+                f"nothing is measured from {gap[0]:.2g} to {gap[-1]:.2g} /nm; the spectrum is"
+                " bridged there"
+            )
             yield Doubt("gap", text, "add scans of the sizes between", "spectrum")
         if len(one.names) == 1:
-            text = "one measurement: how much places differ is unknown, the ranges hold its own error only"
+            text = (
+                "one measurement: how much places differ is unknown, the ranges hold its own error"
+                " only"
+            )
             yield Doubt("one_place", text, "measure other places of the surface", "rms")
     first = topography.doubts[0] if topography.doubts else None
     if name != "power_law" and first is not None and not first.fatal:
@@ -141,22 +208,28 @@ def description_doubts(
 
 def _doubts_of_record(name: str, values: Mapping[str, Any]) -> Iterator[Doubt]:
     share, skewness = (float(values.get(f"alignment_{key}", 0.0)) for key in ("share", "skewness"))
-    # clean maps reach 0.33 and, where they are grainy, 0.4; their RMS heights are right nevertheless
+    # clean maps reach 0.33 and, where they are grainy, 0.4; their RMS heights are right
+    # nevertheless
     if share > 0.4 or abs(skewness) > 0.5:
         text = (
-            f"{name}: aligning the scan lines by their medians took {share:.0%} of the RMS height and changed the "
-            f"skewness by {skewness:+.2f}"
+            f"{name}: aligning the scan lines by their medians took {share:.0%} of the RMS height"
+            f" and changed the skewness by {skewness:+.2f}"
         )
         remedy = "if the lines have no offsets, set topography.line_alignment to none"
         yield Doubt("alignment_took_roughness", text, remedy, "rms")
     if treatment := str(values.get("treatment", "")):
         signs = TREATED[treatment]
-        text = f"{name}: {signs}; what it shows is trusted to {float(values['trusted_high']):.2g} /nm"
+        text = (
+            f"{name}: {signs}; what it shows is trusted to {float(values['trusted_high']):.2g} /nm"
+        )
         yield Doubt("treated", text, "give the map as it was measured, without filters", "spectrum")
     for step in values["steps"].split("; "):
         for begins, (code, remedy) in STEPS_TO_TELL.items():
             if step.startswith(begins):
                 yield Doubt(code, f"{name}: {step}", remedy, "rms")
     if not values["radius_stated"]:
-        text = f"{name}: neither scene nor file states the tip radius; taken is {values['tip_radius_nm']:g} nm"
+        text = (
+            f"{name}: neither scene nor file states the tip radius; taken is"
+            f" {values['tip_radius_nm']:g} nm"
+        )
         yield Doubt("tip_not_stated", text, "state it in topography.instruments", "spectrum")

@@ -1,4 +1,6 @@
-"""How the heights of scans are distributed, and whether a Gaussian surface of their spectrum has such heights."""
+"""How the heights of scans are distributed, and whether a Gaussian surface of their spectrum has
+such heights.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,10 +19,11 @@ class HeightTest:
 
     Attributes
     ----------
-    skewness, kurtosis, highest : of the scan; highest point above the mean plane in units of the RMS height.
+    skewness, kurtosis, highest : of the scan; highest point above the mean plane in units of the
+        RMS height.
     expected, spread : (3,) mean and standard deviation of the same on 39 Gaussian surfaces.
-    anisotropy : RMS slope along the steepest direction over that across it; 1 for an isotropic surface.
-    """
+    anisotropy : RMS slope along the steepest direction over that across it; 1 for an isotropic
+        surface."""
 
     name: str
     skewness: float
@@ -33,7 +36,9 @@ class HeightTest:
     @property
     def away(self) -> np.ndarray:
         """(3,) distance from the Gaussian surfaces in their standard deviations."""
-        return (np.array([self.skewness, self.kurtosis, self.highest]) - self.expected) / self.spread
+        return (
+            np.array([self.skewness, self.kurtosis, self.highest]) - self.expected
+        ) / self.spread
 
 
 def compare_heights(name: str, heights: np.ndarray, lengths_nm: tuple[float, float]) -> HeightTest:
@@ -45,7 +50,9 @@ def compare_heights(name: str, heights: np.ndarray, lengths_nm: tuple[float, flo
     side = n * pixel_nm
     spectrum = radial_spectrum(square, (side, side), 9, 0.75, flat=0.0)
     psd = SpectrumTable(spectrum.q, spectrum.psd).psd
-    gaussian = np.array([moments(synthesize_spectrum(n, side, psd, 1.0, seed)) for seed in range(39)])
+    gaussian = np.array(
+        [moments(synthesize_spectrum(n, side, psd, 1.0, seed)) for seed in range(39)]
+    )
     skewness, kurtosis, highest = moments(square)
     expected, spread = gaussian.mean(axis=0), gaussian.std(axis=0, ddof=1)
     return HeightTest(name, skewness, kurtosis, highest, expected, spread, slope_ratio(square))
@@ -61,12 +68,16 @@ def square_pixels(heights: np.ndarray, lengths_nm: tuple[float, float]) -> tuple
             place = np.arange(0.0, count - 1, step / fine)
             left = place.astype(int)
             share = np.expand_dims(place - left, 1 - axis)
-            heights = (1 - share) * np.take(heights, left, axis) + share * np.take(heights, left + 1, axis)
+            heights = (1 - share) * np.take(heights, left, axis) + share * np.take(
+                heights, left + 1, axis
+            )
     return heights, step
 
 
 def slope_ratio(heights: np.ndarray) -> float:
-    """RMS slope of heights (n, n) along the steepest direction over that across it, from the tensor of slopes."""
+    """RMS slope of heights (n, n) along the steepest direction over that across it, from the tensor
+    of slopes.
+    """
     x, y = (part.ravel() for part in np.gradient(heights))
     low, high = np.linalg.eigvalsh(np.array([[x @ x, x @ y], [x @ y, y @ y]]))
     return float(np.sqrt(high / max(low, 1e-12 * high))) if high > 0 else 1.0
@@ -83,14 +94,14 @@ def moments(heights: np.ndarray) -> tuple[float, float, float]:
 def not_gaussian(tests: Sequence[HeightTest]) -> str:
     """In words what of the heights no Gaussian surface has; empty where nothing stands out.
 
-    A statistic stands out where the scans together are two standard deviations away, and far enough to
-    change a contact.
-    """
+    A statistic stands out where the scans together are two standard deviations away, and far enough
+    to change a contact."""
     if not tests:
         return ""
     together = np.sum([test.away for test in tests], axis=0) / np.sqrt(len(tests))
     skewness, kurtosis, highest = (
-        np.mean([getattr(test, key) for test in tests]) for key in ("skewness", "kurtosis", "highest")
+        np.mean([getattr(test, key) for test in tests])
+        for key in ("skewness", "kurtosis", "highest")
     )
     expected = np.mean([test.expected for test in tests], axis=0)
     far = (  # less hardly changes a contact
@@ -111,7 +122,9 @@ def not_gaussian(tests: Sequence[HeightTest]) -> str:
 
 
 def height_quantiles(heights: np.ndarray) -> np.ndarray:
-    """Heights of a scan in units of its RMS at each normal variable of `Z`, with the tails carried on straight."""
+    """Heights of a scan in units of its RMS at each normal variable of `Z`, with the tails carried
+    on straight.
+    """
     from scipy.special import ndtr, ndtri
 
     values = np.sort(heights, axis=None)
@@ -130,7 +143,9 @@ def height_quantiles(heights: np.ndarray) -> np.ndarray:
 
 
 def common_heights(quantiles: Sequence[np.ndarray]) -> tuple[float, ...]:
-    """The height map of a surface from those of its scans (each (len(Z),)), of mean 0 and variance 1."""
+    """The height map of a surface from those of its scans (each (len(Z),)), of mean 0 and variance
+    1.
+    """
     table = np.mean(quantiles, axis=0)
     density = np.exp(-(Z**2) / 2)
     density /= density.sum()

@@ -1,4 +1,6 @@
-"""Estimates with their intervals: the level of all of them in the topography stage, and how far they reach."""
+"""Estimates with their intervals: the level of all of them in the topography stage, and how far
+they reach.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -24,16 +26,18 @@ SCATTERS = np.geomspace(0.02, 5.0, 40)
 
 @dataclass(frozen=True)
 class PlaceScatter:
-    """How much places differ in ln C: what the measurements say of its standard deviation, and what is usual.
+    """How much places differ in ln C: what the measurements say of its standard deviation, and what
+    is usual.
 
-    A few places leave their scatter uncertain, and a moment estimate is often 0. So all values count, each by its
-    probability, with a half-Cauchy prior (Gelman 2006, doi:10.1214/06-BA117A). By it half the films have less than 0.4,
-    RMS heights that differ by 20 %: an assumption, which counts where few places are measured.
+    A few places leave their scatter uncertain, and a moment estimate is often 0. So all values
+    count, each by its probability, with a half-Cauchy prior (Gelman 2006, doi:10.1214/06-BA117A).
+    By it half the films have less than 0.4, RMS heights that differ by 20 %: an assumption, which
+    counts where few places are measured.
 
     Attributes
     ----------
-    weights : (len(SCATTERS),) probability of each; None where only one place is measured, of which nothing follows.
-    """
+    weights : (len(SCATTERS),) probability of each; None where only one place is measured, of which
+        nothing follows."""
 
     weights: np.ndarray | None = None
 
@@ -47,7 +51,9 @@ class PlaceScatter:
 
     @property
     def deviation(self) -> float:
-        """Standard deviation of the normal distribution whose interval is that of one more place; 0 for one place."""
+        """Standard deviation of the normal distribution whose interval is that of one more place; 0
+        for one place.
+        """
         from scipy.special import ndtr
 
         if self.weights is None:
@@ -77,7 +83,9 @@ class Estimate:
         return {"value": self.value, "interval": list(self.interval), "scatter": list(self.scatter)}
 
     def widened(self, error: float, log: bool) -> "Estimate":
-        """The same with a further error (standard deviation) of the value, or of its logarithm, in quadrature."""
+        """The same with a further error (standard deviation) of the value, or of its logarithm, in
+        quadrature.
+        """
         centre, ends = (np.log(v) if log else np.asarray(v) for v in (self.value, self.interval))
         low, high = (
             centre - np.hypot(centre - ends[0], REACH * error),

@@ -1,12 +1,12 @@
 """Maximum-likelihood fit of equation 9 to the spectra of several scans at once.
 
-The mean of a spectrum over n independent modes is Gamma distributed about the true C(q) with n degrees of
-freedom (Whittle's likelihood).  All scans share q0 and the slope; each has its own amplitude, drawn from a
-log-normal population, because amplitudes of real places differ by far more than their statistical error.
+The mean of a spectrum over n independent modes is Gamma distributed about the true C(q) with n
+degrees of freedom (Whittle's likelihood).  All scans share q0 and the slope; each has its own
+amplitude, drawn from a log-normal population, because amplitudes of real places differ by far more
+than their statistical error.
 
-A line profile enters with the spectrum C1(k) along it, which is compared with what equation 9 gives along a line. Its
-converted spectrum C(q) is smoothed, which rounds the knee.
-"""
+A line profile enters with the spectrum C1(k) along it, which is compared with what equation 9 gives
+along a line. Its converted spectrum C(q) is smoothed, which rounds the knee."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -15,12 +15,18 @@ from typing import Any
 import numpy as np
 
 from mesoscale.topography.description.intervals import SCATTERS, PlaceScatter
-from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur, curvature, tip_bias
+from mesoscale.topography.description.trusted_range import (
+    TrustedSpectrum,
+    blur,
+    curvature,
+    tip_bias,
+)
 from mesoscale.topography.profile_conversion import spread
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
 
-# relative error of C that no averaging removes: rest of tip, noise and window corrections, which act beyond the knee;
-# on the plateau only levelling is left, and the trusted range leaves its waves out
+# relative error of C that no averaging removes: rest of tip, noise and window corrections, which
+# act beyond the knee; on the plateau only levelling is left, and the trusted range leaves its waves
+# out
 DISCREPANCY, PLATEAU_DISCREPANCY = 0.04, 0.01
 MAX_SLOPE = 10.0
 
@@ -36,7 +42,8 @@ class LikelihoodFit:
     amplitudes : (scans,) plateau of each scan, nm^4.
     between : scatter of ln amplitude between places, statistical error removed.
     dispersion : mean square residual in units of its expectation.
-    misfit : RMS of the logarithmic residuals of the pooled bins beyond chance; above about 0.3 this is no power law.
+    misfit : RMS of the logarithmic residuals of the pooled bins beyond chance; above about 0.3 this
+        is no power law.
     plateau_gain, power_gain : improvement of 2 ln L over a pure power law and over a flat spectrum.
     names : of the scans that were fitted.
     """
@@ -68,7 +75,9 @@ class LikelihoodFit:
 
 
 class _Data:
-    """Trusted shells of all scans and bins of all lines, flat arrays with the scan and bin each belongs to."""
+    """Trusted shells of all scans and bins of all lines, flat arrays with the scan and bin each
+    belongs to.
+    """
 
     def __init__(self, spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = 12):
         parts = []
@@ -77,9 +86,17 @@ class _Data:
             if item.line is not None:
                 s, ok = item.line, np.ones(len(item.line.q), dtype=bool)
             bins = np.floor(np.log10(s.q[ok]) * per_decade).astype(int)
-            size_class = round(float(np.log(s.spacing)) * 20)  # scans of one size share their discrepancies
+            size_class = round(
+                float(np.log(s.spacing)) * 20
+            )  # scans of one size share their discrepancies
             columns = (s.q[ok], s.psd[ok], s.modes[ok], bins)
-            whole = (number, size_class, item.tip_radius_nm, 0.0 if s.sharp else s.spacing, item.line is not None)
+            whole = (
+                number,
+                size_class,
+                item.tip_radius_nm,
+                0.0 if s.sharp else s.spacing,
+                item.line is not None,
+            )
             parts.append([*columns, *(np.full(int(ok.sum()), value) for value in whole)])
         joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
         self.q, self.psd, self.modes, bins, scan, size_class, self.tip, spacing, line = joined
@@ -90,7 +107,8 @@ class _Data:
         _, self.bin = np.unique(np.stack([size_class, bins]), axis=1, return_inverse=True)
         self.bin = self.bin.ravel()
         per_bin = np.bincount(self.bin, self.modes)
-        # weight of a bin: modes in parallel with the discrepancy, shared out in proportion to the modes
+        # weight of a bin: modes in parallel with the discrepancy, shared out in proportion to the
+        # modes
         centre = np.exp(np.bincount(self.bin, self.modes * np.log(self.q)) / per_bin)
         discrepancy = np.where(centre < knee, PLATEAU_DISCREPANCY, DISCREPANCY)
         self.weight = self.modes / (1 + discrepancy**2 * per_bin)[self.bin]
@@ -103,11 +121,18 @@ class _Data:
         spacing = np.array([item.spectrum.spacing for item in spectra])
         k = spread(self.q[self.line], spacing[self.scan[self.line]])
         self.line_q = np.concatenate(k[:, :, None] * np.cosh(t), axis=1)
-        self.line_log_q, self.line_weight = np.log(self.line_q), self.line_q * np.concatenate([step, step])
+        self.line_log_q, self.line_weight = (
+            np.log(self.line_q),
+            self.line_q * np.concatenate([step, step]),
+        )
         self.per_scan = np.bincount(self.scan, self.weight, self.scans)
 
-    def ratio(self, log_q0: float, slope: float, level: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """ln of the model's shape and measured over modelled shape, the tip's bias at amplitude `level`."""
+    def ratio(
+        self, log_q0: float, slope: float, level: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """ln of the model's shape and measured over modelled shape, the tip's bias at amplitude
+        `level`.
+        """
         shape = -slope * np.maximum(self.log_q - log_q0, 0.0)
         shape += np.where(self.log_q > log_q0, blur(slope, self.shell), 0.0)
         shape -= tip_bias(curvature(self.tip, self.q, np.exp(level[self.scan] + shape)))
@@ -115,31 +140,36 @@ class _Data:
             falling = -slope * np.maximum(self.line_log_q - log_q0, 0.0)
             if self.tip[self.line].any():
                 amplitude = level[self.scan[self.line], None] + falling
-                falling -= tip_bias(curvature(self.tip[self.line, None], self.line_q, np.exp(amplitude)))
+                falling -= tip_bias(
+                    curvature(self.tip[self.line, None], self.line_q, np.exp(amplitude))
+                )
             shape[self.line] = np.log(np.sum(self.line_weight * np.exp(falling), axis=1))
         return shape, self.psd * np.exp(-shape)
 
 
 def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[TrustedSpectrum]:
-    """Raise the lower bound of scans that begin beyond the knee, to where the blur is a small correction.
+    """Raise the lower bound of scans that begin beyond the knee, to where the blur is a small
+    correction.
 
-    On the plateau the window's blur does nothing; at the first shells of a scan too small to show the plateau
-    it is large, and mixes plateau and power law.
-    """
+    On the plateau the window's blur does nothing; at the first shells of a scan too small to show
+    the plateau it is large, and mixes plateau and power law."""
     return [
-        replace(item, low=max(item.low, 5.0 * item.spectrum.spacing))
-        if item.low > q0 / 2 and not item.spectrum.sharp
-        else item
+        (
+            replace(item, low=max(item.low, 5.0 * item.spectrum.spacing))
+            if item.low > q0 / 2 and not item.spectrum.sharp
+            else item
+        )
         for item in spectra
     ]
 
 
-def fit(spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = 12) -> LikelihoodFit | None:
+def fit(
+    spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = 12
+) -> LikelihoodFit | None:
     """Fit plateau, q0 and slope to the trusted ranges; None where there are too few shells to fit.
 
-    Below `knee` (1/nm), where it is known roughly, the corrections that the discrepancy stands for do not act. A decade
-    has `per_decade` bins that share one.
-    """
+    Below `knee` (1/nm), where it is known roughly, the corrections that the discrepancy stands for
+    do not act. A decade has `per_decade` bins that share one."""
     from scipy.optimize import minimize
 
     spectra = [item for item in spectra if item.trusted.sum() >= 3]
@@ -165,7 +195,9 @@ def fit(spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int =
     best = np.array(min(grid, key=lambda point: objective(np.array(point))))
     dispersion, raw, residual, between = 1.0, level, np.ones(bins), PlaceScatter()
     for _ in range(4):
-        minimum = minimize(objective, best, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-3})
+        minimum = minimize(
+            objective, best, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-3}
+        )
         best = np.clip(minimum.x, [low, 0.0], [high, MAX_SLOPE])
         _, level, ratio = _deviance(data, best[0], best[1], spread, level)
         raw = np.log(np.bincount(data.scan, data.weight * ratio, data.scans) / data.per_scan)
@@ -201,11 +233,15 @@ def fit(spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int =
 def _deviance(
     data: _Data, log_q0: float, slope: float, spread: float, level: np.ndarray
 ) -> tuple[float, np.ndarray, np.ndarray]:
-    """-2 ln L, marginal over the amplitudes in Gaussian approximation; amplitudes; measured over shape."""
+    """-2 ln L, marginal over the amplitudes in Gaussian approximation; amplitudes; measured over
+    shape.
+    """
     shape, ratio = data.ratio(log_q0, slope, level)
     mean = np.bincount(data.scan, data.weight * ratio, data.scans) / data.per_scan
     raw = np.log(np.maximum(mean, 1e-300))
-    per_scan = 2 * np.sum(data.weight * (shape - np.log(data.psd))) + 2 * np.sum(data.per_scan * (1 + raw))
+    per_scan = 2 * np.sum(data.weight * (shape - np.log(data.psd))) + 2 * np.sum(
+        data.per_scan * (1 + raw)
+    )
     variance = 1 / data.per_scan + spread**2
     typical = np.sum(raw / variance) / np.sum(1 / variance)
     # amplitudes at their own optimum cost nothing; the population pulls them together
@@ -214,7 +250,8 @@ def _deviance(
 
 
 def _misfit(residual: np.ndarray, modes: np.ndarray) -> float:
-    """RMS of ln of the bins' residuals less what chance makes of a mean over their modes (Gamma distribution).
+    """RMS of ln of the bins' residuals less what chance makes of a mean over their modes (Gamma
+    distribution).
 
     Bins of few modes say little and count little.
     """
@@ -222,17 +259,23 @@ def _misfit(residual: np.ndarray, modes: np.ndarray) -> float:
 
     chance = polygamma(1, modes) + (digamma(modes) - np.log(modes)) ** 2
     excess = np.log(np.maximum(residual, 1e-12)) ** 2 - chance
-    weight = 1 / (chance + 0.3**2)  # bins in which chance makes more than 0.3 say little about the shape
+    weight = 1 / (
+        chance + 0.3**2
+    )  # bins in which chance makes more than 0.3 say little about the shape
     return float(np.sqrt(max(np.sum(weight * excess) / weight.sum(), 0.0)))
 
 
 def _between(raw: np.ndarray, variance: np.ndarray) -> PlaceScatter:
-    """Scatter between places of ln amplitudes known to `variance`, by their restricted likelihood."""
+    """Scatter between places of ln amplitudes known to `variance`, by their restricted
+    likelihood.
+    """
     if len(raw) < 2:
         return PlaceScatter()
     every = variance + SCATTERS[:, None] ** 2
     mean = np.sum(raw / every, axis=1, keepdims=True) / np.sum(1 / every, axis=1, keepdims=True)
-    terms = np.sum(np.log(every) + (raw - mean) ** 2 / every, axis=1) + np.log(np.sum(1 / every, axis=1))
+    terms = np.sum(np.log(every) + (raw - mean) ** 2 / every, axis=1) + np.log(
+        np.sum(1 / every, axis=1)
+    )
     return PlaceScatter.of(-0.5 * terms)
 
 
@@ -243,7 +286,12 @@ def _typical(raw: np.ndarray, variance: np.ndarray, spread: float) -> tuple[floa
 
 
 def _covariance(
-    data: _Data, best: np.ndarray, spread: float, level: np.ndarray, scale: float, typical_variance: float
+    data: _Data,
+    best: np.ndarray,
+    spread: float,
+    level: np.ndarray,
+    scale: float,
+    typical_variance: float,
 ) -> np.ndarray:
     """Covariance of (ln plateau, ln q0, slope) from the curvature of the deviance."""
     steps = np.array([0.05, 0.03])
@@ -261,8 +309,12 @@ def _covariance(
         (f_up, l_up), (f_down, l_down) = value(up), value(down)
         hessian[i, i] = (f_up + f_down - 2 * centre) / steps[i] ** 2
         gradient[i] = (l_up - l_down) / (2 * steps[i])
-    corners = [value(best + steps * np.array(sign))[0] for sign in ((1, 1), (1, -1), (-1, 1), (-1, -1))]
-    hessian[0, 1] = hessian[1, 0] = (corners[0] - corners[1] - corners[2] + corners[3]) / (4 * steps.prod())
+    corners = [
+        value(best + steps * np.array(sign))[0] for sign in ((1, 1), (1, -1), (-1, 1), (-1, -1))
+    ]
+    hessian[0, 1] = hessian[1, 0] = (corners[0] - corners[1] - corners[2] + corners[3]) / (
+        4 * steps.prod()
+    )
     values, vectors = np.linalg.eigh(hessian / (2 * scale))
     shape = vectors @ np.diag(1 / np.maximum(values, 1e-6)) @ vectors.T
     full = np.zeros((3, 3))
@@ -272,12 +324,14 @@ def _covariance(
     return full
 
 
-def q0_interval(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, reach: float) -> tuple[float, float]:
-    """Ends of q0 (1/nm) where the deviance, lowest over the slope, is `reach` standard deviations above its minimum.
+def q0_interval(
+    spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, reach: float
+) -> tuple[float, float]:
+    """Ends of q0 (1/nm) where the deviance, lowest over the slope, is `reach` standard deviations
+    above its minimum.
 
-    The curvature at the minimum does not do: where the knee is gradual (shallow spectra, lines) the deviance is far
-    from a parabola, and its ends are up to three times as far away on one side.
-    """
+    The curvature at the minimum does not do: where the knee is gradual (shallow spectra, lines) the
+    deviance is far from a parabola, and its ends are up to three times as far away on one side."""
     from scipy.optimize import brentq, minimize_scalar
 
     data = _Data([item for item in spectra if item.trusted.sum() >= 3], fitted.q0)
@@ -303,13 +357,18 @@ def q0_interval(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, reach
             ends.append(best + side * furthest)
             continue
         start = distance / 2 if distance > step else 0.0
-        end: Any = brentq(lambda at, s=side: lowest(best + s * at) - allowed, start, distance, xtol=2e-3)
+        end: Any = brentq(
+            lambda at, s=side: lowest(best + s * at) - allowed, start, distance, xtol=2e-3
+        )
         ends.append(best + side * end)
     return float(np.exp(ends[0])), float(np.exp(ends[1]))
 
 
-def single_scans(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit) -> tuple[np.ndarray, np.ndarray]:
-    """q0 of each scan that shows its own knee (the common slope kept), and slope of each with a decade third.
+def single_scans(
+    spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit
+) -> tuple[np.ndarray, np.ndarray]:
+    """q0 of each scan that shows its own knee (the common slope kept), and slope of each with a
+    decade third.
 
     Their range is the scatter between places; it includes the statistical error of single scans.
     """
@@ -322,10 +381,18 @@ def single_scans(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit) -> t
         level = np.array([np.log(fitted.plateau)])
 
         if item.low < fitted.q0 / 2 and item.high > 1.5 * fitted.q0:
-            knee = _lowest(lambda at, d=data, a=level: _deviance(d, at, fitted.slope, 0.0, a)[0], log_q0, 1.0)
+            knee = _lowest(
+                lambda at, d=data, a=level: _deviance(d, at, fitted.slope, 0.0, a)[0], log_q0, 1.0
+            )
             knees.append(float(np.exp(knee)))
         if item.high > 2.2 * max(fitted.q0, item.low):
-            slopes.append(_lowest(lambda at, d=data, a=level: _deviance(d, log_q0, at, 0.0, a)[0], fitted.slope, 2.0))
+            slopes.append(
+                _lowest(
+                    lambda at, d=data, a=level: _deviance(d, log_q0, at, 0.0, a)[0],
+                    fitted.slope,
+                    2.0,
+                )
+            )
     return np.array(knees), np.array(slopes)
 
 
@@ -333,5 +400,7 @@ def _lowest(function: Callable[[float], float], centre: float, reach: float) -> 
     """Minimum of a function of one variable within `reach` of `centre`."""
     from scipy.optimize import minimize_scalar
 
-    minimum: Any = minimize_scalar(function, bounds=(centre - reach, centre + reach), method="bounded")
+    minimum: Any = minimize_scalar(
+        function, bounds=(centre - reach, centre + reach), method="bounded"
+    )
     return float(minimum.x)

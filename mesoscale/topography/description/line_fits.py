@@ -1,15 +1,18 @@
 """The paper's line fits for q0, q1, slope and their bounds (section 4.2), made precise.
 
-The paper fits straight lines of log C against log q by least squares: from the lowest wave vector up to a
-variable q to find where the plateau ends (q0), and from q0 up to a variable q to find where the power law
-ends (q1).  Made precise here:
+The paper fits straight lines of log C against log q by least squares: from the lowest wave vector
+up to a variable q to find where the plateau ends (q0), and from q0 up to a variable q to find where
+the power law ends (q1).  Made precise here:
 
-- all points are means over bins of equal width in log q, one per scan and bin, inside the trusted range;
-- the plateau *ends* at the last bin for which the slope of [q_L, q] is not significantly negative (one-sided
+- all points are means over bins of equal width in log q, one per scan and bin, inside the trusted
+  range;
+- the plateau *ends* at the last bin for which the slope of [q_L, q] is not significantly negative
+  (one-sided
   t test at 1 %, for this bin and every later one); this literal reading lies above the knee,
   because the line needs some points of the slope to notice it, so that
 - *q0* is where the plateau's mean level and the power law's line meet;
-- *q1* is the largest q for which the slope of [q0, q] differs from its median by no more than its own
+- *q1* is the largest q for which the slope of [q0, q] differs from its median by no more than its
+  own
   standard error times the same threshold, or by 0.05.
 """
 
@@ -38,7 +41,8 @@ class LineFit:
     Attributes
     ----------
     plateau, q0, slope : level (nm^4), knee (1/nm) and fall of the pooled spectrum.
-    q1 : end of the constant slope, 1/nm; `q1_limited` when that is merely the end of the trusted range.
+    q1 : end of the constant slope, 1/nm; `q1_limited` when that is merely the end of the trusted
+        range.
     slope_low, slope_high : slopes of the lines through the knee that bound the scans' points.
     plateau_low, plateau_high : lowest and highest level of a scan, nm^4.
     """
@@ -68,7 +72,11 @@ def points(spectra: Sequence[TrustedSpectrum], q0: float = np.inf, slope: float 
         worth = np.bincount(index, modes)
         log_q, log_c = (np.bincount(index, modes * part) / worth for part in (np.log(q), log_c))
         # the mean of ln C lies below ln of the mean by about 1/(2 n)
-        parts.append(np.stack([log_q, log_c + 0.5 / np.maximum(worth, 1.0), np.full(len(bins), number), bins]))
+        parts.append(
+            np.stack(
+                [log_q, log_c + 0.5 / np.maximum(worth, 1.0), np.full(len(bins), number), bins]
+            )
+        )
     table = np.concatenate(parts, axis=1)
     table = table[:, np.lexsort((table[2], table[3]))]
     return Points(table[0], table[1], table[2].astype(int), table[3].astype(int))
@@ -77,16 +85,17 @@ def points(spectra: Sequence[TrustedSpectrum], q0: float = np.inf, slope: float 
 def pooled(data: Points) -> tuple[np.ndarray, np.ndarray]:
     """Mean over scans in each bin: ln q and ln C, with the differing levels of the scans taken out.
 
-    Scans of different places differ in level; a bin that only some of them reach would step. Levels are
-    estimated together with the bins' means (two-way least squares).
-    """
+    Scans of different places differ in level; a bin that only some of them reach would step. Levels
+    are estimated together with the bins' means (two-way least squares)."""
     bins, index = np.unique(data.bin, return_inverse=True)
     scans, member = np.unique(data.scan, return_inverse=True)
     equations = np.zeros((len(data.log_c) + 1, len(bins) + len(scans)))
     rows = np.arange(len(data.log_c))
     equations[rows, index] = 1
     equations[rows, len(bins) + member] = 1
-    equations[-1, len(bins) :] = 1  # levels sum to zero: the pooled spectrum is that of the typical place
+    equations[-1, len(bins) :] = (
+        1  # levels sum to zero: the pooled spectrum is that of the typical place
+    )
     right = np.append(data.log_c, 0.0)
     solution = np.linalg.lstsq(equations, right, rcond=None)[0]
     count = np.bincount(index)
@@ -104,7 +113,9 @@ def line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
 
 
 def fit_lines(spectra: Sequence[TrustedSpectrum]) -> LineFit | None:
-    """The paper's procedure on the trusted spectra; None when there is no plateau or no power law to fit."""
+    """The paper's procedure on the trusted spectra; None when there is no plateau or no power law
+    to fit.
+    """
     rough = _fit_points(points(spectra))
     return None if rough is None else _fit_points(points(spectra, rough.q0, rough.slope))
 
@@ -148,7 +159,9 @@ def _fit_points(data: Points) -> LineFit | None:
 
 
 def plateau_end(x: np.ndarray, y: np.ndarray) -> int | None:
-    """Index of the last bin up to which the slope of y(x) from the start is not significantly negative."""
+    """Index of the last bin up to which the slope of y(x) from the start is not significantly
+    negative.
+    """
     fits = np.array([line(x[:k], y[:k]) for k in range(3, len(x) + 1)])
     thresholds = np.array([_threshold(k) for k in range(1, len(x) - 1)])
     flat = np.flatnonzero((fits[:, 1] >= -thresholds * fits[:, 2]) | (fits[:, 1] >= -0.1))

@@ -1,15 +1,16 @@
 """One spectrum of a surface over all scales, from everything that was measured on it.
 
-Each measurement gives ln C on common bands of log q. Places differ, and so do instruments: measurement k is the
-surface's spectrum f times a factor of its own, ln C_kb = f_b + a_k + error, with a_k of an unknown variance. This
-mixed linear model (Henderson 1975, doi:10.2307/2529430) joins ranges that merely overlap without a jump where one
-begins or ends; the variance is found by expectation maximisation. Changes of the logarithmic slope from band to band
-are held small, which carries f over a gap between instruments with an uncertainty that grows into it.
+Each measurement gives ln C on common bands of log q. Places differ, and so do instruments:
+measurement k is the surface's spectrum f times a factor of its own, ln C_kb = f_b + a_k + error,
+with a_k of an unknown variance. This mixed linear model (Henderson 1975, doi:10.2307/2529430) joins
+ranges that merely overlap without a jump where one begins or ends; the variance is found by
+expectation maximisation. Changes of the logarithmic slope from band to band are held small, which
+carries f over a gap between instruments with an uncertainty that grows into it.
 
-Waves about as long as the longest measurement are changed by levelling and hardly measured one by one, but their sum
-is: its levelled heights have the mean square that the spectrum must give from about 0.7 waves a side on. Where nothing
-is measured, the spectrum of a rough surface is flat or falls as steeply as a self-affine one, and nothing else.
-"""
+Waves about as long as the longest measurement are changed by levelling and hardly measured one by
+one, but their sum is: its levelled heights have the mean square that the spectrum must give from
+about 0.7 waves a side on. Where nothing is measured, the spectrum of a rough surface is flat or
+falls as steeply as a self-affine one, and nothing else."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +18,13 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.topography.description.bands import BANDS_PER_DECADE, Seen, at_points, on_bands, seen_by
+from mesoscale.topography.description.bands import (
+    BANDS_PER_DECADE,
+    Seen,
+    at_points,
+    on_bands,
+    seen_by,
+)
 from mesoscale.topography.description.intervals import QUANTILES, REACH, SCATTERS, PlaceScatter
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 
@@ -38,9 +45,10 @@ class OneSpectrum:
     between : scatter of ln C between places and instruments, common to all bands.
     count : (m,) measurements behind each band; 0 in a gap between instruments and before the first.
     names : measurements that take part.
-    longest : smallest wave vector that a mean square height tells of (1/nm); None where only bands tell.
-    logs : (draws, m) values of ln C that the measurements allow, where they are not normally distributed; else None.
-    """
+    longest : smallest wave vector that a mean square height tells of (1/nm); None where only bands
+        tell.
+    logs : (draws, m) values of ln C that the measurements allow, where they are not normally
+        distributed; else None."""
 
     q: np.ndarray
     log_psd: np.ndarray
@@ -82,18 +90,23 @@ class OneSpectrum:
         return np.exp(self.log_psd - reach), np.exp(self.log_psd + reach)
 
     def draws(self, places: bool, count: int = DRAWS) -> np.ndarray:
-        """(count, m) spectra C in nm^4 that the measurements allow: of the typical place, or of a place anywhere."""
+        """(count, m) spectra C in nm^4 that the measurements allow: of the typical place, or of a
+        place anywhere.
+        """
         rng = np.random.default_rng(0)  # the same draws whenever they are asked for
         logs = self._normal_draws(rng, count) if self.logs is None else self.logs[:count]
         if places:
             logs = logs + self.place_sd * rng.standard_normal((count, 1))
         return np.exp(logs)
 
-    def with_mean_square(self, mean_square: float, seen: Seen, count: int, common_error: float) -> "OneSpectrum":
-        """The spectrum given besides the mean square height (nm^2) of the longest measurements, levelled.
+    def with_mean_square(
+        self, mean_square: float, seen: Seen, count: int, common_error: float
+    ) -> "OneSpectrum":
+        """The spectrum given besides the mean square height (nm^2) of the longest measurements,
+        levelled.
 
-        Of spectra that the bands allow, those are drawn that the mean square allows (importance resampling). Waves of
-        the bands are in both: what chance makes of them counts once.
+        Of spectra that the bands allow, those are drawn that the mean square allows (importance
+        resampling). Waves of the bands are in both: what chance makes of them counts once.
 
         Parameters
         ----------
@@ -107,13 +120,23 @@ class OneSpectrum:
         logs = self._normal_draws(rng, candidates)
         drawn = np.exp(logs)
         whole = self.moment(0, low=seen.first, psd=drawn, counted=seen.share) + self.tail(drawn)
-        in_bands = self.moment(0, low=seen.low, high=seen.high, psd=drawn, counted=seen.share_in_bands)
+        in_bands = self.moment(
+            0, low=seen.low, high=seen.high, psd=drawn, counted=seen.share_in_bands
+        )
         rest = np.maximum(whole - seen.common * in_bands, 1e-12)
-        unseen, short = (seen.scatter(self.q, logs, *ends) for ends in ((seen.first, seen.low), (seen.low, self.q[-1])))
+        unseen, short = (
+            seen.scatter(self.q, logs, *ends)
+            for ends in ((seen.first, seen.low), (seen.low, self.q[-1]))
+        )
         variance = (unseen * (whole - in_bands)) ** 2 + (1 - seen.common) * (short * in_bands) ** 2
-        modes = count * rest**2 / (variance + (self.place_sd * rest) ** 2)  # half of them: the shape of a Gamma law
+        modes = (
+            count * rest**2 / (variance + (self.place_sd * rest) ** 2)
+        )  # half of them: the shape of a Gamma law
         level, worth = np.polynomial.hermite_e.hermegauss(9)
-        remaining = mean_square * np.exp(np.hypot(common_error, 0.1) * level) - seen.common * seen.in_bands_nm2
+        remaining = (
+            mean_square * np.exp(np.hypot(common_error, 0.1) * level)
+            - seen.common * seen.in_bands_nm2
+        )
         over = np.maximum(remaining, 0.01 * mean_square) / rest[:, None]
         modes = modes[:, None]
         gamma = modes * (np.log(modes * over) - over) - gammaln(modes) + np.log(worth)
@@ -126,7 +149,9 @@ class OneSpectrum:
         return replace(self, log_psd=centre, covariance=covariance, logs=drawn, longest=seen.first)
 
     def with_error(self, error: np.ndarray) -> "OneSpectrum":
-        """The same with a further error of ln C: `error` (m,) times one normal variable for all bands."""
+        """The same with a further error of ln C: `error` (m,) times one normal variable for all
+        bands.
+        """
         logs = self.logs
         if logs is not None:
             logs = logs + np.random.default_rng(5).standard_normal((len(logs), 1)) * error
@@ -145,11 +170,11 @@ class OneSpectrum:
         psd: np.ndarray | None = None,
         counted: Callable[[np.ndarray], np.ndarray] = np.ones_like,
     ) -> np.ndarray:
-        """Integral of 2 pi q C q^power over low .. high (1/nm) for spectra (..., m); C is flat below the first band.
+        """Integral of 2 pi q C q^power over low .. high (1/nm) for spectra (..., m); C is flat
+        below the first band.
 
-        Power 0 is the mean square height (nm^2), 2 the mean square slope, 4 that of the Laplacian (1/nm^2). Of the
-        waves at q (1/nm) the share `counted` enters.
-        """
+        Power 0 is the mean square height (nm^2), 2 the mean square slope, 4 that of the Laplacian
+        (1/nm^2). Of the waves at q (1/nm) the share `counted` enters."""
         psd = self.psd if psd is None else psd
         start, end = float(low or self.q[0]), min(high, self.q[-1])
         if end <= start:
@@ -157,17 +182,23 @@ class OneSpectrum:
         below = 2 * np.pi * psd[..., 0] * start ** (power + 2) / (power + 2) if low == 0 else 0.0
         edges = np.log([start, *self.q[(self.q > start) & (self.q < end)], end])
         half = np.diff(edges)[:, None] / 2
-        place, weight = np.polynomial.legendre.leggauss(3)  # of a power law between two bands exact to 1e-6
+        place, weight = np.polynomial.legendre.leggauss(
+            3
+        )  # of a power law between two bands exact to 1e-6
         fine = np.exp(edges[:-1, None] + half * (1 + place)).ravel()
         weight = (half * weight).ravel() * 2 * np.pi * fine ** (power + 2) * counted(fine)
         return np.asarray(np.exp(at_points(fine, self.q, np.log(psd))) @ weight + below)
 
     def carried_on(self, psd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Points (1/nm, nm^4) of a spectrum (m,) on the bands, with its last slope carried on for a decade."""
+        """Points (1/nm, nm^4) of a spectrum (m,) on the bands, with its last slope carried on for a
+        decade.
+        """
         end = float(self.q[-1])
         beyond = end * 10 ** np.linspace(0.1, EXTENSION_DECADES, 10)
         slope = self._end_slope(psd)
-        return np.concatenate([self.q, beyond]), np.concatenate([psd, psd[-1] * (beyond / end) ** slope])
+        return np.concatenate([self.q, beyond]), np.concatenate(
+            [psd, psd[-1] * (beyond / end) ** slope]
+        )
 
     def tail(self, psd: np.ndarray) -> np.ndarray:
         """Mean square heights of the continuations of spectra (..., m), nm^2."""
@@ -178,27 +209,37 @@ class OneSpectrum:
     def _end_slope(self, psd: np.ndarray) -> np.ndarray:
         """Logarithmic slopes of the ends of spectra (..., m), over the last 0.3 decades.
 
-        A spectrum that ends before its power law says nothing of it: the slopes are then spread over all possible ones.
-        """
+        A spectrum that ends before its power law says nothing of it: the slopes are then spread
+        over all possible ones."""
         end = self.q > self.q[-1] * 10**-0.31
         logs = np.log(psd[..., end]).reshape(-1, np.count_nonzero(end))
         slopes = np.polyfit(np.log(self.q[end]), logs.T, 1)[0]
-        possible = (-4.0, -2.1)  # of a self-affine surface (0 < H < 1); shallower ones have no finite RMS height
+        possible = (
+            -4.0,
+            -2.1,
+        )  # of a self-affine surface (0 < H < 1); shallower ones have no finite RMS height
         unseen = slopes > possible[1]
         count = np.count_nonzero(unseen)
         slopes[unseen] = np.interp((np.arange(count) + 0.5) / max(count, 1), (0, 1), possible)
         return slopes.reshape(psd.shape[:-1])
 
     def statistics(self) -> dict[str, dict[str, Any]]:
-        """RMS height, slope and curvature of all waves that are measured, with intervals of the typical place.
+        """RMS height, slope and curvature of all waves that are measured, with intervals of the
+        typical place.
 
         Curvature is half the RMS Laplacian, the mean of both principal ones.
         """
         drawn, first = self.draws(places=False), self.first
         result = {}
-        for name, power, factor, unit in (("rms", 0, 1.0, "nm"), ("slope", 2, 1.0, "1"), ("curvature", 4, 0.5, "1/nm")):
+        for name, power, factor, unit in (
+            ("rms", 0, 1.0, "nm"),
+            ("slope", 2, 1.0, "1"),
+            ("curvature", 4, 0.5, "1/nm"),
+        ):
             value = factor * float(np.sqrt(self.moment(power, first)))
-            low, high = np.quantile(factor * np.sqrt(self.moment(power, first, psd=drawn)), QUANTILES)
+            low, high = np.quantile(
+                factor * np.sqrt(self.moment(power, first, psd=drawn)), QUANTILES
+            )
             result[f"rms_{name}" if name != "rms" else "rms_height"] = {
                 "value": value,
                 "interval": [float(low), float(high)],
@@ -222,7 +263,9 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     # waves twice as long as the longest measurement still tilt and bow it
     names = {entry[0] for entry in measured}
     longest = min(item.spectrum.spacing for item in spectra if item.name in names) / 2
-    bands = np.arange(min(seen.min(), int(np.floor(np.log10(longest) * BANDS_PER_DECADE))), seen.max() + 1)
+    bands = np.arange(
+        min(seen.min(), int(np.floor(np.log10(longest) * BANDS_PER_DECADE))), seen.max() + 1
+    )
     index = np.concatenate([np.searchsorted(bands, entry[1]) for entry in measured])
     values = np.concatenate([entry[2] for entry in measured])
     weight = 1 / np.concatenate([entry[3] for entry in measured])
@@ -256,7 +299,9 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     )
     rough = [(item, seen_by(item)) for item in spectra if item.name in names and item.rms_nm > 0]
     longest = max((part.length_nm for _, part in rough if part), default=0.0)
-    if longest == 0 or result.first < 2 * np.pi / longest:  # of a line that has measured these waves
+    if (
+        longest == 0 or result.first < 2 * np.pi / longest
+    ):  # of a line that has measured these waves
         return result
     alike = [(item, part) for item, part in rough if part and part.length_nm > 0.8 * longest]
     kind = next(part for _, part in alike if part.length_nm == longest)
@@ -269,30 +314,39 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
 
 
 def _between(normal: np.ndarray, right: np.ndarray, places: int) -> PlaceScatter:
-    """How much places differ, by the likelihood of the mixed model without bands and levels (restricted likelihood).
+    """How much places differ, by the likelihood of the mixed model without bands and levels
+    (restricted likelihood).
 
     Parameters
     ----------
-    normal, right : normal equations of bands and, last, levels of the places, which have no prior yet.
-    """
+    normal, right : normal equations of bands and, last, levels of the places, which have no prior
+        yet."""
     if places == 1:
         return PlaceScatter()
     levels = np.diag(np.arange(len(normal)) >= len(normal) - places).astype(float)
     covariances = np.linalg.inv(normal + levels / SCATTERS[:, None, None] ** 2)
-    chance = np.linalg.slogdet(covariances)[1] + right @ covariances @ right - 2 * places * np.log(SCATTERS)
+    chance = (
+        np.linalg.slogdet(covariances)[1]
+        + right @ covariances @ right
+        - 2 * places * np.log(SCATTERS)
+    )
     return PlaceScatter.of(0.5 * chance)
 
 
-def unseen_slope(log_q: np.ndarray, log_psd: np.ndarray, variance: np.ndarray) -> tuple[float, float]:
-    """Logarithmic slope of waves that are longer than all measured ones, and the deviation of each band from it.
+def unseen_slope(
+    log_q: np.ndarray, log_psd: np.ndarray, variance: np.ndarray
+) -> tuple[float, float]:
+    """Logarithmic slope of waves that are longer than all measured ones, and the deviation of each
+    band from it.
 
-    Self-affine surfaces have slopes of -2 to -4 (H of 0 to 1), and go on or roll off. What is shallower rolls off to a
-    plateau, of slope 0. The longest bands leave a slope uncertain, in which few waves are. Five bands share a slope.
+    Self-affine surfaces have slopes of -2 to -4 (H of 0 to 1), and go on or roll off. What is
+    shallower rolls off to a plateau, of slope 0. The longest bands leave a slope uncertain, in
+    which few waves are. Five bands share a slope.
 
     Parameters
     ----------
-    log_q, log_psd, variance : ln q, ln C and the variance of ln C of the bands of the longest measurement.
-    """
+    log_q, log_psd, variance : ln q, ln C and the variance of ln C of the bands of the longest
+        measurement."""
     end, possible = slice(None, BANDS_PER_DECADE // 2), np.linspace(-4.0, 0.0, 33)
     q, level, weight = log_q[end], log_psd[end], 1 / variance[end]
     q = q - weight @ q / weight.sum()

@@ -11,7 +11,9 @@ from mesoscale.topography.description.intervals import REACH
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 
 MOST_MISFIT = 3.0
-"""Of reduced chi^2 of a common shape: of 143 pairs of maps of one simulated surface none reaches 1.8."""
+"""Of reduced chi^2 of a common shape: of 143 pairs of maps of one simulated surface none reaches
+1.8.
+"""
 
 
 @dataclass(frozen=True)
@@ -24,8 +26,8 @@ class Overlap:
     low, high : shared wave vectors, 1/nm.
     ratio : C of the second over that of the first, geometric mean over the shared bands.
     expected : factor within which they should agree, by their own errors alone, at 90 %.
-    misfit : reduced chi^2 of one ratio for all shared bands: far above 1 where the spectra differ in shape.
-    """
+    misfit : reduced chi^2 of one ratio for all shared bands: far above 1 where the spectra differ
+        in shape."""
 
     first: str
     second: str
@@ -36,7 +38,9 @@ class Overlap:
     misfit: float
 
     def one_surface(self, chance: float) -> bool:
-        """Can these be places of one surface? Of two whose RMS heights scatter by 40 % a share `chance` is denied."""
+        """Can these be places of one surface? Of two whose RMS heights scatter by 40 % a share
+        `chance` is denied.
+        """
         from scipy.special import ndtri
 
         most = np.hypot(np.log(self.expected), float(ndtri(1 - chance / 2)) * np.sqrt(2) * 0.8)
@@ -49,7 +53,9 @@ class Overlap:
 
 
 def overlaps(spectra: Sequence[TrustedSpectrum]) -> list[Overlap]:
-    """Every pair of measurements of different size or kind that sees common bands, the largest shared range first."""
+    """Every pair of measurements of different size or kind that sees common bands, the largest
+    shared range first.
+    """
     bands = [(item, *on_bands(item)) for item in spectra]
     pairs = []
     for i, (first, numbers, level, variance) in enumerate(bands):
@@ -66,7 +72,9 @@ def overlaps(spectra: Sequence[TrustedSpectrum]) -> list[Overlap]:
             edges = 10 ** (np.array([common[0], common[-1] + 1]) / BANDS_PER_DECADE)
             expected = float(np.exp(REACH * spread))
             ratio = float(np.exp(difference))
-            pairs.append(Overlap(first.name, second.name, edges[0], edges[1], ratio, expected, misfit))
+            pairs.append(
+                Overlap(first.name, second.name, edges[0], edges[1], ratio, expected, misfit)
+            )
     return sorted(pairs, key=lambda item: item.low / item.high)
 
 
@@ -81,7 +89,8 @@ def refuse_different_films(pairs: Sequence[Overlap]) -> None:
     most = 100.0  # of C: a factor of 10 in RMS height
     if worst is not None and max(worst.ratio, 1 / worst.ratio) > most * worst.expected:
         raise InputError(
-            f"topography.scans: {worst.first} and {worst.second} cannot be one surface: between {worst.low:.2g} and "
-            f"{worst.high:.2g} /nm their spectra differ by a factor of {max(worst.ratio, 1 / worst.ratio):.3g}; "
-            f"accepted is {most:g}; give the files of one film, or correct a unit or a height scale"
+            f"topography.scans: {worst.first} and {worst.second} cannot be one surface: between"
+            f" {worst.low:.2g} and {worst.high:.2g} /nm their spectra differ by a factor of"
+            f" {max(worst.ratio, 1 / worst.ratio):.3g}; accepted is {most:g}; give the files of one"
+            " film, or correct a unit or a height scale"
         )

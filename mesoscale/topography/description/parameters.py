@@ -1,4 +1,6 @@
-"""Roughness parameters of a set of scans: q0, q1, slope, Hurst exponent and RMS, with ranges and doubts."""
+"""Roughness parameters of a set of scans: q0, q1, slope, Hurst exponent and RMS, with ranges and
+doubts.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +19,9 @@ from mesoscale.topography.roughness_spectrum import Convention, hurst_from_slope
 MAX_MISFIT = 0.3
 """RMS logarithmic residual of pooled bins above which equation 9 does not describe them."""
 MOST_APART = 1.5
-"""Standard deviation of ln C between measurements; where RMS heights of places scatter by 40 % it is 0.8."""
+"""Standard deviation of ln C between measurements; where RMS heights of places scatter by 40 % it
+is 0.8.
+"""
 
 
 @dataclass(frozen=True)
@@ -28,8 +32,10 @@ class Topography:
     ----------
     likelihood, line_fit : the two fits; None where impossible.
     q1, q1_limited : end of the power law (1/nm), or of what the finest trusted scan resolves.
-    cutoff : wave vector up to which RMS heights are integrated: the finest Nyquist wave vector, 1/nm.
-    estimates : q0 (1/nm), slope, hurst, rms (nm) by maximum likelihood; empty where not identifiable.
+    cutoff : wave vector up to which RMS heights are integrated: the finest Nyquist wave vector,
+        1/nm.
+    estimates : q0 (1/nm), slope, hurst, rms (nm) by maximum likelihood; empty where not
+        identifiable.
     doubts : why the parameters of eq. 9 should not be used; none when they describe the surface.
     """
 
@@ -59,11 +65,16 @@ def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) ->
     estimates = _estimates(spectra, fitted, cutoff, settings) if fitted is not None else {}
     q1 = line_fit.q1 if line_fit else max((item.high for item in spectra), default=0.0)
     limited = line_fit.q1_limited if line_fit else True
-    return Topography(fitted, line_fit, q1, limited, cutoff, estimates, _doubts(spectra, fitted, lowest, settings))
+    return Topography(
+        fitted, line_fit, q1, limited, cutoff, estimates, _doubts(spectra, fitted, lowest, settings)
+    )
 
 
 def _doubts(
-    spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit | None, lowest: float, settings: TopographySettings
+    spectra: Sequence[TrustedSpectrum],
+    fitted: LikelihoodFit | None,
+    lowest: float,
+    settings: TopographySettings,
 ) -> tuple[Doubt, ...]:
     """Why the parameters are not identifiable or not to be trusted, in words with numbers.
 
@@ -72,19 +83,37 @@ def _doubts(
     lowest : smallest wave vector that any measurement shows undisturbed, 1/nm.
     """
     if fitted is None:
-        text = "not identifiable: too few wave vectors between the scan's size and what the instrument resolves"
-        return (Doubt("too_few_waves", text, "scan more pixels or a larger area, or state a sharper tip", fatal=True),)
+        text = (
+            "not identifiable: too few wave vectors between the scan's size and what the instrument"
+            " resolves"
+        )
+        return (
+            Doubt(
+                "too_few_waves",
+                text,
+                "scan more pixels or a larger area, or state a sharper tip",
+                fatal=True,
+            ),
+        )
     doubts = []
     highest = max(item.high for item in spectra)
-    least_gain, least_span = 12.0, 2.5  # of 2 ln L by a plateau or a power law; of the trusted range over q0
+    least_gain, least_span = (
+        12.0,
+        2.5,
+    )  # of 2 ln L by a plateau or a power law; of the trusted range over q0
     if fitted.power_gain < least_gain or fitted.slope < 0.5:
         text = "not identifiable: no power law, the spectrum is flat (noise, or pixels too coarse)"
-        doubts.append(Doubt("flat_spectrum", text, "scan with less noise and finer pixels", "slope", fatal=True))
-    # six maps of eq. 9 with 6.4 waves of the knee a side (1.9): plateau 27 % too low, RMS 7 %; with 9.5 (2.9) right
+        doubts.append(
+            Doubt(
+                "flat_spectrum", text, "scan with less noise and finer pixels", "slope", fatal=True
+            )
+        )
+    # six maps of eq. 9 with 6.4 waves of the knee a side (1.9): plateau 27 % too low, RMS 7 %; with
+    # 9.5 (2.9) right
     if fitted.plateau_gain < least_gain or fitted.q0 < 2.4 * lowest:
         text = (
-            f"the knee q0 of eq. 9 cannot be told: waves are seen undisturbed from {lowest:.2g} /nm on, which shows no "
-            "plateau below it, or too little of one"
+            f"the knee q0 of eq. 9 cannot be told: waves are seen undisturbed from {lowest:.2g} /nm"
+            " on, which shows no plateau below it, or too little of one"
         )
         doubts.append(Doubt("no_plateau", text, "scans of a larger area would tell q0", "q0"))
     if highest < least_span * fitted.q0:
@@ -96,40 +125,54 @@ def _doubts(
     use_measured = "use the measured spectrum (topography.description)"
     if fitted.misfit > MAX_MISFIT:
         text = (
-            f"no plateau with a power law common to the scans: the fit misses the spectra by a factor "
-            f"{np.exp(fitted.misfit):.2g} (RMS)"
+            "no plateau with a power law common to the scans: the fit misses the spectra by a"
+            f" factor {np.exp(fitted.misfit):.2g} (RMS)"
         )
         doubts.append(Doubt("no_common_power_law", text, use_measured))
     if fitted.amplitude_sd > MOST_APART:
         text = (
-            f"no level common to the measurements: about a power law of one shape their C scatters by a factor of "
-            f"{np.exp(fitted.amplitude_sd):.2g} (standard deviation)"
+            "no level common to the measurements: about a power law of one shape their C scatters"
+            f" by a factor of {np.exp(fitted.amplitude_sd):.2g} (standard deviation)"
         )
-        doubts.append(Doubt("levels_differ", text, f"{use_measured}, check units and height scales", "rms"))
+        doubts.append(
+            Doubt("levels_differ", text, f"{use_measured}, check units and height scales", "rms")
+        )
     hurst = hurst_from_slope(fitted.slope, settings.convention)
     if not 0 < hurst < 1:
         other: Convention = "profile" if settings.convention == "areal" else "areal"
         inside = 0 < hurst_from_slope(fitted.slope, other) < 1
-        hint = f" (with topography.convention and contact.reading.convention: {other} it is in)" if inside else ""
+        hint = (
+            f" (with topography.convention and contact.reading.convention: {other} it is in)"
+            if inside
+            else ""
+        )
         text = f"H = {hurst:.2f} is outside 0 ... 1 in convention {settings.convention}{hint}"
         doubts.append(Doubt("hurst_outside", text, use_measured, "slope"))
     return tuple(doubts)
 
 
 def _estimates(
-    spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, cutoff: float, settings: TopographySettings
+    spectra: Sequence[TrustedSpectrum],
+    fitted: LikelihoodFit,
+    cutoff: float,
+    settings: TopographySettings,
 ) -> dict[str, Estimate]:
     """Values of the fit; intervals of the typical place; scatter between the scans."""
     centre = np.array([np.log(fitted.plateau), np.log(fitted.q0), fitted.slope])
     slope_error = min(float(np.sqrt(fitted.covariance[2, 2])), 10.0)
     q0_interval = likelihood.q0_interval(spectra, fitted, REACH)
-    slope_interval = (float(fitted.slope - REACH * slope_error), float(fitted.slope + REACH * slope_error))
+    slope_interval = (
+        float(fitted.slope - REACH * slope_error),
+        float(fitted.slope + REACH * slope_error),
+    )
 
     def log_rms(at: np.ndarray) -> float:
         return 0.5 * float(np.log(mean_square(np.exp(at[0]), np.exp(at[1]), at[2], cutoff)))
 
     step = 1e-4
-    gradient = np.array([(log_rms(centre + step * e) - log_rms(centre - step * e)) / (2 * step) for e in np.eye(3)])
+    gradient = np.array(
+        [(log_rms(centre + step * e) - log_rms(centre - step * e)) / (2 * step) for e in np.eye(3)]
+    )
     # unidentified: a factor of e^10 is wide enough
     rms_error = min(float(np.sqrt(gradient @ fitted.covariance @ gradient)), 10.0)
     rms = float(np.exp(log_rms(centre)))
@@ -140,12 +183,16 @@ def _estimates(
         "q0": Estimate(fitted.q0, q0_interval, union(q0_interval, own_q0)),
         "slope": slope,
         "hurst": _hurst(slope, settings.convention),
-        "rms": Estimate(rms, (float(low), float(high)), union([low, high], fitted.scan_rms(cutoff))),
+        "rms": Estimate(
+            rms, (float(low), float(high)), union([low, high], fitted.scan_rms(cutoff))
+        ),
     }
 
 
 def _hurst(slope: Estimate, convention: Convention) -> Estimate:
-    """H of a slope; ranges are clipped to 0.05 ... 1 where H lies inside (the paper clips 1.20 to 1.0)."""
+    """H of a slope; ranges are clipped to 0.05 ... 1 where H lies inside (the paper clips 1.20 to
+    1.0).
+    """
     value = hurst_from_slope(slope.value, convention)
     interval, scatter = (
         (hurst_from_slope(low, convention), hurst_from_slope(high, convention))

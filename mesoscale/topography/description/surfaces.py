@@ -1,14 +1,15 @@
 """Are the measurements of one surface, or of several?
 
-On one film ln C_kb = f_b + a_k + s_k x_b + error: a place k has a level and, less, a tilt of its own over x = ln q.
-Levels and tilts scatter about one middle. On two films they fall into two heaps. Which map is of which film is not
-told, so each cut of the ordered values into two heaps is asked (for one variable the best two heaps are such a cut,
-doi:10.1080/01621459.1958.10501479): how far are their means apart, over the scatter within? How large the largest
-answer is by chance says a simulation of as many places of one film, with the scatter and the errors found here.
+On one film ln C_kb = f_b + a_k + s_k x_b + error: a place k has a level and, less, a tilt of its
+own over x = ln q. Levels and tilts scatter about one middle. On two films they fall into two heaps.
+Which map is of which film is not told, so each cut of the ordered values into two heaps is asked
+(for one variable the best two heaps are such a cut, doi:10.1080/01621459.1958.10501479): how far
+are their means apart, over the scatter within? How large the largest answer is by chance says a
+simulation of as many places of one film, with the scatter and the errors found here.
 
-A scatter that is estimated hides two films whose places differ by as much as the films do. With six maps the means must
-be about ten times the scatter apart (python -m evidence topography.surfaces has the error rates).
-"""
+A scatter that is estimated hides two films whose places differ by as much as the films do. With six
+maps the means must be about ten times the scatter apart (python -m evidence topography.surfaces has
+the error rates)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -35,7 +36,8 @@ class Cut:
 
     Attributes
     ----------
-    score : distance of the means over its standard deviation, by errors and scatter within the heaps.
+    score : distance of the means over its standard deviation, by errors and scatter within the
+        heaps.
     apart : distance of the means.
     low, high : numbers of the places of each heap.
     """
@@ -47,7 +49,9 @@ class Cut:
 
 
 def levels_and_tilts(spectra: Sequence[TrustedSpectrum]) -> dict[str, tuple[Array, Array]]:
-    """Level and tilt of each measurement about their means, (n,), with their covariance (n, n), on shared bands."""
+    """Level and tilt of each measurement about their means, (n,), with their covariance (n, n), on
+    shared bands.
+    """
     bands = [on_bands(item) for item in spectra]
     number = np.concatenate([part[0] for part in bands])
     owner = np.repeat(np.arange(len(bands)), [len(part[0]) for part in bands])
@@ -56,7 +60,9 @@ def levels_and_tilts(spectra: Sequence[TrustedSpectrum]) -> dict[str, tuple[Arra
     shared = count[index] > 1
     if not shared.any():
         return {}
-    number, owner, value, variance, index = (part[shared] for part in (number, owner, value, variance, index))
+    number, owner, value, variance, index = (
+        part[shared] for part in (number, owner, value, variance, index)
+    )
     x = number * np.log(10) / BANDS_PER_DECADE
     x = x - np.average(x, weights=1 / variance)
     film, places = np.eye(len(count))[index], np.eye(len(bands))[owner]
@@ -74,7 +80,9 @@ def levels_and_tilts(spectra: Sequence[TrustedSpectrum]) -> dict[str, tuple[Arra
 
 
 def best_cut(values: Array, covariance: Array) -> Cut:
-    """The cut of n values, of errors `covariance` (n, n), whose heaps are furthest apart for the scatter within."""
+    """The cut of n values, of errors `covariance` (n, n), whose heaps are furthest apart for the
+    scatter within.
+    """
     n = len(values)
     order = np.argsort(values)
     values, covariance = values[order], covariance[np.ix_(order, order)]
@@ -90,7 +98,12 @@ def best_cut(values: Array, covariance: Array) -> Cut:
     within = squares - first**2 / below - second**2 / above
     expected = np.trace(covariance) - low / below - high / above
     scatter = np.maximum(within - expected, 0.0) / (n - 2)
-    variance = low / below**2 + high / above**2 - 2 * across / (below * above) + scatter * (1 / below + 1 / above)
+    variance = (
+        low / below**2
+        + high / above**2
+        - 2 * across / (below * above)
+        + scatter * (1 / below + 1 / above)
+    )
     score = apart / np.sqrt(variance)
     best = int(np.argmax(score))
     return Cut(float(score[best]), float(apart[best]), order[: best + 1], order[best + 1 :])
@@ -100,20 +113,29 @@ def by_chance(values: Array, covariance: Array, score: float) -> float:
     """Probability that places of one film give a best cut of `score` or more."""
     n = len(values)
     mean_free = np.eye(n) - 1 / n
-    scatter = max(float(values @ mean_free @ values - np.trace(mean_free @ covariance)), 0.0) / (n - 1)
+    scatter = max(float(values @ mean_free @ values - np.trace(mean_free @ covariance)), 0.0) / (
+        n - 1
+    )
     spread, vectors = np.linalg.eigh(covariance + scatter * np.eye(n))
-    drawn = np.random.default_rng(4).standard_normal((SIMULATED, n)) @ (vectors * np.sqrt(np.maximum(spread, 0.0))).T
+    drawn = (
+        np.random.default_rng(4).standard_normal((SIMULATED, n))
+        @ (vectors * np.sqrt(np.maximum(spread, 0.0))).T
+    )
     return (1 + sum(best_cut(row, covariance).score >= score for row in drawn)) / (SIMULATED + 1)
 
 
 def two_heaps(spectra: Sequence[TrustedSpectrum]) -> tuple[str, Cut, float] | None:
-    """What parts the measurements into two surfaces, the heaps, and the chance of one surface; None for one surface."""
+    """What parts the measurements into two surfaces, the heaps, and the chance of one surface; None
+    for one surface.
+    """
     if len(spectra) < FEWEST:
         return None
     estimates = levels_and_tilts(spectra)
     cuts = [(name, best_cut(*part)) for name, part in estimates.items()]
     # 0.2 of ln C is 10 % of the RMS height; the same of the slope of ln C over ln q
-    asked = [(by_chance(*estimates[name], cut.score), name, cut) for name, cut in cuts if cut.apart > 0.2]
+    asked = [
+        (by_chance(*estimates[name], cut.score), name, cut) for name, cut in cuts if cut.apart > 0.2
+    ]
     chance, name, cut = min(asked, key=lambda item: item[0], default=(1.0, "", None))
     return None if cut is None or chance > FALSE_ALARMS / 3 else (name, cut, chance)
 
@@ -131,10 +153,15 @@ def several_surfaces(
     if heaps is not None:
         name, cut, chance = heaps
         groups = [[spectra[k].name for k in sorted(heap)] for heap in (cut.low, cut.high)]
-        differ = f"by a factor of {np.exp(cut.apart):.2g} in C" if name == "level" else f"by {cut.apart:.2g} in slope"
+        differ = (
+            f"by a factor of {np.exp(cut.apart):.2g} in C"
+            if name == "level"
+            else f"by {cut.apart:.2g} in slope"
+        )
         text = (
-            f"{_listed(groups[0])} and {_listed(groups[1])} look like two surfaces: their spectra differ {differ}, "
-            f"more than places of one surface do (by chance once in {1 / chance:.0f})"
+            f"{_listed(groups[0])} and {_listed(groups[1])} look like two surfaces: their spectra"
+            f" differ {differ}, more than places of one surface do (by chance once in"
+            f" {1 / chance:.0f})"
         )
         return [Doubt("several_surfaces", text, _apart(groups, files), fatal=True)]
     strangers = [pair for pair in pairs if not pair.one_surface(FALSE_ALARMS / 3 / len(pairs))]
@@ -144,16 +171,21 @@ def several_surfaces(
         if worst.misfit > MOST_MISFIT:
             differ = f"in shape, by {np.sqrt(worst.misfit):.2g} times their errors"
         text = (
-            f"{worst.first} and {worst.second} look like two surfaces: from {worst.low:.2g} to {worst.high:.2g} /nm "
-            f"their spectra differ {differ}"
+            f"{worst.first} and {worst.second} look like two surfaces: from {worst.low:.2g} to"
+            f" {worst.high:.2g} /nm their spectra differ {differ}"
         )
-        return [Doubt("several_surfaces", text, _apart([[worst.first], [worst.second]], files), fatal=True)]
+        return [
+            Doubt(
+                "several_surfaces", text, _apart([[worst.first], [worst.second]], files), fatal=True
+            )
+        ]
     apart = [pair for pair in pairs if not pair.agrees]
     if apart and len(spectra) < FEWEST:
         worst = max(apart, key=lambda pair: abs(np.log(pair.ratio)))
         text = (
-            f"{worst.first} and {worst.second} differ by a factor of {max(worst.ratio, 1 / worst.ratio):.2g} in C; "
-            f"fewer than {FEWEST} measurements cannot tell two surfaces from places of one"
+            f"{worst.first} and {worst.second} differ by a factor of"
+            f" {max(worst.ratio, 1 / worst.ratio):.2g} in C; fewer than {FEWEST} measurements"
+            " cannot tell two surfaces from places of one"
         )
         return [Doubt("few_places", text, "measure other places of the surface", "rms")]
     return []
@@ -165,9 +197,17 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _apart(groups: Sequence[Sequence[str]], files: Mapping[str, str]) -> str:
-    """How to run the groups apart: one line of a scene each, where no file holds measurements of both."""
+    """How to run the groups apart: one line of a scene each, where no file holds measurements of
+    both.
+    """
     scans = [list(dict.fromkeys(files.get(name, name) for name in group)) for group in groups]
     if set(scans[0]) & set(scans[1]):
-        return "export each group to files of its scans; if they are one surface, set topography.on_doubt: warn"
+        return (
+            "export each group to files of its scans; if they are one surface, set"
+            " topography.on_doubt: warn"
+        )
     scenes = " and ".join(f"topography: {{scans: [{', '.join(part)}]}}" for part in scans)
-    return f"run them apart, in scenes with {scenes}; if they are one surface, set topography.on_doubt: warn"
+    return (
+        f"run them apart, in scenes with {scenes}; if they are one surface, set"
+        " topography.on_doubt: warn"
+    )

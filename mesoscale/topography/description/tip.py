@@ -1,16 +1,17 @@
-"""What a tip does beyond blunting: it lifts long waves of tall grains, fills grooves, and its radius is uncertain.
+"""What a tip does beyond blunting: it lifts long waves of tall grains, fills grooves, and its
+radius is uncertain.
 
-A tip rests on the highest point below it, so that its image lies above the surface. On a Gaussian surface this lift
-is the same everywhere on average and goes with the mean height. Tall grains are steep too: there the lift is larger,
-and all long waves grow by one factor. Grooves are filled instead, and long waves shrink. A surface z = F(g)
-(`height_synthesis`) is at g as a Gaussian one whose short waves are a = F'(g) / sqrt(<F'^2>) times as high, of mean
-lift L(a). Its long waves in the image are 1 + Cov(L, F) / Var(F) times as high.
+A tip rests on the highest point below it, so that its image lies above the surface. On a Gaussian
+surface this lift is the same everywhere on average and goes with the mean height. Tall grains are
+steep too: there the lift is larger, and all long waves grow by one factor. Grooves are filled
+instead, and long waves shrink. A surface z = F(g) (`height_synthesis`) is at g as a Gaussian one
+whose short waves are a = F'(g) / sqrt(<F'^2>) times as high, of mean lift L(a). Its long waves in
+the image are 1 + Cov(L, F) / Var(F) times as high.
 
-Beside dilated surfaces (14; slopes 2.3 to 3.7, RMS 2 to 10 nm, tips of 2 to 10 nm, skewness 0.35 to 0.9) this lift of
-ln C, 0.05 to 0.5, is right to 15 % from the true heights;
-from those of images of 1 um 0.85 of it is found, 0.74 to 1.1; of grooves all of it
-(python -m evidence topography.coverage --kinds grooved).
-"""
+Beside dilated surfaces (14; slopes 2.3 to 3.7, RMS 2 to 10 nm, tips of 2 to 10 nm, skewness 0.35 to
+0.9) this lift of ln C, 0.05 to 0.5, is right to 15 % from the true heights; from those of images of
+1 um 0.85 of it is found, 0.74 to 1.1; of grooves all of it (python -m evidence topography.coverage
+--kinds grooved)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -37,12 +38,14 @@ class Lift:
 
     Attributes
     ----------
-    further, furthest, finest_wave : roughness goes on with its slope beyond what is seen, to between three and thirty
+    further, furthest, finest_wave : roughness goes on with its slope beyond what is seen, to
+        between three and thirty
         times, at most to waves of two atoms (1, 1, 1/nm).
     most : of ln C; where half the height would be lift this theory ends.
     sites : of the Gaussian surfaces that a tip is set on.
     amplitudes : of their short waves, times those measured.
-    recovered, error : share of the lift that is found from images, which lose skewness, and what that leaves uncertain.
+    recovered, error : share of the lift that is found from images, which lose skewness, and what
+        that leaves uncertain.
     radius_error : relative; a radius is anywhere within, as a maker states it or a worn tip has it.
     """
 
@@ -64,19 +67,27 @@ WEIGHT = np.exp(-(Z**2) / 2) / np.sum(np.exp(-(Z**2) / 2))
 def tip_lift(
     radius_nm: float, fitted: LikelihoodFit, seen: float, cutoff: float, quantiles: Array
 ) -> tuple[float, float]:
-    """ln of the C of grainy or grooved images over the surface's at long waves, and its standard deviation.
+    """ln of the C of grainy or grooved images over the surface's at long waves, and its standard
+    deviation.
 
     Parameters
     ----------
     fitted : eq. 9 of the images.
     seen, cutoff : where the trusted spectrum and the images end, 1/nm.
-    quantiles : (len(Z),) heights of the images at each normal variable of `Z`, in units of their RMS.
-    """
+    quantiles : (len(Z),) heights of the images at each normal variable of `Z`, in units of their
+        RMS."""
     rms = float(np.sqrt(mean_square(fitted.plateau, fitted.q0, fitted.slope, cutoff)))
     image = _smooth(quantiles * rms)
-    ends = LIFT.further * seen, max(min(LIFT.furthest * seen, LIFT.finest_wave), LIFT.further * seen)
+    ends = (
+        LIFT.further * seen,
+        max(min(LIFT.furthest * seen, LIFT.finest_wave), LIFT.further * seen),
+    )
     low, gain, high = (
-        gain / LIFT.recovered if (gain := _gain(image, _mean_lifts(radius_nm, fitted, end))) > 0 else gain
+        (
+            gain / LIFT.recovered
+            if (gain := _gain(image, _mean_lifts(radius_nm, fitted, end))) > 0
+            else gain
+        )
         for end in (ends[0], np.sqrt(ends[0] * ends[1]), ends[1])
     )
     between = 0.5 * (high - low) / np.sqrt(3)  # anywhere between both
@@ -84,14 +95,20 @@ def tip_lift(
 
 
 def _mean_lifts(radius_nm: float, fitted: LikelihoodFit, end: float) -> Array:
-    """ln of the mean lift (nm) of Gaussian surfaces with waves up to `end` (1/nm), for each of the amplitudes."""
+    """ln of the mean lift (nm) of Gaussian surfaces with waves up to `end` (1/nm), for each of the
+    amplitudes.
+    """
     length = LIFT.sites * np.pi / end
     first = 2 * np.pi / length
     spectrum = RoughSpectrum(fitted.plateau, fitted.q0, fitted.slope, end)
     whole, longer = (mean_square(fitted.plateau, fitted.q0, fitted.slope, q) for q in (end, first))
-    surface = synthesize_spectrum(LIFT.sites, length, spectrum.psd, float(np.sqrt(whole - longer)), seed=0)
+    surface = synthesize_spectrum(
+        LIFT.sites, length, spectrum.psd, float(np.sqrt(whole - longer)), seed=0
+    )
     step = length / LIFT.sites
-    lifts = [float(np.mean(dilate(a * surface, radius_nm, step) - a * surface)) for a in LIFT.amplitudes]
+    lifts = [
+        float(np.mean(dilate(a * surface, radius_nm, step) - a * surface)) for a in LIFT.amplitudes
+    ]
     return np.log(np.maximum(lifts, 1e-6))
 
 
@@ -111,7 +128,9 @@ def _gain(image: Array, lifts: Array) -> float:
 
 
 def _smooth(heights: Array) -> Array:
-    """The best sum of Hermite polynomials up to the third, rising: tables of few grains are rough."""
+    """The best sum of Hermite polynomials up to the third, rising: tables of few grains are
+    rough.
+    """
     root, shapes = np.sqrt(WEIGHT), np.stack([np.ones_like(Z), Z, Z**2 - 1, Z**3 - 3 * Z])
     share = np.linalg.lstsq((shapes * root).T, heights * root, rcond=None)[0]
     return np.maximum.accumulate(share @ shapes)
@@ -124,10 +143,11 @@ def _covariance(first: Array, second: Array) -> float:
 def without_lift(
     spectra: Sequence[TrustedSpectrum], topography: Topography, quantiles: Mapping[str, Array]
 ) -> tuple[list[TrustedSpectrum], float]:
-    """Spectra of grainy or grooved maps without what their tips changed, and the error of ln C that this leaves.
+    """Spectra of grainy or grooved maps without what their tips changed, and the error of ln C that
+    this leaves.
 
-    Maps without a tip and line profiles stay as they are; all do where eq. 9 describes the spectra too badly to say
-    how rough the surface is under a tip.
+    Maps without a tip and line profiles stay as they are; all do where eq. 9 describes the spectra
+    too badly to say how rough the surface is under a tip.
 
     Parameters
     ----------
@@ -135,7 +155,11 @@ def without_lift(
     """
     fitted = topography.likelihood
     lifted = [item for item in spectra if item.name in quantiles]
-    if fitted is None or fitted.misfit > MAX_MISFIT or not any(item.tip_radius_nm > 0 for item in lifted):
+    if (
+        fitted is None
+        or fitted.misfit > MAX_MISFIT
+        or not any(item.tip_radius_nm > 0 for item in lifted)
+    ):
         return list(spectra), 0.0
     common = np.mean(list(quantiles.values()), axis=0)
     seen = max(item.high for item in lifted)
@@ -145,47 +169,62 @@ def without_lift(
         if radius > 0
     }
     lowered = [
-        _lowered(item, lifts[item.tip_radius_nm][0]) if item.name in quantiles and item.tip_radius_nm > 0 else item
+        (
+            _lowered(item, lifts[item.tip_radius_nm][0])
+            if item.name in quantiles and item.tip_radius_nm > 0
+            else item
+        )
         for item in spectra
     ]
     return lowered, max(error for _, error in lifts.values())
 
 
 def _lowered(item: TrustedSpectrum, gain: float) -> TrustedSpectrum:
-    """A spectrum less the lift, which fades where the tip takes waves: by 0.14 and 0.42 where it takes 0.15 and 0.5."""
+    """A spectrum less the lift, which fades where the tip takes waves: by 0.14 and 0.42 where it
+    takes 0.15 and 0.5.
+    """
     fading = item.spectrum.psd / item.corrected_psd()
     spectrum = replace(item.spectrum, psd=item.spectrum.psd * np.exp(-gain * fading))
     return replace(item, spectrum=spectrum, rms_nm=item.rms_nm * float(np.exp(-gain / 2)))
 
 
 def with_lift_error(topography: Topography, error: float) -> Topography:
-    """The same estimates; the interval of the RMS height holds an error of ln C common to all waves."""
+    """The same estimates; the interval of the RMS height holds an error of ln C common to all
+    waves.
+    """
     if error == 0 or "rms" not in topography.estimates:
         return topography
     rms = topography.estimates["rms"].widened(error / 2, log=True)
     return replace(topography, estimates={**topography.estimates, "rms": rms})
 
 
-def lift_doubt(before: Sequence[TrustedSpectrum], after: Sequence[TrustedSpectrum], error: float) -> list[Doubt]:
+def lift_doubt(
+    before: Sequence[TrustedSpectrum], after: Sequence[TrustedSpectrum], error: float
+) -> list[Doubt]:
     """In words what was taken off, where that is worth a word (0.05 of ln C)."""
     rough = [(a.rms_nm, b.rms_nm) for a, b in zip(before, after, strict=True) if b.rms_nm > 0]
     gain = max((2 * float(np.log(a / b)) for a, b in rough), key=abs, default=0.0)
     if abs(gain) < 0.05:
         return []
-    grains = f"on tall grains the tip makes long waves higher: {np.expm1(gain / 2):.0%} of the RMS height are taken off"
+    grains = (
+        f"on tall grains the tip makes long waves higher: {np.expm1(gain / 2):.0%} of the RMS"
+        " height are taken off"
+    )
     grooves = f"the tip fills grooves: {np.expm1(-gain / 2):.0%} of the RMS height are added"
     text = f"{grains if gain > 0 else grooves}, uncertain by {error / 2:.0%}"
-    return [Doubt("tip_on_grains", text, "scan with a sharper tip, or state the radius of yours", "rms")]
+    return [
+        Doubt("tip_on_grains", text, "scan with a sharper tip, or state the radius of yours", "rms")
+    ]
 
 
 def with_radius_error(
     topography: Topography, spectra: Sequence[TrustedSpectrum], settings: TopographySettings
 ) -> Topography:
-    """The same estimates with intervals that hold an error of every tip's radius (`Lift.radius_error`).
+    """The same estimates with intervals that hold an error of every tip's radius
+    (`Lift.radius_error`).
 
-    All is analysed again with radii smaller and larger by that; half of the difference, as the half width of a uniform
-    distribution, is added to the interval in quadrature.
-    """
+    All is analysed again with radii smaller and larger by that; half of the difference, as the half
+    width of a uniform distribution, is added to the interval in quadrature."""
     if not topography.estimates or not any(item.tip_radius_nm > 0 for item in spectra):
         return topography
     sharp, blunt = (analyse(item, settings).estimates for item in _sharper_and_blunter(spectra))
@@ -193,13 +232,17 @@ def with_radius_error(
     for name, estimate in topography.estimates.items():
         if name in sharp and name in blunt:
             log = name in ("q0", "rms")
-            ends = [np.log(other[name].value) if log else other[name].value for other in (sharp, blunt)]
+            ends = [
+                np.log(other[name].value) if log else other[name].value for other in (sharp, blunt)
+            ]
             estimate = estimate.widened(abs(float(ends[1] - ends[0])) / 2 / np.sqrt(3), log)
         estimates[name] = estimate
     return replace(topography, estimates=estimates)
 
 
-def spectrum_with_radius_error(one: OneSpectrum | None, spectra: Sequence[TrustedSpectrum]) -> OneSpectrum | None:
+def spectrum_with_radius_error(
+    one: OneSpectrum | None, spectra: Sequence[TrustedSpectrum]
+) -> OneSpectrum | None:
     """The same spectrum whose band holds an error of every tip's radius, alike for all of them."""
     if one is None or not any(item.tip_radius_nm > 0 for item in spectra):
         return one
@@ -208,7 +251,9 @@ def spectrum_with_radius_error(one: OneSpectrum | None, spectra: Sequence[Truste
         return one
     log_q = np.log(one.q)
     ends = [
-        np.interp(log_q, np.log(other.q), other.log_psd - np.interp(np.log(other.q), log_q, one.log_psd))
+        np.interp(
+            log_q, np.log(other.q), other.log_psd - np.interp(np.log(other.q), log_q, one.log_psd)
+        )
         for other in (blunt, sharp)
     ]
     return one.with_error((ends[0] - ends[1]) / 2 / np.sqrt(3))
@@ -216,10 +261,16 @@ def spectrum_with_radius_error(one: OneSpectrum | None, spectra: Sequence[Truste
 
 def _sharper_and_blunter(spectra: Sequence[TrustedSpectrum]) -> list[list[TrustedSpectrum]]:
     """The measurements as trusted with tips of smaller and of larger radius."""
-    return [[_with_radius(item, 1 + side * LIFT.radius_error) for item in spectra] for side in (-1, 1)]
+    return [
+        [_with_radius(item, 1 + side * LIFT.radius_error) for item in spectra] for side in (-1, 1)
+    ]
 
 
 def _with_radius(item: TrustedSpectrum, factor: float) -> TrustedSpectrum:
     radius = factor * item.tip_radius_nm
-    high = min(trusted_range(item.name, item.spectrum, radius).high, item.reach) if radius > 0 else item.high
+    high = (
+        min(trusted_range(item.name, item.spectrum, radius).high, item.reach)
+        if radius > 0
+        else item.high
+    )
     return replace(item, tip_radius_nm=radius, high=max(high, 2 * item.low))

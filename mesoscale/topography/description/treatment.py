@@ -1,14 +1,17 @@
-"""Maps that were smoothed, filtered or interpolated after they were measured: how they betray it, and what they show.
+"""Maps that were smoothed, filtered or interpolated after they were measured: how they betray it,
+and what they show.
 
 Three signs, each of which measured maps lack (evidence: `python -m evidence topography.treated`):
 
-- *fall*: means, Gaussians and low passes let a spectrum fall faster than any roughness does. A tip leaves creases, of
+- *fall*: means, Gaussians and low passes let a spectrum fall faster than any roughness does. A tip
+  leaves creases, of
   C ~ q^-5, and pixels fold short waves back, which makes a spectrum flatter.
 - *repeats*: medians and repeated pixels leave neighbours of exactly the same height.
-- *rhythm*: between points that were measured, an interpolated map is smoother than at them, with one period.
+- *rhythm*: between points that were measured, an interpolated map is smoother than at them, with
+  one period.
 
-What a filter passes is taken as G = exp(-(q / q_f)^p): the spectrum that was smoothed is C / G, as far as G is known.
-"""
+What a filter passes is taken as G = exp(-(q / q_f)^p): the spectrum that was smoothed is C / G, as
+far as G is known."""
 
 from dataclasses import dataclass, replace
 
@@ -18,28 +21,44 @@ from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.spectrum import Spectrum
 
 PASSED = 0.15
-"""Share of C that a filter passes at the end of what is trusted. Up to there G is known to 30 %, on made maps."""
+"""Share of C that a filter passes at the end of what is trusted. Up to there G is known to 30 %, on
+made maps.
+"""
 STEEPEST, OVER = -8.5, 1.3
 """d ln C / d ln q, over this ratio of wave vectors, that no measured map has."""
 FIRST_SHELL, SHELLS = 4.0, 4.0  # the first, and how many apart at least: single ones scatter
-WIDTH, LAST = 0.12, 0.95  # of means, and of the Nyquist wave vector, where waves that a computer made may end
+WIDTH, LAST = (
+    0.12,
+    0.95,
+)  # of means, and of the Nyquist wave vector, where waves that a computer made may end
 POWERS, WALL = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 40.0), 6.0  # from a Gaussian to a wall
 NEAR = 2.5  # times below its end a fall is compared with a straight one: a knee lies further away
 CREASED = 5.0  # -d ln C / d ln q of creases: a filter leaves less, all the way to the end
 SLOPES = (1.5, CREASED)  # of -d ln C / d ln q of roughness
-LEFT = 0.9  # of fourth differences over second ones: measured maps have 1.1 or more, Gaussians less than 0.5
+# of fourth differences over second ones: measured maps have 1.1 or more, Gaussians less than 0.5
+LEFT = 0.9
 EQUAL = 0.02  # share of neighbours of equal height; medians leave 0.04 to 0.13
 MANY_LEVELS = 10.0  # steps of a digit that neighbours must differ by: else equal heights are chance
 MEDIAN_FALL = 4.1  # q_f times the side of a median's window, on made maps
 MOST_REPEATS = 25  # pixels
 RHYTHM, RHYTHM_ALONE = 25.0, 400.0
-"""Power of a period over that of others, along both axes or along one; 17 and 35 on 100 made maps without."""
-STRAIGHT, TWOFOLD_LEFT = 0.43, 0.6  # of bends, and of roughness (`LEFT`): maps enlarged twofold or more have less
+"""Power of a period over that of others, along both axes or along one; 17 and 35 on 100 made maps
+without.
+"""
+STRAIGHT, TWOFOLD_LEFT = (
+    0.43,
+    0.6,
+)  # of bends, and of roughness (`LEFT`): maps enlarged twofold or more have less
 LONGEST_PERIOD = 12.0  # pixels
-MODULATION = 0.15  # of the roughness of pixels by that period; the smoothest interpolation leaves 0.2
-PATTERN = 3.0  # of what all lines have in common over what differs, from which on a surface has a pattern
+MODULATION = (
+    0.15  # of the roughness of pixels by that period; the smoothest interpolation leaves 0.2
+)
+PATTERN = (
+    3.0  # of what all lines have in common over what differs, from which on a surface has a pattern
+)
 DRIFTS = 3  # periods over a map, below which roughness merely differs from place to place
-LINEAR = 0.5  # of the Nyquist wave vector of the points measured, where a linear interpolation passes 0.66 of C
+# of the Nyquist wave vector of the points measured, where a linear interpolation passes 0.66 of C
+LINEAR = 0.5
 
 
 @dataclass(frozen=True)
@@ -82,12 +101,16 @@ def treatment_of(raw: Scan, cleaned: Scan, spectrum: Spectrum) -> Treatment | No
 
 
 def _is_smooth(heights: np.ndarray) -> bool:
-    """Are most pixels smoother than their neighbourhood? Between tall particles a measured map is rough."""
+    """Are most pixels smoother than their neighbourhood? Between tall particles a measured map is
+    rough.
+    """
     return min(_roughness_left(heights), _roughness_left(heights.T)) < LEFT
 
 
 def _roughness_left(heights: np.ndarray) -> float:
-    """Fourth differences along the first axis over second ones, each by its median, where heights are not tall."""
+    """Fourth differences along the first axis over second ones, each by its median, where heights
+    are not tall.
+    """
     second = heights[1:-1] - (heights[:-2] + heights[2:]) / 2
     fourth = second[1:-1] - (second[:-2] + second[2:]) / 2
     tall = np.abs(heights - np.median(heights))
@@ -98,7 +121,9 @@ def _roughness_left(heights: np.ndarray) -> float:
 
 
 def restored(spectrum: Spectrum, treated: Treatment, rms_nm: float) -> tuple[Spectrum, float]:
-    """The spectrum and the RMS height (nm) that a map had before a filter, as far as what it passed is known."""
+    """The spectrum and the RMS height (nm) that a map had before a filter, as far as what it passed
+    is known.
+    """
     raised = np.maximum(treated.passed(spectrum.q), PASSED)
     psd = spectrum.psd / raised
     seen = spectrum.q <= treated.end
@@ -111,7 +136,9 @@ def _fall(spectrum: Spectrum) -> Treatment | None:
     """A filter by the fall of a spectrum."""
     q, log_psd = spectrum.q, np.log(spectrum.psd)
     last = LAST * spectrum.nyquist / (1 + WIDTH) / OVER
-    starts = np.geomspace(FIRST_SHELL * spectrum.spacing, max(last, FIRST_SHELL * spectrum.spacing), 100)
+    starts = np.geomspace(
+        FIRST_SHELL * spectrum.spacing, max(last, FIRST_SHELL * spectrum.spacing), 100
+    )
     if starts[-1] < 2 * starts[0]:
         return None
     ends = starts * np.maximum(OVER, 1 + SHELLS * spectrum.spacing / starts)
@@ -132,7 +159,9 @@ def _fall(spectrum: Spectrum) -> Treatment | None:
 
 
 def _fitted_filter(spectrum: Spectrum, end: float) -> Treatment | None:
-    """The filter of a spectrum that falls up to `end`; beyond are side lobes, or what digits leave."""
+    """The filter of a spectrum that falls up to `end`; beyond are side lobes, or what digits
+    leave.
+    """
     points = np.geomspace(max(2.5 * spectrum.spacing, end / 8), end, 60)
     level = np.interp(np.log(points), np.log(spectrum.q), np.log(spectrum.psd))
     if not _steepens(points / end, level):
@@ -149,7 +178,9 @@ def _fitted_filter(spectrum: Spectrum, end: float) -> Treatment | None:
 
 
 def _steepens(u: np.ndarray, level: np.ndarray) -> bool:
-    """Does a spectrum bend down where it falls, so that no straight line does as well as a filter?"""
+    """Does a spectrum bend down where it falls, so that no straight line does as well as a
+    filter?
+    """
     near = u > 1 / NEAR
     log_u, level = np.log(u[near]), level[near]
     straight = level - np.polyval(np.polyfit(log_u, level, 1), log_u)
@@ -167,19 +198,25 @@ def _mean_about(q: np.ndarray, values: np.ndarray, centres: np.ndarray) -> np.nd
 
 
 def _fitted(u: np.ndarray, level: np.ndarray, power: float) -> tuple[float, float, float]:
-    """Squared misfit, strength and power of ln C = a - s ln u - strength u^power, s within `SLOPES`."""
+    """Squared misfit, strength and power of ln C = a - s ln u - strength u^power, s within
+    `SLOPES`.
+    """
     log_u, fall = np.log(u), u**power
     system = np.stack([np.ones_like(u), -log_u, -fall], axis=1)
     level_at_end, slope, strength = np.linalg.lstsq(system, level, rcond=None)[0]
     if not SLOPES[0] <= slope <= SLOPES[1]:
         slope = float(np.clip(slope, *SLOPES))
-        level_at_end, strength = np.linalg.lstsq(system[:, ::2], level + slope * log_u, rcond=None)[0]
+        level_at_end, strength = np.linalg.lstsq(system[:, ::2], level + slope * log_u, rcond=None)[
+            0
+        ]
     misfit = level - system @ (level_at_end, slope, strength)
     return float(misfit @ misfit), float(strength), power
 
 
 def repeated_pixels(heights: np.ndarray) -> int:
-    """Side (pixels) of the window of a median, or of repeated pixels; 0 where neighbours differ as heights do."""
+    """Side (pixels) of the window of a median, or of repeated pixels; 0 where neighbours differ as
+    heights do.
+    """
     values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
     if len(values) < 1000:
         return 0
@@ -190,7 +227,9 @@ def repeated_pixels(heights: np.ndarray) -> int:
 
 
 def _repeats(heights: np.ndarray) -> int:
-    """Pixels along the first axis over which a height repeats itself; 0 where no more do than digits let."""
+    """Pixels along the first axis over which a height repeats itself; 0 where no more do than
+    digits let.
+    """
     away = np.abs(np.diff(heights, axis=0))
     away = away[np.isfinite(away)]
     if len(away) == 0 or not away.any():
@@ -210,7 +249,9 @@ def _repeats(heights: np.ndarray) -> int:
 
 
 def rhythm(heights: np.ndarray) -> float:
-    """Distance in pixels of the points between which levelled heights (nx, ny) were interpolated; 0 for none."""
+    """Distance in pixels of the points between which levelled heights (nx, ny) were interpolated; 0
+    for none.
+    """
     periods = [_period(heights), _period(heights.T)]
     powers = [power for power, _ in periods]
     frequencies = [frequency for _, frequency in periods]
@@ -230,11 +271,15 @@ def _is_enlarged_twofold(heights: np.ndarray) -> bool:
     bends = heights[1:-1] - (heights[:-2] + heights[2:]) / 2
     bends = bends - np.median(bends, axis=1)[:, None]
     straight = np.median(np.abs(bends)) < STRAIGHT * bends.std()
-    return bool(straight or min(_roughness_left(heights), _roughness_left(heights.T)) < TWOFOLD_LEFT)
+    return bool(
+        straight or min(_roughness_left(heights), _roughness_left(heights.T)) < TWOFOLD_LEFT
+    )
 
 
 def _period(heights: np.ndarray) -> tuple[float, float]:
-    """Power over that of others, and frequency (1/pixel), of the rhythm of roughness along the first axis."""
+    """Power over that of others, and frequency (1/pixel), of the rhythm of roughness along the
+    first axis.
+    """
     bends = heights[1:-1] - (heights[:-2] + heights[2:]) / 2
     common = np.mean(bends, axis=1)
     roughness = np.var(bends, axis=1)
@@ -245,7 +290,9 @@ def _period(heights: np.ndarray) -> tuple[float, float]:
     frequency = np.arange(len(wave)) / count
     short = frequency > 1 / LONGEST_PERIOD
     first = int(np.argmax(np.where(short, wave, 0.0)))
-    if wave[DRIFTS:][~short[DRIFTS:]].max(initial=0.0) > 0.1 * wave[first]:  # a pattern, and a harmonic of it
+    if (
+        wave[DRIFTS:][~short[DRIFTS:]].max(initial=0.0) > 0.1 * wave[first]
+    ):  # a pattern, and a harmonic of it
         return 0.0, 0.0
     near = np.r_[wave[max(first - 8, 0) : max(first - 3, 0)], wave[first + 4 : first + 9]]
     usual = max(float(np.median(wave[short])), float(np.median(near)))

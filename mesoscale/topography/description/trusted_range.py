@@ -1,4 +1,5 @@
-"""The range of wave vectors in which an instrument leaves a spectrum undisturbed, and what its tip and window change.
+"""The range of wave vectors in which an instrument leaves a spectrum undisturbed, and what its tip
+and window change.
 
 Levelling and the window change the longest waves, pixels, noise and the tip the shortest.
 """
@@ -23,16 +24,20 @@ class Trust:
 
     Attributes
     ----------
-    tip_bias : dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's radius times the curvature per octave;
+    tip_bias : dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's radius times the
+        curvature per octave;
         measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 %.
-    blunt_bias, blunt_error : beyond k = 0.5 the same comparison (slopes 2.4-4.2, tips of 5-20 nm) gives 0.45 k, to 0.15
+    blunt_bias, blunt_error : beyond k = 0.5 the same comparison (slopes 2.4-4.2, tips of 5-20 nm)
+        gives 0.45 k, to 0.15
         at 1.5 and 0.2 at 2.5; the error is a share of this correction.
     curved, most_curved : k at which a range ends, and up to which it can be corrected beyond.
     levelled_error : of ln C in the first shells, after their blur is taken out.
     noise : C over the level of the noise at which a range ends.
     lowest_shell : below, levelling and the window change a map's waves.
-    lowest_wave, lowest_wave_bow : below, the window and the line taken off a profile change its waves, or the parabola.
-    pixels, even_line, uneven_line : of Nyquist. Short waves folded back lift C1, which is shallow, by 6 % at the first
+    lowest_wave, lowest_wave_bow : below, the window and the line taken off a profile change its
+        waves, or the parabola.
+    pixels, even_line, uneven_line : of Nyquist. Short waves folded back lift C1, which is shallow,
+        by 6 % at the first
         of a line's (slope 2.84); straight lines between uneven points smooth.
     """
 
@@ -57,7 +62,9 @@ TRUST = Trust()
 def curvature(
     radius_nm: np.ndarray | float, q: np.ndarray, psd: np.ndarray, raised: np.ndarray | float = 1
 ) -> np.ndarray:
-    """A tip's radius times the curvature per octave of roughness of spectrum `psd` times `raised`."""
+    """A tip's radius times the curvature per octave of roughness of spectrum `psd` times
+    `raised`.
+    """
     return radius_nm * np.sqrt(2 * np.pi * psd * raised) * q**3
 
 
@@ -69,9 +76,8 @@ def tip_bias(curved: np.ndarray) -> np.ndarray:
 def blur(slope: float, shell: np.ndarray) -> np.ndarray:
     """ln of what the Hann window and the shells' width add to a power law at shell number `shell`.
 
-    The window spreads each wave vector over its neighbours (variance 1/3 shell^2 along each axis), the shell
-    averages over its width (variance 1/12); both lift a convex spectrum.
-    """
+    The window spreads each wave vector over its neighbours (variance 1/3 shell^2 along each axis),
+    the shell averages over its width (variance 1/12); both lift a convex spectrum."""
     return np.log1p((slope**2 / 6 + slope * (slope + 1) / 24) / shell**2)
 
 
@@ -85,7 +91,8 @@ class TrustedSpectrum:
     limit : what ends the range above: `tip`, `noise`, `pixels` or `filter`.
     tip_radius_nm : radius used for the tip's correction.
     rms_nm : RMS of the cleaned heights, with what a filter took of it.
-    reach : where the range would end without the tip, 1/nm; between `high` and here the tip's correction is large.
+    reach : where the range would end without the tip, 1/nm; between `high` and here the tip's
+        correction is large.
     side_nm : side of a square of a measured map's area; 0 for a line profile.
     form : ln of what a parabola would take of the mean square height, besides the levelling.
     parabola : the levelling took one.
@@ -124,7 +131,8 @@ class TrustedSpectrum:
 def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The trusted shells with those beyond its ends that can be corrected, at a price.
 
-    Above, up to where the roughness is `most_curved` times as curved as the tip; below, down to the first shell.
+    Above, up to where the roughness is `most_curved` times as curved as the tip; below, down to the
+    first shell.
 
     Returns
     -------
@@ -137,14 +145,20 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     curved = bias = np.zeros_like(q)
     for _ in range(12):
         curved = curvature(item.tip_radius_nm, q, smooth, np.exp(bias))
-        bias = np.where(curved < 0.5, tip_bias(curved), TRUST.blunt_bias * np.minimum(curved, 2 * TRUST.most_curved))
+        bias = np.where(
+            curved < 0.5,
+            tip_bias(curved),
+            TRUST.blunt_bias * np.minimum(curved, 2 * TRUST.most_curved),
+        )
     use = (q >= item.low) & (q <= max(item.high, item.reach))
     blunt = curved > TRUST.most_curved
     if (blunt & use).any():
         use &= q < q[blunt & use][0]
     error = np.where(q > item.high, TRUST.blunt_error * bias, 0.0)
     psd = psd * np.exp(bias)
-    if not item.spectrum.sharp and use.sum() > 3:  # the window lifts long waves, levelling takes the longest
+    if (
+        not item.spectrum.sharp and use.sum() > 3
+    ):  # the window lifts long waves, levelling takes the longest
         long = (q < item.low) & (q > 0.9 * item.spectrum.spacing)
         start = np.flatnonzero(use)[: max(4, int(np.sum(use & (q < 3 * item.low))))]
         slope = float(np.clip(-np.polyfit(np.log(q[start]), np.log(psd[start]), 1)[0], 0.0, 6.0))
@@ -157,13 +171,19 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
 def trusted_map(cleaned: Scan, measured: Measurement) -> TrustedSpectrum:
     """Spectrum of a cleaned scan within what its instrument shows."""
     white = (measured.noise_nm or 0.0) ** 2 * float(np.prod(cleaned.pixel_nm)) / (2 * np.pi) ** 2
-    spectrum, rms_nm, shortest_nm = hann_spectrum(cleaned), cleaned.rms_nm, measured.shortest_wave_nm
+    spectrum, rms_nm, shortest_nm = (
+        hann_spectrum(cleaned),
+        cleaned.rms_nm,
+        measured.shortest_wave_nm,
+    )
     raw = measured.data
     treated = treatment_of(raw, cleaned, spectrum) if isinstance(raw, Scan) else None
     if treated is not None:
         spectrum, rms_nm = restored(spectrum, treated, rms_nm)
         shortest_nm = max(shortest_nm or 0.0, 2 * np.pi / treated.end)
-    limits = trusted_range(cleaned.name, spectrum, measured.tip_radius_nm, rms_nm, shortest_nm, white)
+    limits = trusted_range(
+        cleaned.name, spectrum, measured.tip_radius_nm, rms_nm, shortest_nm, white
+    )
     side_nm, form = float(np.sqrt(np.prod(cleaned.lengths_nm))), form_share(cleaned.heights_nm)
     return replace(limits, side_nm=side_nm, form=form, treatment=treated.kind if treated else "")
 
@@ -181,11 +201,14 @@ def trusted_range(
     Above, the first of
 
     - *pixels*: 0.7 of the Nyquist wave vector;
-    - *noise*: C falls under 20 times its level at the Nyquist wave vector, which bounds noise and short waves folded
+    - *noise*: C falls under 20 times its level at the Nyquist wave vector, which bounds noise and
+      short waves folded
       back by the pixels;
-    - *tip*: the roughness of an octave is curved like the tip, R sqrt(2 pi q^6 C) > 0.5 (dilation takes 20 % of C
+    - *tip*: the roughness of an octave is curved like the tip, R sqrt(2 pi q^6 C) > 0.5 (dilation
+      takes 20 % of C
       there; the fit corrects the known part);
-    - *filter*: the instrument's shortest wave, where `shortest_wave_nm` states one, or the end of what a map shows
+    - *filter*: the instrument's shortest wave, where `shortest_wave_nm` states one, or the end of
+      what a map shows
       that was treated (`treatment`).
 
     `noise_psd` (nm^4) is a stated white level; the level at Nyquist counts where it is higher.
@@ -201,9 +224,15 @@ def trusted_range(
     if shortest_wave_nm:
         limits["filter"] = 2 * np.pi / shortest_wave_nm
     end = q > 0.7 * spectrum.nyquist
-    falls = end.sum() > 8 and np.polyfit(np.log(q[end]), np.log(smooth[end]), 1)[0] < -1.0 and noise_psd < tail
+    falls = (
+        end.sum() > 8
+        and np.polyfit(np.log(q[end]), np.log(smooth[end]), 1)[0] < -1.0
+        and noise_psd < tail
+    )
     # noise is flat at the end; what still falls there are short waves that the pixels fold back
-    ends = _first("pixels" if falls else "noise", q, (q > low) & (smooth < TRUST.noise * max(tail, noise_psd)))
+    ends = _first(
+        "pixels" if falls else "noise", q, (q > low) & (smooth < TRUST.noise * max(tail, noise_psd))
+    )
     limits |= {name: min(value, limits.get(name, np.inf)) for name, value in ends.items()}
     reach = min(limits.values())
     limits |= _first("tip", q, (q > low) & (curvature(tip_radius_nm, q, smooth) > TRUST.curved))
@@ -214,8 +243,8 @@ def trusted_range(
 def trusted_profile(cleaned: Profile, measured: Measurement) -> TrustedSpectrum:
     """Isotropic spectrum of a levelled profile within what its instrument shows.
 
-    Above, the first of pixels, noise (as seen at the Nyquist wave vector, or as stated), the instrument's shortest
-    wave, and the tip, by the same measure as for scans.
+    Above, the first of pixels, noise (as seen at the Nyquist wave vector, or as stated), the
+    instrument's shortest wave, and the tip, by the same measure as for scans.
 
     Raises
     ------
@@ -223,12 +252,19 @@ def trusted_profile(cleaned: Profile, measured: Measurement) -> TrustedSpectrum:
     """
     k, c1 = line_spectrum(cleaned)
     nyquist, radius = np.pi / cleaned.step_nm, measured.tip_radius_nm
-    low = (TRUST.lowest_wave_bow if cleaned.bow else TRUST.lowest_wave) * 2 * np.pi / cleaned.length_nm
+    low = (
+        (TRUST.lowest_wave_bow if cleaned.bow else TRUST.lowest_wave)
+        * 2
+        * np.pi
+        / cleaned.length_nm
+    )
     limits = {"pixels": (TRUST.uneven_line if cleaned.resampled else TRUST.even_line) * nyquist}
     if measured.shortest_wave_nm:
         limits["filter"] = 2 * np.pi / measured.shortest_wave_nm
     limits |= _first(
-        "noise", k, (k > low) & (_smooth_line(k, c1) < TRUST.noise * _noise_level(k, c1, cleaned, measured))
+        "noise",
+        k,
+        (k > low) & (_smooth_line(k, c1) < TRUST.noise * _noise_level(k, c1, cleaned, measured)),
     )
     limit = min(limits, key=lambda key: limits[key])
     high = reach = limits[limit]
@@ -242,7 +278,9 @@ def trusted_profile(cleaned: Profile, measured: Measurement) -> TrustedSpectrum:
         reach = float(spectrum.q[curved < TRUST.most_curved][-1])
         spectrum = isotropic_spectrum(cleaned, low, reach)
     line = binned_line(k, c1, low, high)
-    return TrustedSpectrum(cleaned.name, spectrum, low, high, limit, radius, cleaned.rms_nm, reach, line=line)
+    return TrustedSpectrum(
+        cleaned.name, spectrum, low, high, limit, radius, cleaned.rms_nm, reach, line=line
+    )
 
 
 def _noise_level(k: np.ndarray, c1: np.ndarray, profile: Profile, measured: Measurement) -> float:
@@ -250,15 +288,17 @@ def _noise_level(k: np.ndarray, c1: np.ndarray, profile: Profile, measured: Meas
     if measured.noise_nm is not None:
         return measured.noise_nm**2 * profile.step_nm / (2 * np.pi)
     end = k > 0.93 * np.pi / profile.step_nm
-    return float(np.median(c1[end])) / np.log(2)  # the median of an exponential distribution of mean 1
+    return float(np.median(c1[end])) / np.log(
+        2
+    )  # the median of an exponential distribution of mean 1
 
 
 def _check_span(profile: Profile, low: float, high: float, limit: str) -> None:
     if high < 2 * low:
         raise InputError(
-            f"{profile.name}: nothing to see: its waves are trusted from {low:.2g} /nm, but the {limit} limit "
-            f"ends them at {high:.2g} /nm; give a longer or finer profile, state its own tip "
-            "(topography.instruments; 0 for a side view), or leave it out"
+            f"{profile.name}: nothing to see: its waves are trusted from {low:.2g} /nm, but the"
+            f" {limit} limit ends them at {high:.2g} /nm; give a longer or finer profile, state its"
+            " own tip (topography.instruments; 0 for a side view), or leave it out"
         )
 
 
@@ -273,13 +313,19 @@ def _smooth(psd: np.ndarray, q: np.ndarray) -> np.ndarray:
 
 
 def _smooth_line(k: np.ndarray, c1: np.ndarray) -> np.ndarray:
-    """Mean over a quarter to each side, at least 8 wave numbers: single ones scatter by as much as they are."""
+    """Mean over a quarter to each side, at least 8 wave numbers: single ones scatter by as much as
+    they are.
+    """
     width = np.maximum(0.25 * k, 8 * (k[1] - k[0]))
     return _windowed_mean(c1, k, k - width, k + width, "left")
 
 
 def _windowed_mean(
-    values: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.ndarray, side: Literal["left", "right"]
+    values: np.ndarray,
+    q: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    side: Literal["left", "right"],
 ) -> np.ndarray:
     total = np.concatenate([[0.0], np.cumsum(values)])
     first, last = np.searchsorted(q, low), np.searchsorted(q, high, side=side)

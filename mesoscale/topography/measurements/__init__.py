@@ -1,4 +1,6 @@
-"""What instruments measured: files and their formats, levelling, and what each instrument can see."""
+"""What instruments measured: files and their formats, levelling, and what each instrument can
+see.
+"""
 
 import glob
 import os
@@ -27,6 +29,6 @@ def check_count(given: str, files: Sequence[object]) -> None:
     """
     if len(files) > MOST_FILES:
         raise InputError(
-            f"{given}: {len(files)} files; at most {MOST_FILES} are described together: move those of this surface "
-            "into a folder of their own, or name some of them"
+            f"{given}: {len(files)} files; at most {MOST_FILES} are described together: move those"
+            " of this surface into a folder of their own, or name some of them"
         )

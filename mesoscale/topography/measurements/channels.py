@@ -1,4 +1,5 @@
-"""What the names of channels and of columns say: which hold heights, and in which direction they were scanned.
+"""What the names of channels and of columns say: which hold heights, and in which direction they
+were scanned.
 
 The words stand in config/channels.yaml.
 """
@@ -21,13 +22,18 @@ ALONE = 4  # letters of a Latin word up to which it must stand alone
 WHOLE = 2  # letters up to which a word must be the whole name: I is the current, Height I is none
 MOST_NAMES = 10  # of channels in a message: a file may have hundreds
 AMPERE = {"gwy", "ezd", "ibw", "jpk", "mi"}
-"""Formats, by their name in SurfaceTopography, that write units of the SI: A is the ampere, not the ångström."""
+"""Formats, by their name in SurfaceTopography, that write units of the SI: A is the ampere, not the
+ångström.
+"""
 PARTS = re.compile(r"[^\W\d_]+|\d+|[<>=-]*[<>][<>=-]*|[\u2190-\u21ff\u25b6\u25c0\u00ab\u00bb]")
 ACROSS = re.compile(
-    r"\b(l(?:eft)?)\W*(?:to|[-=]*>|\u2192)\W*r(?:ight)?\b|\br(?:ight)?\W*(?:to|[-=]*>|\u2192)\W*l(?:eft)?\b", re.I
+    r"\b(l(?:eft)?)\W*(?:to|[-=]*>|\u2192)\W*r(?:ight)?\b|\br(?:ight)?\W*(?:to|[-=]*>|\u2192)\W*l(?:eft)?\b",
+    re.I,
 )
 """From left to right (a group), or back."""
-ANGSTROM = re.compile(r"[a\u00e5]ngstr[o\u00f6]ms?", re.I)  # has Strom in it, which is German for a current
+ANGSTROM = re.compile(
+    r"[a\u00e5]ngstr[o\u00f6]ms?", re.I
+)  # has Strom in it, which is German for a current
 CAPITALS = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
@@ -35,12 +41,18 @@ CAPITALS = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 def words(kind: str) -> frozenset[str]:
     """The words of one section of config/channels.yaml."""
     rows = load_mapping(WORDS, "list of words")[kind]
-    return frozenset(unicodedata.normalize("NFC", word).lower() for row in rows for word in row["words"])
+    return frozenset(
+        unicodedata.normalize("NFC", word).lower() for row in rows for word in row["words"]
+    )
 
 
 def parts_of(name: str) -> list[str]:
-    """A name in small letters, split at capitals, digits, blanks and underscores; arrows are parts, too."""
-    plain = ACROSS.sub(lambda match: " forward " if match[1] else " backward ", unicodedata.normalize("NFC", name))
+    """A name in small letters, split at capitals, digits, blanks and underscores; arrows are parts,
+    too.
+    """
+    plain = ACROSS.sub(
+        lambda match: " forward " if match[1] else " backward ", unicodedata.normalize("NFC", name)
+    )
     spaced = CAPITALS.sub(" ", plain)
     return [part.lower() for part in PARTS.findall(spaced)]
 
@@ -54,7 +66,11 @@ def says(kind: str, name: str) -> bool:
         if word in parts and (len(word) > WHOLE or kind != "no_height" or base_of(name) == word):
             return True
         inside = len(word) > ALONE or not word.isascii() or " " in word
-        if inside and (word in joined or word in name.lower()) and not (word.isascii() and len(word) <= ALONE):
+        if (
+            inside
+            and (word in joined or word in name.lower())
+            and not (word.isascii() and len(word) <= ALONE)
+        ):
             return True
     return False
 
@@ -65,7 +81,9 @@ def names_other_unit(head: str) -> bool:
 
 
 def base_of(name: str) -> str:
-    """A name without its words of direction, also where they end another word, as in HEIGHTTRACE."""
+    """A name without its words of direction, also where they end another word, as in
+    HEIGHTTRACE.
+    """
     directions = words("backward") | words("forward") | words("slow")
     kept = [_without_end(part) for part in parts_of(name) if part not in directions]
     return " ".join(part for part in kept if part)
@@ -108,7 +126,9 @@ def with_lengths(channels: Iterable[Any], reader: str) -> list[Any]:
     """
     # some readers call a phase a height, but then its unit is no length
     lengths = [
-        item for item in channels if item.is_height_channel and (item.unit is None or isinstance(item.unit, str))
+        item
+        for item in channels
+        if item.is_height_channel and (item.unit is None or isinstance(item.unit, str))
     ]
     return [item for item in lengths if not (reader in AMPERE and _unit_of(item) == "A")]
 
@@ -118,7 +138,12 @@ def _unit_of(channel: Any) -> str | None:
     raw = (getattr(channel, "info", None) or {}).get("raw_metadata", {})
     for key, value in raw.items() if isinstance(raw, dict) else ():
         if str(key).endswith("/data") and isinstance(value, dict):  # Gwyddion's
-            return str(value.get("GwyDataField", {}).get("si_unit_z", {}).get("GwySIUnit", {}).get("unitstr", ""))
+            return str(
+                value.get("GwyDataField", {})
+                .get("si_unit_z", {})
+                .get("GwySIUnit", {})
+                .get("unitstr", "")
+            )
     return getattr(channel, "data_unit", None) or channel.unit
 
 
@@ -140,34 +165,40 @@ def height_channel(
     lengths = with_lengths(channels, reader)
     pixels = {id(item): int(np.prod(getattr(item, "nb_grid_pts", None) or 1)) for item in lengths}
     most = max(pixels.values(), default=0) / 16  # of a thumbnail
-    heights = [item for item in lengths if holds_heights(str(item.name)) and pixels[id(item)] > most]
+    heights = [
+        item for item in lengths if holds_heights(str(item.name)) and pixels[id(item)] > most
+    ]
     names = list(dict.fromkeys(str(item.name) for item in heights))
     present = list(dict.fromkeys(str(item.name) for item in channels))
     if wanted is not None:
         chosen = [item for item in heights if str(item.name) == wanted]
         if not chosen and wanted in present:
             raise InputError(
-                f"{where}: channel {wanted!r} holds no heights; those that do (--channel): {listed(names)}"
+                f"{where}: channel {wanted!r} holds no heights; those that do (--channel):"
+                f" {listed(names)}"
             )
         if not chosen:
             raise InputError(
-                f"{where}: no height channel {wanted!r} (--channel, topography.channel); it has: {listed(names)}"
+                f"{where}: no height channel {wanted!r} (--channel, topography.channel); it has:"
+                f" {listed(names)}"
             )
         heights = chosen
     elif len({base_of(name) for name in names}) > 1:
         called = [item for item in heights if says("height", str(item.name))]
         if len({base_of(str(item.name)) for item in called}) != 1:
             raise InputError(
-                f"{where}: several height channels: {listed(names)}; name one in topography.channel (--channel)"
-                f"{also(heights[0])}"
+                f"{where}: several height channels: {listed(names)}; name one in topography.channel"
+                f" (--channel){also(heights[0])}"
             )
         heights = called
     if not heights:
         has = f"; it has {listed(present)}" if present else ""
         raise InputError(
-            f"{where}: no channel of heights in a unit of length (m, um, nm, Å){has}; save the topography too, or "
-            "calibrate heights that are in V"
+            f"{where}: no channel of heights in a unit of length (m, um, nm, Å){has}; save the"
+            " topography too, or calibrate heights that are in V"
         )
     forward = next((item for item in heights if not is_backward(str(item.name))), heights[0])
     others = len(heights) - 1
-    return forward, (f"took {forward.name}, one of {others + 1} channels of heights",) if others else ()
+    return forward, (
+        (f"took {forward.name}, one of {others + 1} channels of heights",) if others else ()
+    )

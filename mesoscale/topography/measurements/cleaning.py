@@ -32,7 +32,8 @@ class Scan:
 
     Attributes
     ----------
-    heights_nm : (nx, ny); x (the first axis) is the fast scan direction, so `heights_nm[:, j]` is a scan
+    heights_nm : (nx, ny); x (the first axis) is the fast scan direction, so `heights_nm[:, j]` is a
+        scan
         line. Missing pixels are NaN.
     lengths_nm : (2,) physical size along x and y.
     name : what messages and results call the scan.
@@ -52,7 +53,9 @@ class Scan:
     def __post_init__(self):
         heights = checked_array(f"{self.name}: heights_nm", self.heights_nm, "nm", missing=True)
         if heights.ndim != 2:
-            raise InputError(f"{self.name}: heights_nm has shape {heights.shape}; accepted is a map (nx, ny)")
+            raise InputError(
+                f"{self.name}: heights_nm has shape {heights.shape}; accepted is a map (nx, ny)"
+            )
         for length in self.lengths_nm:
             check_number(f"{self.name}: lengths_nm", length, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
 
@@ -74,7 +77,9 @@ class Scan:
 
 
 def stand_in_steps(stand_ins: Sequence[StandIn], points: int) -> tuple[str, ...]:
-    """In words which numbers were taken for missing points, and the share of `points` that had them."""
+    """In words which numbers were taken for missing points, and the share of `points` that had
+    them.
+    """
     return tuple(
         f"{STAND_INS} {item.count / points:.2%} of the points ({item.count}), which lie "
         f"{'exactly at' if item.exact else 'far from all others, about'} {item.value_nm:.6g} nm"
@@ -92,10 +97,11 @@ def without_missing(scan: Scan) -> Scan:
 
 
 def measured_part(scan: Scan) -> Scan:
-    """A scan without lines that nobody measured: without a value, at one value, or the line before once more.
+    """A scan without lines that nobody measured: without a value, at one value, or the line before
+    once more.
 
-    At the ends, as an aborted scan has them, such lines are cut off, between others they are missing. A scan of nothing
-    else stays as it is.
+    At the ends, as an aborted scan has them, such lines are cut off, between others they are
+    missing. A scan of nothing else stays as it is.
 
     Raises
     ------
@@ -109,15 +115,20 @@ def measured_part(scan: Scan) -> Scan:
     if len(measured) < 2 or len(measured) == lines:
         return scan
     first, last = measured[0], measured[-1] + 1
-    repeated = float(np.mean((same & ~empty)[first:last] & (np.ptp(heights, axis=0) != 0)[first:last]))
+    repeated = float(
+        np.mean((same & ~empty)[first:last] & (np.ptp(heights, axis=0) != 0)[first:last])
+    )
     if repeated > MAX_MISSING:
         raise InputError(
-            f"{scan.name}: {repeated:.0%} of the scan lines repeat the line before: the map was enlarged after it was "
-            "measured; give it as it was measured"
+            f"{scan.name}: {repeated:.0%} of the scan lines repeat the line before: the map was"
+            " enlarged after it was measured; give it as it was measured"
         )
     kept, steps = np.array(heights[:, first:last], dtype=float), scan.steps
     if last - first < lines:
-        steps = (*steps, f"{LINES_CUT}: {lines - last + first} of {lines} scan lines, without measurement")
+        steps = (
+            *steps,
+            f"{LINES_CUT}: {lines - last + first} of {lines} scan lines, without measurement",
+        )
     lost = np.setdiff1d(np.arange(first, last), measured) - first
     if len(lost):
         kept[:, lost] = np.nan
@@ -140,16 +151,17 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
     share = float(missing.mean())
     if share > MAX_MISSING:
         raise InputError(
-            f"{scan.name}: {share:.1%} of the pixels are missing; accepted are {MAX_MISSING:.0%}; cut the scan to its "
-            "largest rectangle without missing points (--crop; in a scene topography.instruments, crop: largest)"
+            f"{scan.name}: {share:.1%} of the pixels are missing; accepted are {MAX_MISSING:.0%};"
+            " cut the scan to its largest rectangle without missing points (--crop; in a scene"
+            " topography.instruments, crop: largest)"
         )
     if share > 0:
         heights[missing] = np.nan
     cut = cut_off_share(heights)
     if cut > 0.01:
         raise InputError(
-            f"{scan.name}: {cut:.1%} of the pixels lie exactly at the highest or lowest height: the scan is "
-            "cut off at the end of the scanner's range; measure again with a larger range"
+            f"{scan.name}: {cut:.1%} of the pixels lie exactly at the highest or lowest height: the"
+            " scan is cut off at the end of the scanner's range; measure again with a larger range"
         )
     heights, note = levelled(heights, settings)
     steps += note
@@ -162,17 +174,20 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
     heights, spikes = without_spikes(heights)
     if spikes:
         words = MANY_SPIKES if spikes > MANY * heights.size else "replaced spikes"
-        steps.append(f"{words} by the median of their neighbours: {spikes} of {heights.size} pixels")
+        steps.append(
+            f"{words} by the median of their neighbours: {spikes} of {heights.size} pixels"
+        )
     heights -= heights.mean()
     return replace(scan, heights_nm=heights, steps=tuple(steps))
 
 
 def alignment_effect(scan: Scan, settings: TopographySettings) -> tuple[float, float]:
-    """What the alignment of lines does to a raw scan, tilt apart: share of the RMS height taken, skewness added.
+    """What the alignment of lines does to a raw scan, tilt apart: share of the RMS height taken,
+    skewness added.
 
-    Offsets between lines are the instrument's; where there are none, this is roughness that is lost. A line that
-    crosses few grains has its median between them, so that aligning medians lifts grains or lowers them.
-    """
+    Offsets between lines are the instrument's; where there are none, this is roughness that is
+    lost. A line that crosses few grains has its median between them, so that aligning medians lifts
+    grains or lowers them."""
     if settings.line_alignment == "none":
         return 0.0, 0.0
     scan = measured_part(scan)
@@ -183,12 +198,16 @@ def alignment_effect(scan: Scan, settings: TopographySettings) -> tuple[float, f
     if min(before, after) == 0:
         return 0.0, 0.0
     centred = [z - np.nanmean(z) for z in (heights, aligned)]
-    skewness = [float(np.nanmean(z * z * z)) / sd**3 for z, sd in zip(centred, (before, after), strict=True)]
+    skewness = [
+        float(np.nanmean(z * z * z)) / sd**3 for z, sd in zip(centred, (before, after), strict=True)
+    ]
     return 1 - after / before, skewness[1] - skewness[0]
 
 
 def _line_medians(heights: np.ndarray) -> np.ndarray:
-    """Median of each scan line of heights (nx, ny); NaN for lines without any value, which are filled later."""
+    """Median of each scan line of heights (nx, ny); NaN for lines without any value, which are
+    filled later.
+    """
     if np.isfinite(heights).all():
         return np.median(np.ascontiguousarray(heights.T), axis=1)  # eight times as fast
     with warnings.catch_warnings():
@@ -196,7 +215,9 @@ def _line_medians(heights: np.ndarray) -> np.ndarray:
         return np.nanmedian(heights, axis=0)
 
 
-def levelled(heights: np.ndarray, settings: TopographySettings) -> tuple[np.ndarray, tuple[str, ...]]:
+def levelled(
+    heights: np.ndarray, settings: TopographySettings
+) -> tuple[np.ndarray, tuple[str, ...]]:
     """Heights (nx, ny) less tilt or form, and this step in words; NaN stay."""
     if settings.detrend == "none":
         return heights, ()
@@ -217,7 +238,9 @@ def form_step(form: float) -> str:
 
 
 def form_share(heights: np.ndarray) -> float:
-    """ln of the mean square of levelled heights (nx, ny) over what a parabola leaves of it: how much is form."""
+    """ln of the mean square of levelled heights (nx, ny) over what a parabola leaves of it: how
+    much is form.
+    """
     rest = heights - fitted_trend(heights, order=2)
     before, after = float(np.nanvar(heights)), float(np.nanvar(rest))
     return float(np.log(before / after)) if after > 0 else 0.0
@@ -233,13 +256,19 @@ def cut_off_share(heights: np.ndarray) -> float:
 
 
 def fitted_trend(heights: np.ndarray, order: int) -> np.ndarray:
-    """Least-squares plane (order 1) or quadratic (order 2) through heights (nx, ny); NaN are left out."""
+    """Least-squares plane (order 1) or quadratic (order 2) through heights (nx, ny); NaN are left
+    out.
+    """
     nx, ny = heights.shape
     x, y = np.linspace(-1, 1, nx), np.linspace(-1, 1, ny)
     powers = [(0, 0), (1, 0), (0, 1), *([(2, 0), (1, 1), (0, 2)] if order >= 2 else [])]
-    x, y = (np.stack([u**k for k in range(2 * order + 1)]) for u in (x, y))  # all terms are products
+    x, y = (
+        np.stack([u**k for k in range(2 * order + 1)]) for u in (x, y)
+    )  # all terms are products
     known = np.isfinite(heights)
-    weights, sums = (x @ values @ y.T for values in (known.astype(float), np.where(known, heights, 0.0)))
+    weights, sums = (
+        x @ values @ y.T for values in (known.astype(float), np.where(known, heights, 0.0))
+    )
     gram = np.array([[weights[i + k, j + m] for k, m in powers] for i, j in powers])
     right = np.array([sums[i, j] for i, j in powers])
     table = np.zeros((2 * order + 1, 2 * order + 1))
@@ -248,7 +277,9 @@ def fitted_trend(heights: np.ndarray, order: int) -> np.ndarray:
 
 
 def fill_missing(heights: np.ndarray) -> np.ndarray:
-    """Fill NaN by linear interpolation along the scan line; lines without any value become the mean."""
+    """Fill NaN by linear interpolation along the scan line; lines without any value become the
+    mean.
+    """
     filled = heights.copy()
     positions = np.arange(heights.shape[0])
     for j in np.flatnonzero(~np.isfinite(heights).all(axis=0)):
@@ -259,14 +290,17 @@ def fill_missing(heights: np.ndarray) -> np.ndarray:
 
 
 def without_spikes(heights: np.ndarray) -> tuple[np.ndarray, int]:
-    """Replace pixels far from the median of their 3 x 3 neighbourhood; returns heights and their number."""
+    """Replace pixels far from the median of their 3 x 3 neighbourhood; returns heights and their
+    number.
+    """
     from scipy.ndimage import median_filter
 
     local = median_filter(heights.astype(np.float32), size=3, mode="nearest")
     away = np.abs(heights - local)
-    # the scale is taken far out in the distribution: tips leave smooth scans with many sharp creases,
-    # which a median absolute deviation would call spikes. Where one pixel in a hundred is a spike, so is the far
-    # quantile: it is 1 to 2 times the near one on measured maps, 17 times on a map of nothing but creases
+    # the scale is taken far out in the distribution: tips leave smooth scans with many sharp
+    # creases, which a median absolute deviation would call spikes. Where one pixel in a hundred is
+    # a spike, so is the far quantile: it is 1 to 2 times the near one on measured maps, 17 times on
+    # a map of nothing but creases
     near, far = np.quantile(away[::2, ::2], (0.9, 0.99))
     scale = float(min(far / 2.576, 5.0 * near / 1.645))
     if scale == 0:

@@ -46,25 +46,29 @@ def columns_of(where: str, text: Text, wanted: str | None) -> Columns:
 
     Raises
     ------
-    InputError : no column of heights, or several; no positions beside them; rows of another number of values.
-    """
+    InputError : no column of heights, or several; no positions beside them; rows of another number
+        of values."""
     if text.odd:
         raise InputError(
-            f"{where}: {text.odd} lines among the {len(text.rows)} rows of {text.width} values have another number of "
-            "them; is the file complete?"
+            f"{where}: {text.odd} lines among the {len(text.rows)} rows of {text.width} values have"
+            " another number of them; is the file complete?"
         )
     values = text.values()
     if text.heads:
         places, height = _by_heads(where, text.heads, wanted)
     else:
         if wanted is not None:
-            raise InputError(f"{where}: no line names the columns, so that none is {wanted!r} (--channel)")
+            raise InputError(
+                f"{where}: no line names the columns, so that none is {wanted!r} (--channel)"
+            )
         places, height = _by_order(where, values)
     places = _without_constant(values, places)
     names = tuple(text.heads[k] for k in (*places, height)) if text.heads else ()
     units = [unit_of_head(name) for name in names]
     position_unit = next((unit for unit in units[:-1] if unit), None)
-    return Columns(values[:, places], values[:, height], names, (position_unit, units[-1] if units else None))
+    return Columns(
+        values[:, places], values[:, height], names, (position_unit, units[-1] if units else None)
+    )
 
 
 def _by_heads(where: str, heads: tuple[str, ...], wanted: str | None) -> tuple[list[int], int]:
@@ -73,7 +77,11 @@ def _by_heads(where: str, heads: tuple[str, ...], wanted: str | None) -> tuple[l
     lengths = [not names_other_unit(head) for head in heads]
     may_be = [length and holds_heights(name) for length, name in zip(lengths, names, strict=True)]
     positions = [k for k, name in enumerate(names) if lengths[k] and says("position", name)]
-    heights = [k for k, name in enumerate(names) if may_be[k] and says("height", name) and k not in positions]
+    heights = [
+        k
+        for k, name in enumerate(names)
+        if may_be[k] and says("height", name) and k not in positions
+    ]
     if wanted is not None:
         heights = [k for k, head in enumerate(heads) if wanted in (head, names[k])]
         if not heights:
@@ -83,27 +91,33 @@ def _by_heads(where: str, heads: tuple[str, ...], wanted: str | None) -> tuple[l
     if not heights and len(heads) <= 3 and may_be[-1]:  # X and y1, distance and raw
         heights = [len(heads) - 1]
         positions = [k for k in positions if k < len(heads) - 1]
-    if len({base_of(names[k]) for k in heights}) > 1 and len(heads) == 2:  # a curve of one height over another
+    if (
+        len({base_of(names[k]) for k in heights}) > 1 and len(heads) == 2
+    ):  # a curve of one height over another
         heights = []
     if not heights:
         raise InputError(
-            f"{where}: a table of {listed(heads)}, in which no column holds heights of a surface; give a line of "
-            "distance and height, or a map"
+            f"{where}: a table of {listed(heads)}, in which no column holds heights of a surface;"
+            " give a line of distance and height, or a map"
         )
     if len({base_of(names[k]) for k in heights}) > 1:
         raise InputError(
-            f"{where}: several columns of heights: {listed([heads[k] for k in heights])}; name one in "
-            "topography.channel (--channel)"
+            f"{where}: several columns of heights: {listed([heads[k] for k in heights])}; name one"
+            " in topography.channel (--channel)"
         )
     height = next((k for k in heights if not is_backward(names[k])), heights[0])
     if not positions and len(heads) == 1:
         return [], height
     if not positions and len(heads) <= 3:
-        positions = [k for k in range(len(heads)) if k != height and may_be[k] and not says("height", names[k])]
+        positions = [
+            k
+            for k in range(len(heads))
+            if k != height and may_be[k] and not says("height", names[k])
+        ]
     if not 1 <= len(positions) <= 2:
         raise InputError(
-            f"{where}: a table of {listed(heads)}: {heads[height]} stands over no distance along the surface; give a "
-            "line of distance and height, or a map"
+            f"{where}: a table of {listed(heads)}: {heads[height]} stands over no distance along"
+            " the surface; give a line of distance and height, or a map"
         )
     return positions, height
 
@@ -113,8 +127,8 @@ def _by_order(where: str, values: np.ndarray) -> tuple[list[int], int]:
     width = values.shape[1]
     if width > 3:
         raise InputError(
-            f"{where}: {width} columns that no line names: neither a map, which has at least 32 a side, nor points x, "
-            "y, z; name the columns in a line above them"
+            f"{where}: {width} columns that no line names: neither a map, which has at least 32 a"
+            " side, nor points x, y, z; name the columns in a line above them"
         )
     if width == 3 and _runs_with(values[:, 0], values[:, 1]):  # numbers of points before positions
         return [1], 2

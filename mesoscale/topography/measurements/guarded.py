@@ -1,8 +1,9 @@
-"""A file of a stranger is read in a process of its own, which may take so much time and memory and no more.
+"""A file of a stranger is read in a process of its own, which may take so much time and memory and
+no more.
 
-Readers of 40 formats meet files that point at themselves, unfold to gigabytes, or fill the terminal with warnings. The
-process is a fork, which costs some milliseconds and needs no second import of the readers.
-"""
+Readers of 40 formats meet files that point at themselves, unfold to gigabytes, or fill the terminal
+with warnings. The process is a fork, which costs some milliseconds and needs no second import of
+the readers."""
 
 import multiprocessing
 import os
@@ -22,7 +23,8 @@ CPU_S, MEMORY_MB = 8.0, 2000.0
 
 
 def guarded(path: Path, read: Callable[[], Any]) -> Any:
-    """What `read` returns, from a process with limits; on systems without fork, read in this process.
+    """What `read` returns, from a process with limits; on systems without fork, read in this
+    process.
 
     Raises
     ------
@@ -33,9 +35,12 @@ def guarded(path: Path, read: Callable[[], Any]) -> Any:
     size_MB = path.stat().st_size / 2**20
     if size_MB > 4000:
         raise InputError(f"{path}: {size_MB:.0f} MB; at most 4000 MB are accepted: crop the scan")
-    # measured: 6 s and 2.6 GB for a map of 8192² pixels (512 MB), 9 s and 0.8 GB for one of 4096² as text (147 MB)
+    # measured: 6 s and 2.6 GB for a map of 8192² pixels (512 MB), 9 s and 0.8 GB for one of 4096²
+    # as text (147 MB)
     cpu_s, memory_MB = min(CPU_S + size_MB, 50.0), min(MEMORY_MB + 20.0 * size_MB, 16000.0)
-    with tempfile.TemporaryDirectory(prefix="asperity-") as folder:  # ours: the process may be killed
+    with tempfile.TemporaryDirectory(
+        prefix="asperity-"
+    ) as folder:  # ours: the process may be killed
         here, there = multiprocessing.Pipe(duplex=False)
         child = os.fork()  # not multiprocessing.Process, which a worker of a pool may not start
         if child == 0:
@@ -64,10 +69,14 @@ def guarded(path: Path, read: Callable[[], Any]) -> Any:
         "failed": f"its reader failed: {result}",
         "ended": "its reader ended without a word",
     }[outcome]
-    raise InputError(f"{path}: {reason}; the file may be damaged or made to do so: save it again (.gwy)")
+    raise InputError(
+        f"{path}: {reason}; the file may be damaged or made to do so: save it again (.gwy)"
+    )
 
 
-def _in_child(read: Callable[[], Any], pipe: Connection, folder: str, cpu_s: float, memory_MB: float) -> NoReturn:
+def _in_child(
+    read: Callable[[], Any], pipe: Connection, folder: str, cpu_s: float, memory_MB: float
+) -> NoReturn:
     """Read, answer and end, without what the forked process would do at its end."""
     try:
         _limit(folder, cpu_s, memory_MB)
@@ -96,4 +105,6 @@ def _limit(folder: str, cpu_s: float, memory_MB: float) -> None:
         (resource.RLIMIT_CORE, 0),
     ):
         hard = resource.getrlimit(limit)[1]
-        resource.setrlimit(limit, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard))
+        resource.setrlimit(
+            limit, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard)
+        )

@@ -1,7 +1,8 @@
-"""Scans and line profiles from files and published containers, through the readers of SurfaceTopography.
+"""Scans and line profiles from files and published containers, through the readers of
+SurfaceTopography.
 
-Files come from strangers: each is read in a process with limits (`guarded`). The list of a container, which its reader
-takes by PyYAML's full loader, must hold plain values and tuples alone.
+Files come from strangers: each is read in a process with limits (`guarded`). The list of a
+container, which its reader takes by PyYAML's full loader, must hold plain values and tuples alone.
 """
 
 import os
@@ -43,7 +44,10 @@ from mesoscale.topography.measurements.text import BROADEST_TABLE, Text, decoded
 from mesoscale.topography.measurements.units import nm_of, teach_units
 
 MIN_SIDE = 32
-FILE_NM = (10.0, 1e8)  # plausible sizes: the largest real map at hand has 12 mm; beyond, a reader mistakes the unit
+FILE_NM = (
+    10.0,
+    1e8,
+)  # plausible sizes: the largest real map at hand has 12 mm; beyond, a reader mistakes the unit
 HEAD_BYTES = 8192  # of a file, by which its format is told
 OWN_HEADS = (b"X;Y;valid", b"Scan Parameters")
 """How tables begin whose heads a reader of SurfaceTopography knows: HFM and Dektak."""
@@ -60,7 +64,8 @@ class Measurement:
     ----------
     data : as loaded, before levelling; missing points are NaN, also those that a number stood for.
     tip_radius_nm : 0 for an instrument without tip.
-    radius_stated : whether the scene or the file states the radius; otherwise it is the scene's default.
+    radius_stated : whether the scene or the file states the radius; otherwise it is the scene's
+        default.
     shortest_wave_nm, noise_nm : further limits; None where nothing is stated.
     """
 
@@ -74,17 +79,20 @@ class Measurement:
 def load_measurements(
     path: str | Path, name: str | None = None, settings: TopographySettings | None = None
 ) -> list[Measurement]:
-    """Everything that a file holds of one surface, in nm: a scan, a line profile, or all of a container.
+    """Everything that a file holds of one surface, in nm: a scan, a line profile, or all of a
+    container.
 
     Parameters
     ----------
-    path : file of any format that SurfaceTopography reads, packed or not, or a container of contact.engineering (.zip).
+    path : file of any format that SurfaceTopography reads, packed or not, or a container of
+        contact.engineering (.zip).
     name : what to call it; by default the file's name. Measurements of a container add their own.
     settings : the channel to take, and the limits of the instruments.
 
     Raises
     ------
-    InputError : file missing, unreadable or of unknown format; no or several height channels; no physical size or
+    InputError : file missing, unreadable or of unknown format; no or several height channels; no
+        physical size or
         unit; a container of several surfaces.
     """
     path, settings = Path(path), settings or TopographySettings()
@@ -92,7 +100,9 @@ def load_measurements(
         raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
     if is_of_the_system(path):
         raise InputError(f"{path}: of the system, not of data; copy what you need of it")
-    with needs("scans"):  # imported here, so that the process that reads, a fork of this one, has the readers
+    with needs(
+        "scans"
+    ):  # imported here, so that the process that reads, a fork of this one, has the readers
         import SurfaceTopography.Container.IO
         import SurfaceTopography.IO  # noqa: F401  loads all of that library
 
@@ -114,7 +124,9 @@ def with_limits(
     instrument: InstrumentSettings = NO_LIMITS,
     file_radius_nm: float | None = None,
 ) -> Measurement:
-    """A scan or line profile with the limits of its instrument; what it leaves open is the file's or the settings'."""
+    """A scan or line profile with the limits of its instrument; what it leaves open is the file's
+    or the settings'.
+    """
     radius = file_radius_nm if instrument.tip_radius_nm is None else instrument.tip_radius_nm
     used = settings.tip_nm if radius is None else radius
     return Measurement(
@@ -136,7 +148,9 @@ def _head_of(path: Path) -> bytes:
         with path.open("rb") as stream:
             return stream.read(HEAD_BYTES)
     except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); make the file readable") from None
+        raise InputError(
+            f"{path}: cannot be read ({error.strerror}); make the file readable"
+        ) from None
 
 
 def _alone(path: Path, file: Path, name: str, settings: TopographySettings) -> Measurement:
@@ -159,11 +173,18 @@ def _alone(path: Path, file: Path, name: str, settings: TopographySettings) -> M
         columns = columns_of(where, text, wanted)
         return _of_table(where, name, columns, _word_steps(text), settings, instrument)
     if instrument.points is not None:
-        raise InputError(f"{where}: is no list of points x, y, z; leave out --points (topography.instruments, points)")
+        raise InputError(
+            f"{where}: is no list of points x, y, z; leave out --points (topography.instruments,"
+            " points)"
+        )
     if text is not None and not text.plain:
         file = text.copy(file.name)
     file = converted(file, head)
-    if file.suffix.lower() == ".gwy" and instrument.unit and _tried(where, lambda: without_unit(file)):
+    if (
+        file.suffix.lower() == ".gwy"
+        and instrument.unit
+        and _tried(where, lambda: without_unit(file))
+    ):
         file = with_unit(file, instrument.unit)
         instrument = instrument.model_copy(update={"unit": None})
     return _of_channels(path, file, name, text, settings, instrument)
@@ -173,11 +194,15 @@ def _is_known(head: bytes) -> bool:
     """Does a reader know the format by the first bytes, so that its text is no plain table?"""
     from SurfaceTopography.IO import MagicMatch, readers
 
-    return head.startswith(OWN_HEADS) or any(reader.can_read(head) == MagicMatch.YES for reader in readers)
+    return head.startswith(OWN_HEADS) or any(
+        reader.can_read(head) == MagicMatch.YES for reader in readers
+    )
 
 
 def _is_table(text: Text) -> bool:
-    """Are these columns of positions and heights, and no map? A map has 32 pixels a side, or a header with its size."""
+    """Are these columns of positions and heights, and no map? A map has 32 pixels a side, or a
+    header with its size.
+    """
     stated = any(re.search(r"[=:]", line) and re.search(r"\d", line) for line in text.header)
     if text.width == 1:
         return not stated
@@ -210,30 +235,48 @@ def _of_channels(
     if min(getattr(channel, "nb_grid_pts", None) or [MIN_SIDE]) < MIN_SIDE and channel.dim == 2:
         raise InputError(_too_small(where, channel.nb_grid_pts))
     given = _given(where, channel, instrument)
-    if channel.dim == 2 or getattr(channel, "is_uniform", False):  # uneven lines have positions instead
+    if channel.dim == 2 or getattr(
+        channel, "is_uniform", False
+    ):  # uneven lines have positions instead
         _check_sized(where, channel, instrument)
     topography = _tried(where, lambda: channel.topography(**given))
     _check_whole(where, text, topography, channels)
     marked = None
-    if masks := getattr(reader, "_masks", None):  # Gwyddion's mask is over what is missing, and over grains
+    if masks := getattr(
+        reader, "_masks", None
+    ):  # Gwyddion's mask is over what is missing, and over grains
         lost = np.ma.getmaskarray(_tried(where, topography.heights))
         masks.clear()
         whole = _tried(where, lambda: channel.topography(**given))
         below = np.asarray(_tried(where, whole.heights))[lost]
         if len(np.unique(below[np.isfinite(below)])) > 1:  # what is missing has one value
-            topography, marked = whole, f"{MARKED} {lost.mean():.1%} of the pixels, which have heights: kept them"
-    steps = (f"read channel {channel.name}", *note, *([marked] if marked else []), *_word_steps(text))
+            topography, marked = (
+                whole,
+                f"{MARKED} {lost.mean():.1%} of the pixels, which have heights: kept them",
+            )
+    steps = (
+        f"read channel {channel.name}",
+        *note,
+        *([marked] if marked else []),
+        *_word_steps(text),
+    )
     return _measurement(where, name, topography, head, steps, settings, instrument)
 
 
 def _word_steps(text: Text | None) -> tuple[str, ...]:
     """What words among the numbers of a text stand for; NaN and BAD say it themselves."""
-    said = {word: count for word, count in (text.words if text else {}).items() if word.lower() not in PLAIN_WORDS}
+    said = {
+        word: count
+        for word, count in (text.words if text else {}).items()
+        if word.lower() not in PLAIN_WORDS
+    }
     if text is None or not said:
         return ()
     most, count = max(said, key=lambda word: said[word]), sum(said.values())
     share = count / (len(text.rows) * text.width)
-    return (f"{STAND_INS} {share:.2%} of the values ({count}), which are words such as {most[:20]!r}",)
+    return (
+        f"{STAND_INS} {share:.2%} of the values ({count}), which are words such as {most[:20]!r}",
+    )
 
 
 def _is_ampere(text: Text | None, channel: Any) -> bool:
@@ -245,7 +288,9 @@ def _is_ampere(text: Text | None, channel: Any) -> bool:
     return exported and raw.get("zunit") == "A"
 
 
-def _check_unit_of(where: str, file: Path, channels: Sequence[Any], instrument: InstrumentSettings) -> None:
+def _check_unit_of(
+    where: str, file: Path, channels: Sequence[Any], instrument: InstrumentSettings
+) -> None:
     """Ask for a unit where a Gwyddion file has channels without one, and no other."""
     if channels or file.suffix.lower() != ".gwy" or instrument.unit:
         return
@@ -263,8 +308,8 @@ def _check_whole(where: str, text: Text | None, topography: Any, channels: Seque
     lines = topography.nb_grid_pts[1]
     if text.odd or lines != len(text.rows):
         raise InputError(
-            f"{where}: {lines} of {len(text.rows) + text.odd} lines of numbers were read; a map has as many values in "
-            "each line: save it again (.gwy)"
+            f"{where}: {lines} of {len(text.rows) + text.odd} lines of numbers were read; a map has"
+            " as many values in each line: save it again (.gwy)"
         )
 
 
@@ -278,27 +323,38 @@ def _of_table(
 ) -> Measurement:
     """A line or a map from columns of positions and heights."""
     factors = _factors(where, columns, instrument)
-    taken = f"read columns {', '.join(columns.names)}" if columns.names else "read columns by their order"
+    taken = (
+        f"read columns {', '.join(columns.names)}"
+        if columns.names
+        else "read columns by their order"
+    )
     steps = (taken, *steps)
     places = columns.positions.shape[1]
     if instrument.points is not None and places != 2:
-        raise InputError(f"{where}: is no list of points x, y, z; leave out --points (topography.instruments, points)")
+        raise InputError(
+            f"{where}: is no list of points x, y, z; leave out --points (topography.instruments,"
+            " points)"
+        )
     if instrument.size and places:
-        raise InputError(f"{where}: states a size itself; leave out that of topography.instruments (--size)")
+        raise InputError(
+            f"{where}: states a size itself; leave out that of topography.instruments (--size)"
+        )
     if places == 2:
         x, y = columns.positions.T
         grid, lengths, step = on_grid(where, x, y, columns.heights, instrument.points)
         x_nm, y_nm = (factors[0] * length for length in lengths)
-        return _scan(where, name, factors[1] * grid, (x_nm, y_nm), (*steps, step), settings, instrument)
+        return _scan(
+            where, name, factors[1] * grid, (x_nm, y_nm), (*steps, step), settings, instrument
+        )
     heights = columns.heights
     if places == 1:
         positions = columns.positions[:, 0]
     else:
         if not instrument.size:
             raise InputError(
-                f"{where}: {len(heights)} heights alone, without positions; state the length of the line in "
-                f"topography.instruments (files: {Path(where).name!r}, size: [1], unit: um, height_unit: nm; "
-                "--size 1 --unit um,nm)"
+                f"{where}: {len(heights)} heights alone, without positions; state the length of the"
+                f" line in topography.instruments (files: {Path(where).name!r}, size: [1], unit:"
+                " um, height_unit: nm; --size 1 --unit um,nm)"
             )
         positions = np.arange(len(heights)) * (instrument.size[0] / len(heights))
     profile = _profile(where, name, factors[0] * positions, factors[1] * heights)
@@ -313,7 +369,8 @@ def _factors(where: str, columns: Columns, instrument: InstrumentSettings) -> tu
         stated = [nm_of(where, unit) for unit in (across, up)]
         if stated != [nm_of(where, unit or "nm") for unit in asked]:
             raise InputError(
-                f"{where}: states a unit itself, {across} and {up}; leave out that of topography.instruments (--unit)"
+                f"{where}: states a unit itself, {across} and {up}; leave out that of"
+                " topography.instruments (--unit)"
             )
     across = across or asked[0] or (up if not columns.positions.shape[1] else None)
     up = up or asked[1]
@@ -321,9 +378,10 @@ def _factors(where: str, columns: Columns, instrument: InstrumentSettings) -> tu
         size = "" if columns.positions.shape[1] or instrument.size else "size: [1], "
         option = "" if not size else "--size 1 "
         raise InputError(
-            f"{where}: {'points' if columns.positions.shape[1] == 2 else 'a profile'} without length unit; state it in "
-            f"topography.instruments (files: {Path(where).name!r}, {size}unit: um, height_unit: nm; {option}--unit "
-            "um,nm) or in the heads of its columns"
+            f"{where}: {'points' if columns.positions.shape[1] == 2 else 'a profile'} without"
+            f" length unit; state it in topography.instruments (files: {Path(where).name!r},"
+            f" {size}unit: um, height_unit: nm; {option}--unit um,nm) or in the heads of its"
+            " columns"
         )
     return nm_of(where, across), nm_of(where, up)
 
@@ -342,7 +400,8 @@ def _given(where: str, channel: Any, instrument: InstrumentSettings) -> dict[str
     ):
         if stated and added:
             raise InputError(
-                f"{where}: states {name} itself; leave out that of topography.instruments (--unit, --size)"
+                f"{where}: states {name} itself; leave out that of topography.instruments (--unit,"
+                " --size)"
             )
     if sized or not instrument.size:
         return {}
@@ -351,7 +410,9 @@ def _given(where: str, channel: Any, instrument: InstrumentSettings) -> dict[str
 
 
 def _contained(path: Path, name: str, settings: TopographySettings) -> Iterator[Measurement]:
-    """The measurements of the one surface in a container, as they were taken: filters of its list are not applied."""
+    """The measurements of the one surface in a container, as they were taken: filters of its list
+    are not applied.
+    """
     from SurfaceTopography.Container.IO import CEReader
 
     try:
@@ -360,22 +421,32 @@ def _contained(path: Path, name: str, settings: TopographySettings) -> Iterator[
                 parse(archive.read("meta.yml"), tuples=True)
         container = CEReader(str(path), ignore_filters=True)
     except MistakenYaml as error:
-        raise InputError(f"{path}: meta.yml holds more than plain values ({error}); nothing was executed") from None
+        raise InputError(
+            f"{path}: meta.yml holds more than plain values ({error}); nothing was executed"
+        ) from None
     except Exception as error:  # of damaged, encrypted and foreign archives, and of strange lists
-        raise InputError(f"{path}: this container cannot be read ({first_line(error)}); get it again") from None
+        raise InputError(
+            f"{path}: this container cannot be read ({first_line(error)}); get it again"
+        ) from None
     if container.nb_containers != 1:
-        raise InputError(f"{path}: holds {container.nb_containers} surfaces; give a container of one surface")
+        raise InputError(
+            f"{path}: holds {container.nb_containers} surfaces; give a container of one surface"
+        )
     if not container.members():
         raise InputError(f"{path}: its list of measurements is empty")
     for number, member in enumerate(container.members()):
         where = f"{path}: {member.name[:80]}"
         label = re.sub(r"[^\w.-]+", "_", f"{name}_{number + 1}_{Path(member.name[:80]).stem}")
         head = _tried(where, lambda item=member: item.open().read(HEAD_BYTES))
-        topography = _tried(where, lambda k=number: container.container()[k], Path(member.name), head)
+        topography = _tried(
+            where, lambda k=number: container.container()[k], Path(member.name), head
+        )
         source = topography.info.get("data_source", 0)
         _check_member(where, member, source, head)
         steps = (f"read channel {source}",)
-        yield _measurement(where, label, topography, head, steps, settings, _instrument(member.name, settings))
+        yield _measurement(
+            where, label, topography, head, steps, settings, _instrument(member.name, settings)
+        )
 
 
 def _check_member(where: str, member: Any, source: Any, head: bytes) -> None:
@@ -383,9 +454,14 @@ def _check_member(where: str, member: Any, source: Any, head: bytes) -> None:
     from SurfaceTopography.IO import open_topography
 
     channels = _tried(where, lambda: list(open_topography(member.open).channels))
-    called = str(channels[source].name) if isinstance(source, int) and source < len(channels) else ""
+    called = (
+        str(channels[source].name) if isinstance(source, int) and source < len(channels) else ""
+    )
     if called and not holds_heights(called):
-        raise InputError(f"{where}: takes channel {called!r}, which holds no heights; remove it from the container")
+        raise InputError(
+            f"{where}: takes channel {called!r}, which holds no heights; remove it from the"
+            " container"
+        )
     text = text_of(head)
     if text is not None and 1 < text.width <= BROADEST_TABLE and text.heads and not _is_known(head):
         columns_of(where, replace(text, odd=0), None)
@@ -400,14 +476,16 @@ def _measurement(
     settings: TopographySettings,
     instrument: InstrumentSettings,
 ) -> Measurement:
-    """A topography of SurfaceTopography in nm, by the unit of the file, of its columns, or of the scene."""
+    """A topography of SurfaceTopography in nm, by the unit of the file, of its columns, or of the
+    scene.
+    """
     unit = topography.unit or instrument.unit
     factors = (nm_of(where, unit),) * 2 if unit else _column_factors(where, head)
     if factors is None:
         raise InputError(
-            f"{where}: a {'profile' if topography.dim == 1 else 'map'} without length unit; state it in "
-            f"topography.instruments (files: {Path(where).name!r}, unit: um, height_unit: nm; --unit um,nm) or in the "
-            "heads of its columns"
+            f"{where}: a {'profile' if topography.dim == 1 else 'map'} without length unit; state"
+            f" it in topography.instruments (files: {Path(where).name!r}, unit: um, height_unit:"
+            " nm; --unit um,nm) or in the heads of its columns"
         )
     if instrument.height_unit and not topography.unit:
         factors = factors[0], nm_of(where, instrument.height_unit)
@@ -416,7 +494,9 @@ def _measurement(
         x, z = _tried(where, lambda: _points(*topography.positions_and_heights()))
         data = _profile(where, name, x * factors[0], z * factors[1])
         bow = topography.info.get("detrend_mode") == "curvature"
-        return with_limits(replace(data, bow=bow, steps=(*steps, *data.steps)), settings, instrument, radius)
+        return with_limits(
+            replace(data, bow=bow, steps=(*steps, *data.steps)), settings, instrument, radius
+        )
     _check_sized(where, topography, instrument)
     heights = factors[1] * _tried(where, lambda: _filled(topography.heights()))
     x_nm, y_nm = (factors[0] * float(size) for size in topography.physical_sizes)
@@ -433,7 +513,9 @@ def _scan(
     instrument: InstrumentSettings,
     radius_nm: float | None = None,
 ) -> Measurement:
-    """A map with the limits of its instrument, cut as asked; numbers that stand for missing points are NaN."""
+    """A map with the limits of its instrument, cut as asked; numbers that stand for missing points
+    are NaN.
+    """
     if min(heights_nm.shape) < MIN_SIDE:
         raise InputError(_too_small(where, heights_nm.shape))
     _check_size(where, *lengths_nm)
@@ -453,7 +535,12 @@ def _cut(where: str, scan: Scan, asked: Any) -> Scan:
     lengths = heights.shape[0] * pixels[0], heights.shape[1] * pixels[1]
     ranges = ", ".join(f"{side.start}:{side.stop}" for side in part)
     step = f"cut to the pixels {ranges} of {scan.heights_nm.shape[0]} x {scan.heights_nm.shape[1]}"
-    return replace(scan, heights_nm=np.ascontiguousarray(heights), lengths_nm=lengths, steps=(*scan.steps, step))
+    return replace(
+        scan,
+        heights_nm=np.ascontiguousarray(heights),
+        lengths_nm=lengths,
+        steps=(*scan.steps, step),
+    )
 
 
 def _too_small(where: str, shape: Sequence[int]) -> str:
@@ -471,7 +558,9 @@ def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profi
 
 
 def _column_factors(where: str, head: bytes) -> tuple[float, float] | None:
-    """Factors to nm of positions and heights, by the heads of the columns of a text in a container; None without."""
+    """Factors to nm of positions and heights, by the heads of the columns of a text in a container;
+    None without.
+    """
     text = text_of(head)
     if text is None or not 1 < text.width <= BROADEST_TABLE or not text.heads:
         return None
@@ -480,10 +569,16 @@ def _column_factors(where: str, head: bytes) -> tuple[float, float] | None:
 
 
 def _stated_radius(where: str, info: Any) -> float | None:
-    """Radius of the tip in nm, as files and containers state it with their instrument; None where they do not."""
+    """Radius of the tip in nm, as files and containers state it with their instrument; None where
+    they do not.
+    """
     for key in ("instrument", "parameters", "tip_radius"):
         info = info.get(key) if isinstance(info, dict) else None
-    if not isinstance(info, dict) or not isinstance(info.get("value"), (int, float)) or info["value"] <= 0:
+    if (
+        not isinstance(info, dict)
+        or not isinstance(info.get("value"), (int, float))
+        or info["value"] <= 0
+    ):
         return None
     return float(info["value"]) * nm_of(f"{where}: tip_radius", str(info.get("unit")))
 
@@ -500,31 +595,46 @@ def _check_sized(where: str, item: Any, instrument: InstrumentSettings) -> None:
     lacks, keys = _lacking(Path(where).name, item, instrument)
     if "--size" in keys:
         raise InputError(
-            f"{where}: has no {lacks}; state them in topography.instruments {keys}, or save it with both (.gwy)"
+            f"{where}: has no {lacks}; state them in topography.instruments {keys}, or save it with"
+            " both (.gwy)"
         )
 
 
 def _also(name: str, item: Any, instrument: InstrumentSettings) -> str:
     """What a file leaves open besides its channel, in words for a message."""
     lacks, keys = _lacking(name, item, instrument)
-    return f"; they have no {lacks}: state them, too, in topography.instruments {keys}" if lacks else ""
+    return (
+        f"; they have no {lacks}: state them, too, in topography.instruments {keys}"
+        if lacks
+        else ""
+    )
 
 
 def _lacking(name: str, item: Any, instrument: InstrumentSettings) -> tuple[str, str]:
-    """What neither a file nor its user says of the size and unit of a map, and the keys and options to fill."""
+    """What neither a file nor its user says of the size and unit of a map, and the keys and options
+    to fill.
+    """
     sizes = item.physical_sizes or instrument.size
-    sized = sizes is not None and all(np.isfinite(size) and size > 0 for size in np.atleast_1d(sizes))
+    sized = sizes is not None and all(
+        np.isfinite(size) and size > 0 for size in np.atleast_1d(sizes)
+    )
     named = item.unit or instrument.unit
     size_words = ("physical size", "size: [1, 1]", "--size 1x1")
     if item.dim == 1:
         size_words = ("length", "size: [1]", "--size 1")
     asked = [
         words
-        for words, stated in ((size_words, sized), (("length unit", "unit: um", "--unit um"), named))
+        for words, stated in (
+            (size_words, sized),
+            (("length unit", "unit: um", "--unit um"), named),
+        )
         if not stated
     ]
     lacks, keys, options = ([words[k] for words in asked] for k in range(3))
-    return " and no ".join(lacks), f"({', '.join([f'files: {name!r}', *keys])}; {' '.join(options)})"
+    return (
+        " and no ".join(lacks),
+        f"({', '.join([f'files: {name!r}', *keys])}; {' '.join(options)})",
+    )
 
 
 def _check_size(where: str, *lengths_nm: float) -> None:
@@ -532,8 +642,9 @@ def _check_size(where: str, *lengths_nm: float) -> None:
     low, high = FILE_NM
     if not all(low <= length <= high for length in lengths_nm):
         raise InputError(
-            f"{where}: a size of {' x '.join(f'{length:.4g}' for length in lengths_nm)} nm; plausible is {low:g} .. "
-            f"{high:g} nm, so its unit may be mistaken: save it again with the size in nm or um (.gwy)"
+            f"{where}: a size of {' x '.join(f'{length:.4g}' for length in lengths_nm)} nm;"
+            f" plausible is {low:g} .. {high:g} nm, so its unit may be mistaken: save it again with"
+            " the size in nm or um (.gwy)"
         )
 
 
@@ -542,11 +653,13 @@ def _check_heights(where: str, heights_nm: np.ndarray) -> None:
     high = FILE_NM[1]
     if not np.isfinite(heights_nm).any():
         raise InputError(f"{where}: no pixel has a height; measure again")
-    largest = float(np.nanmax(np.abs(heights_nm - np.nanmedian(heights_nm))))  # some instruments count from far away
+    largest = float(
+        np.nanmax(np.abs(heights_nm - np.nanmedian(heights_nm)))
+    )  # some instruments count from far away
     if largest > high:
         raise InputError(
-            f"{where}: a height of {largest:.3g} nm; plausible is up to {high:g} nm about the median, so the file "
-            "may be damaged or its unit mistaken: save it again (.gwy)"
+            f"{where}: a height of {largest:.3g} nm; plausible is up to {high:g} nm about the"
+            " median, so the file may be damaged or its unit mistaken: save it again (.gwy)"
         )
 
 
@@ -558,13 +671,19 @@ def _tried(where: str, read: Callable[[], Any], file: Path | None = None, head: 
         return read()
     except CannotDetectFileFormat as error:
         file = file or Path(where)
-        raise InputError(why_not_read(file, head, str(error)).replace(str(file), where, 1)) from None
+        raise InputError(
+            why_not_read(file, head, str(error)).replace(str(file), where, 1)
+        ) from None
     except Exception as error:
-        raise InputError(f"{where}: heights cannot be read ({first_line(error)}); is the file complete?") from None
+        raise InputError(
+            f"{where}: heights cannot be read ({first_line(error)}); is the file complete?"
+        ) from None
 
 
 def write_gwy(path: str | Path, scan: Scan) -> None:
-    """Write heights to a Gwyddion file, in metres as Gwyddion wants them; missing pixels as its mask."""
+    """Write heights to a Gwyddion file, in metres as Gwyddion wants them; missing pixels as its
+    mask.
+    """
     metre = 1e-9
     x, y = (length * metre for length in scan.lengths_nm)
     write_channels(path, {"Height": (scan.heights_nm * metre, "m")}, (x, y))

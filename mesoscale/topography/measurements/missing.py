@@ -1,8 +1,8 @@
 """Numbers that stand for missing points, and what remains of a map without them.
 
-Programs write a number where nothing was measured: -9999, 0, 1e30, or the ends of the integers of a format. Such a
-number betrays itself twice. Many points have it where any other value occurs once, and the surface jumps to it.
-"""
+Programs write a number where nothing was measured: -9999, 0, 1e30, or the ends of the integers of a
+format. Such a number betrays itself twice. Many points have it where any other value occurs once,
+and the surface jumps to it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,10 +17,14 @@ LONE = 5.0
 MOST_ALONE = 0.1  # share of points that may lie so far away: more are a surface of two levels
 TIES, TIED_SHARE = 8, 2e-4
 """Fewest points, and fewest of all, whose common value is looked at."""
-MORE_THAN_NEAR = 10.0  # times as many points as any value nearby: 8-bit heights have hundreds at each
+MORE_THAN_NEAR = (
+    10.0  # times as many points as any value nearby: 8-bit heights have hundreds at each
+)
 MOST_TIED = 0.5
 JUMP = 3.0
-"""How the surface jumps to what stands for missing points, over nine tenths of its steps between neighbours."""
+"""How the surface jumps to what stands for missing points, over nine tenths of its steps between
+neighbours.
+"""
 SAMPLE = 1_000_000  # points of a large map in which common values are sought
 MOST_VALUES = 6
 FEW, LARGEST_NM = 3, 1e8
@@ -44,7 +48,9 @@ class StandIn:
 
 
 def without_stand_ins(heights: np.ndarray) -> tuple[np.ndarray, list[StandIn]]:
-    """Heights (n,) or (nx, ny) with NaN in place of numbers that stand for missing points, and these numbers."""
+    """Heights (n,) or (nx, ny) with NaN in place of numbers that stand for missing points, and
+    these numbers.
+    """
     stand_ins: list[StandIn] = []
     while len(stand_ins) < MOST_VALUES:
         known = heights[np.isfinite(heights)]
@@ -54,7 +60,10 @@ def without_stand_ins(heights: np.ndarray) -> tuple[np.ndarray, list[StandIn]]:
         if marked is not None and _is_damage(heights, marked):
             break
         if marked is None:
-            marked = next((mask for value in _common(known) if _jumps(heights, mask := heights == value)), None)
+            marked = next(
+                (mask for value in _common(known) if _jumps(heights, mask := heights == value)),
+                None,
+            )
         if marked is None:
             break
         values = heights[marked]
@@ -64,7 +73,9 @@ def without_stand_ins(heights: np.ndarray) -> tuple[np.ndarray, list[StandIn]]:
 
 
 def _lonely(heights: np.ndarray, known: np.ndarray) -> np.ndarray | None:
-    """Points below or above a gap in the values that is wide beside all others; None where there is no such gap."""
+    """Points below or above a gap in the values that is wide beside all others; None where there is
+    no such gap.
+    """
     most = max(1, int(MOST_ALONE * len(known)))
     few = np.partition(known, (most, len(known) - most - 1))
     for below in (True, False):
@@ -93,12 +104,18 @@ def _common(known: np.ndarray) -> Iterator[float]:
             return
         near = np.r_[counts[max(place - 10, 0) : place], counts[place + 1 : place + 11]]
         few_values = len(near) < 10  # steps and gratings without noise
-        if not few_values and counts[place] > MORE_THAN_NEAR * near.max() and counts[place] < MOST_TIED * len(sample):
+        if (
+            not few_values
+            and counts[place] > MORE_THAN_NEAR * near.max()
+            and counts[place] < MOST_TIED * len(sample)
+        ):
             yield float(values[place])
 
 
 def _jumps(heights: np.ndarray, marked: np.ndarray) -> bool:
-    """Does the surface jump where it meets these points? A plateau it meets as it meets any other point."""
+    """Does the surface jump where it meets these points? A plateau it meets as it meets any other
+    point.
+    """
     steps, met = [], []
     for axis in range(heights.ndim):
         step = np.abs(np.diff(heights, axis=axis))
@@ -123,7 +140,8 @@ def cropped(
 
     Parameters
     ----------
-    asked : `largest`, the largest rectangle without missing points, small holes apart; or first and last place along x
+    asked : `largest`, the largest rectangle without missing points, small holes apart; or first and
+        last place along x
         and along y.
 
     Raises
@@ -137,8 +155,8 @@ def cropped(
         nx, ny = heights.shape
         if not (x1 < x2 <= nx and y1 < y2 <= ny):
             raise InputError(
-                f"{where}: cut to {x1}:{x2}, {y1}:{y2} of {nx} x {ny} pixels (--crop, topography.instruments crop); "
-                f"accepted are 0:{nx}, 0:{ny} and what lies inside"
+                f"{where}: cut to {x1}:{x2}, {y1}:{y2} of {nx} x {ny} pixels (--crop,"
+                f" topography.instruments crop); accepted are 0:{nx}, 0:{ny} and what lies inside"
             )
         part = slice(x1, x2), slice(y1, y2)
     return heights[part], part
@@ -158,13 +176,15 @@ def _large_holes(heights: np.ndarray) -> np.ndarray:
 def _largest_rectangle(known: np.ndarray) -> tuple[slice, slice]:
     """The largest rectangle of a mask (nx, ny) in which all is true.
 
-    Row by row, each column is as high as what is true above it; a stack finds the largest rectangle under these.
-    """
+    Row by row, each column is as high as what is true above it; a stack finds the largest rectangle
+    under these."""
     best, largest = 0, (slice(0, 0), slice(0, 0))
     high = np.zeros(known.shape[1], dtype=int)
     for row, line in enumerate(known):
         high = np.where(line, high + 1, 0)
-        open_columns: list[tuple[int, int]] = []  # first column and height of rectangles that are still open
+        open_columns: list[
+            tuple[int, int]
+        ] = []  # first column and height of rectangles that are still open
         for column, height in enumerate([*high.tolist(), 0]):
             start = column
             while open_columns and open_columns[-1][1] >= height:

@@ -1,4 +1,6 @@
-"""What a file is: packed files are unpacked, two more formats are converted, and others are named with a way out."""
+"""What a file is: packed files are unpacked, two more formats are converted, and others are named
+with a way out.
+"""
 
 import bz2
 import gzip
@@ -29,7 +31,8 @@ LONGEST = 160  # characters of a reader's reason
 
 
 def foreign(path: Path, head: bytes, by_name: bool) -> str | None:
-    """Name of a format that nothing here reads (config/formats.yaml), and what to do; None of other files.
+    """Name of a format that nothing here reads (config/formats.yaml), and what to do; None of other
+    files.
 
     Parameters
     ----------
@@ -42,7 +45,9 @@ def foreign(path: Path, head: bytes, by_name: bool) -> str | None:
         begins += [bytes.fromhex(text) for text in item.get("hex", ())]
         if begins and head.startswith(tuple(begins)):
             return _named(path, item)
-    ends = (item for item in _formats() if path.name.lower().endswith(tuple(item.get("ends", ("\0",)))))
+    ends = (
+        item for item in _formats() if path.name.lower().endswith(tuple(item.get("ends", ("\0",))))
+    )
     return next((_named(path, item) for item in ends), None) if by_name else None
 
 
@@ -56,7 +61,8 @@ def _formats() -> list[dict[str, Any]]:
 
 
 def unpacked(path: Path, head: bytes) -> Path:
-    """The file, or the only file in an archive or a compressed file; a container of contact.engineering stays.
+    """The file, or the only file in an archive or a compressed file; a container of
+    contact.engineering stays.
 
     Raises
     ------
@@ -71,7 +77,9 @@ def unpacked(path: Path, head: bytes) -> Path:
             with opens(path, "rb") as packed:
                 return _copied(packed, name)
         except (OSError, EOFError, lzma.LZMAError) as error:
-            raise InputError(f"{path}: cannot be unpacked ({error}); is the file complete?") from None
+            raise InputError(
+                f"{path}: cannot be unpacked ({error}); is the file complete?"
+            ) from None
     if path.suffix.lower() != ".zip":
         return path
     try:
@@ -84,10 +92,12 @@ def unpacked(path: Path, head: bytes) -> Path:
                 with archive.open(inside[0]) as packed:
                     return _copied(packed, Path(inside[0]).name)
     except Exception as error:  # of damaged, encrypted and foreign archives
-        raise InputError(f"{path}: this archive cannot be read ({first_line(error)}); get it again") from None
+        raise InputError(
+            f"{path}: this archive cannot be read ({first_line(error)}); get it again"
+        ) from None
     raise InputError(
-        f"{path}: neither a container of contact.engineering nor one file alone, it holds {listed(inside)}; unpack it "
-        "and give its files, or the folder"
+        f"{path}: neither a container of contact.engineering nor one file alone, it holds"
+        f" {listed(inside)}; unpack it and give its files, or the folder"
     )
 
 
@@ -103,7 +113,8 @@ def _copied(stream: Any, name: str) -> Path:
 
 
 def converted(path: Path, head: bytes) -> Path:
-    """The file, or a Gwyddion file with the channels of a Gwyddion Simple Field or of a scan of Nanonis.
+    """The file, or a Gwyddion file with the channels of a Gwyddion Simple Field or of a scan of
+    Nanonis.
 
     Raises
     ------
@@ -118,7 +129,9 @@ def converted(path: Path, head: bytes) -> Path:
     try:
         channels, lengths_m = read(path)
     except Exception as error:  # readers of foreign formats fail in many ways
-        raise InputError(f"{path}: cannot be read ({first_line(error)}); is the file complete?") from None
+        raise InputError(
+            f"{path}: cannot be read ({first_line(error)}); is the file complete?"
+        ) from None
     copy = Path(tempfile.mkdtemp()) / f"{path.stem}.gwy"
     write_channels(copy, channels, lengths_m)
     return copy
@@ -146,7 +159,9 @@ def _nanonis(path: Path) -> tuple[Channels, tuple[float, float]]:
         copy.symlink_to(path.resolve())
         path = copy
     scan = NanonisScan(str(path))
-    units = dict(zip(scan.header["data_info"]["Name"], scan.header["data_info"]["Unit"], strict=True))
+    units = dict(
+        zip(scan.header["data_info"]["Name"], scan.header["data_info"]["Unit"], strict=True)
+    )
     channels = {
         f"{name} ({direction})": (np.asarray(values, dtype=float).T, units[name])
         for name, both in scan.signals.items()
@@ -165,7 +180,9 @@ def write_channels(
 
     def field(values: np.ndarray, unit: str) -> GwyDataField:
         rows = np.ascontiguousarray(values.T)  # Gwyddion stores scan lines as rows
-        return GwyDataField(rows, xreal=lengths_m[0], yreal=lengths_m[1], si_unit_xy="m", si_unit_z=unit)
+        return GwyDataField(
+            rows, xreal=lengths_m[0], yreal=lengths_m[1], si_unit_xy="m", si_unit_z=unit
+        )
 
     content = GwyContainer()
     for number, (name, (values, unit)) in enumerate(channels.items()):
@@ -195,7 +212,11 @@ def with_unit(path: Path, unit: str) -> Path:
 def without_unit(path: Path) -> list[str]:
     """Names of the channels of a Gwyddion file that have no unit."""
     content, keys = _fields(path)
-    return [str(content.get(f"{key}/title", key)) for key in keys if not _unit(content[key], "si_unit_z")]
+    return [
+        str(content.get(f"{key}/title", key))
+        for key in keys
+        if not _unit(content[key], "si_unit_z")
+    ]
 
 
 def _fields(path: Path) -> tuple[Any, list[str]]:
@@ -227,7 +248,9 @@ def opened(path: Path, head: bytes) -> Any:
         if head.startswith(b"\x93NUMPY"):  # its reader fills what is cut off
             np.lib.format.open_memmap(path, mode="r")
     except ValueError as error:
-        raise InputError(f"{path}: cannot be read ({first_line(error)}); is the file complete?") from None
+        raise InputError(
+            f"{path}: cannot be read ({first_line(error)}); is the file complete?"
+        ) from None
     reasons = []
     for reader in meant:
         try:
@@ -246,7 +269,8 @@ def opened(path: Path, head: bytes) -> Any:
 
 
 def why_not_read(path: Path, head: bytes, tried: str) -> str:
-    """Why no reader takes a file: its format where it is known, else the reason of the reader that it is meant for.
+    """Why no reader takes a file: its format where it is known, else the reason of the reader that
+    it is meant for.
 
     Parameters
     ----------
@@ -257,21 +281,30 @@ def why_not_read(path: Path, head: bytes, tried: str) -> str:
     if named := foreign(path, head, by_name=True):
         return named
     parts = re.split(r"tried (\w+): *\n", tried)
-    said = {name: " ".join(text.split()) for name, text in zip(parts[1::2], parts[2::2], strict=False)}
+    said = {
+        name: " ".join(text.split()) for name, text in zip(parts[1::2], parts[2::2], strict=False)
+    }
     suffix = path.suffix.lower().lstrip(".")
     by_bytes = [item for item in readers if item.can_read(head) == MagicMatch.YES]
     by_name = [item for item in readers if suffix and suffix in (item.file_extensions() or ())]
     first = [item for item in (*by_bytes, *by_name) if item.__name__ in said]
-    reason = f" ({first[0].name()}: {said[first[0].__name__][:LONGEST]})" if first else _begins(head)
+    reason = (
+        f" ({first[0].name()}: {said[first[0].__name__][:LONGEST]})" if first else _begins(head)
+    )
     return (
-        f"{path}: no reader understands this file{reason}; accepted are the formats of SurfaceTopography (gwy, ibw, "
-        "di, jpk, mi, nid, ps tiff, ...; all: docs/topography.md, Formats): save it as one of these, such as .gwy"
+        f"{path}: no reader understands this file{reason}; accepted are the formats of"
+        " SurfaceTopography (gwy, ibw, di, jpk, mi, nid, ps tiff, ...; all: docs/topography.md,"
+        " Formats): save it as one of these, such as .gwy"
     )
 
 
 def _begins(head: bytes) -> str:
     start = head[:16]
-    words = start.decode("ascii") if start.isascii() and start.decode("ascii").isprintable() else start[:8].hex(" ")
+    words = (
+        start.decode("ascii")
+        if start.isascii() and start.decode("ascii").isprintable()
+        else start[:8].hex(" ")
+    )
     return f" (it begins with {words!r})"
 
 

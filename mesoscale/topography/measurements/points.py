@@ -1,4 +1,6 @@
-"""Points of a surface, x, y and z, put on the grid that they lie on; places without a point are missing."""
+"""Points of a surface, x, y and z, put on the grid that they lie on; places without a point are
+missing.
+"""
 
 from dataclasses import dataclass
 
@@ -24,11 +26,13 @@ class Axis:
 def on_grid(
     where: str, x: np.ndarray, y: np.ndarray, z: np.ndarray, stated: tuple[int, int] | None
 ) -> tuple[np.ndarray, tuple[float, float], str]:
-    """Heights (nx, ny) of points (n,), the side lengths in the unit of the positions, and this step in words.
+    """Heights (nx, ny) of points (n,), the side lengths in the unit of the positions, and this step
+    in words.
 
     Parameters
     ----------
-    stated : places along x and y, into which points without a regular grid are sorted; None: the points tell.
+    stated : places along x and y, into which points without a regular grid are sorted; None: the
+        points tell.
 
     Raises
     ------
@@ -39,22 +43,30 @@ def on_grid(
     if len(x) < 4:
         raise InputError(f"{where}: {len(x)} points with a position; give a map")
     if min(np.ptp(x), np.ptp(y)) <= 0:
-        raise InputError(f"{where}: all points lie on one line; give positions along it and heights")
-    along_x, along_y = (_sorted_in(x, stated[0]), _sorted_in(y, stated[1])) if stated else (_places(x), _places(y))
+        raise InputError(
+            f"{where}: all points lie on one line; give positions along it and heights"
+        )
+    along_x, along_y = (
+        (_sorted_in(x, stated[0]), _sorted_in(y, stated[1])) if stated else (_places(x), _places(y))
+    )
     if along_x is None or along_y is None:
         raise InputError(f"{where}: the points lie on no regular grid; {_advice(x, y)}")
     counts = along_x.count, along_y.count
     sites = along_x.place * along_y.count + along_y.place
     size = along_x.count * along_y.count
     if len(np.unique(sites)) < FILLED * size:
-        raise InputError(f"{where}: {len(x)} points for {counts[0]} x {counts[1]} places; {_advice(x, y)}")
+        raise InputError(
+            f"{where}: {len(x)} points for {counts[0]} x {counts[1]} places; {_advice(x, y)}"
+        )
     measured = np.isfinite(z)
     total = np.bincount(sites[measured], z[measured], size)
     number = np.bincount(sites[measured], minlength=size)
     heights = np.where(number > 0, total / np.maximum(number, 1), np.nan).reshape(counts)
     holes = int(np.count_nonzero(number == 0))
     lengths = along_x.count * along_x.step, along_y.count * along_y.step
-    step = f"put {len(x)} points on a grid of {counts[0]} x {counts[1]}" + (f", {holes} without a point" * bool(holes))
+    step = f"put {len(x)} points on a grid of {counts[0]} x {counts[1]}" + (
+        f", {holes} without a point" * bool(holes)
+    )
     return heights, lengths, step
 
 
@@ -87,14 +99,17 @@ def _advice(x: np.ndarray, y: np.ndarray) -> str:
         counts = np.maximum(2, (0.9 * counts).astype(int))
     first, second = counts.tolist()
     return (
-        f"state how many places there are along x and y, such as --points {first}x{second} (topography.instruments, "
-        f"points: [{first}, {second}]): each then gets the mean of its points"
+        f"state how many places there are along x and y, such as --points {first}x{second}"
+        f" (topography.instruments, points: [{first}, {second}]): each then gets the mean of its"
+        " points"
     )
 
 
 def _empty_share(x: np.ndarray, y: np.ndarray, counts: np.ndarray) -> float:
     """Share of the places that have no point, but have some that do on both sides along x."""
-    along_x, along_y = (_sorted_in(values, int(count)) for values, count in zip((x, y), counts, strict=True))
+    along_x, along_y = (
+        _sorted_in(values, int(count)) for values, count in zip((x, y), counts, strict=True)
+    )
     filled = np.zeros(tuple(counts), dtype=bool)
     filled[along_x.place, along_y.place] = True
     before = np.maximum.accumulate(filled, axis=0)

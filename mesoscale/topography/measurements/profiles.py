@@ -1,4 +1,6 @@
-"""Heights along a line, as a stylus or a side view in an electron microscope gives them, made ready for a spectrum."""
+"""Heights along a line, as a stylus or a side view in an electron microscope gives them, made ready
+for a spectrum.
+"""
 
 import itertools
 from dataclasses import dataclass, field, replace
@@ -42,7 +44,9 @@ class Profile:
     def __post_init__(self):
         heights = checked_array(f"{self.name}: heights_nm", self.heights_nm, "nm")
         if heights.ndim != 1:
-            raise InputError(f"{self.name}: heights_nm has shape {heights.shape}; accepted is a line (n,)")
+            raise InputError(
+                f"{self.name}: heights_nm has shape {heights.shape}; accepted is a line (n,)"
+            )
         check_number(f"{self.name}: length_nm", self.length_nm, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
 
     @property
@@ -59,8 +63,9 @@ class Profile:
 def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> Profile:
     """A profile at even steps from points (n,).
 
-    Uneven points are joined by straight lines and read at their mean distance. Of a line that was measured there and
-    back, the way there counts; of one that overhangs, what is seen from above. Points without order are sorted.
+    Uneven points are joined by straight lines and read at their mean distance. Of a line that was
+    measured there and back, the way there counts; of one that overhangs, what is seen from above.
+    Points without order are sorted.
 
     Raises
     ------
@@ -68,13 +73,18 @@ def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> P
     """
     count = len(positions_nm)
     if not MIN_POINTS <= count <= MAX_POINTS:
-        raise InputError(f"{name}: a line of {count} points; accepted are {MIN_POINTS} .. {MAX_POINTS}")
+        raise InputError(
+            f"{name}: a line of {count} points; accepted are {MIN_POINTS} .. {MAX_POINTS}"
+        )
     heights_nm, notes = _without_missing(positions_nm, heights_nm)
     known = np.isfinite(positions_nm) & np.isfinite(heights_nm)
     x, z, done = _from_above(positions_nm[known], heights_nm[known])
     notes = (*notes, *done)
     if len(x) < MIN_POINTS or x[-1] <= x[0]:
-        raise InputError(f"{name}: {len(x)} points with a position and a height; at least {MIN_POINTS} are needed")
+        raise InputError(
+            f"{name}: {len(x)} points with a position and a height; at least {MIN_POINTS} are"
+            " needed"
+        )
     gaps = np.diff(x)
     step = (x[-1] - x[0]) / (len(x) - 1)
     if gaps.max() > 16.0 * step:  # too far for a straight line
@@ -93,10 +103,11 @@ def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> P
 
 
 def _without_missing(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Heights whose few missing points are filled from their neighbours along the line, and this in words.
+    """Heights whose few missing points are filled from their neighbours along the line, and this in
+    words.
 
-    Numbers that stand for missing points are told. Where more are missing, they stay NaN, and so do those at the ends.
-    """
+    Numbers that stand for missing points are told. Where more are missing, they stay NaN, and so do
+    those at the ends."""
     z, stand_ins = without_stand_ins(z)
     steps = stand_in_steps(stand_ins, len(z))
     missing = ~np.isfinite(z)
@@ -111,7 +122,9 @@ def _without_missing(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, tuple[st
 
 
 def _from_above(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
-    """Points in rising order of x, one height at each place, and in words what was done to get them."""
+    """Points in rising order of x, one height at each place, and in words what was done to get
+    them.
+    """
     order = np.argsort(x, kind="stable")
     steps = np.diff(x)
     forth = steps if steps.sum() >= 0 else -steps
@@ -132,9 +145,17 @@ def _from_above(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, t
     for (x1, x2), (z1, z2) in zip(itertools.pairwise(x), itertools.pairwise(z), strict=True):
         first, last = np.searchsorted(even, [min(x1, x2) - 1e-12, max(x1, x2) + 1e-12])
         place = even[first:last]
-        heights = np.interp(place, (x1, x2), (z1, z2)) if x2 >= x1 else np.interp(place, (x2, x1), (z2, z1))
+        heights = (
+            np.interp(place, (x1, x2), (z1, z2))
+            if x2 >= x1
+            else np.interp(place, (x2, x1), (z2, z1))
+        )
         seen[first:last] = np.maximum(seen[first:last], heights)
-    return even, seen, (f"{OVERHANG}: {back} of {len(steps)} steps go back, took what is seen from above",)
+    return (
+        even,
+        seen,
+        (f"{OVERHANG}: {back} of {len(steps)} steps go back, took what is seen from above",),
+    )
 
 
 def clean_profile(profile: Profile, settings: TopographySettings) -> Profile:
@@ -145,15 +166,21 @@ def clean_profile(profile: Profile, settings: TopographySettings) -> Profile:
     InputError : all heights are the same.
     """
     if np.ptp(profile.heights_nm) == 0:
-        raise InputError(f"{profile.name}: all heights are equal; this is no measurement of a surface")
+        raise InputError(
+            f"{profile.name}: all heights are equal; this is no measurement of a surface"
+        )
     heights, steps = profile.heights_nm - profile.heights_nm.mean(), profile.steps
     if settings.detrend != "none":
         x = np.linspace(-1, 1, len(heights))
-        line, parabola = (heights - np.polynomial.Polynomial.fit(x, heights, order)(x) for order in (1, 2))
+        line, parabola = (
+            heights - np.polynomial.Polynomial.fit(x, heights, order)(x) for order in (1, 2)
+        )
         form = float(np.log(max(np.var(line), 1e-300) / max(np.var(parabola), 1e-300)))
         if profile.bow or settings.detrend == "quadratic":
             heights, note = parabola, "subtracted a parabola"
-        elif settings.detrend == "auto" and form > 3.5:  # 400 lines across C ~ q^-4 without a plateau reach 3.3
+        elif (
+            settings.detrend == "auto" and form > 3.5
+        ):  # 400 lines across C ~ q^-4 without a plateau reach 3.3
             heights, note, profile = parabola, form_step(form), replace(profile, bow=True)
         else:
             heights, note = line, "subtracted a line"

@@ -1,8 +1,7 @@
 """Text as programs of many countries export it: rows of numbers, and what the lines above them say.
 
-Decimal commas, semicolons, quotes, encodings and exponents such as 1.0D-3 are understood. A word among numbers stands
-for a missing point, so that no row of a map is lost.
-"""
+Decimal commas, semicolons, quotes, encodings and exponents such as 1.0D-3 are understood. A word
+among numbers stands for a missing point, so that no row of a map is lost."""
 
 import csv
 import re
@@ -67,15 +66,27 @@ class Text:
         if not named or not named[-1]:
             return ()
         last = named[-1]
-        if len(named) > 1 and named[0] and all(re.fullmatch(r"[\[(]?[^\s\])]{0,12}[\])]?", word) for word in last):
+        if (
+            len(named) > 1
+            and named[0]
+            and all(re.fullmatch(r"[\[(]?[^\s\])]{0,12}[\])]?", word) for word in last)
+        ):
             first = named[0]
-            if not any(re.search(r"[(\[]", word) for word in first):  # a line of names, then one of units
-                return tuple(f"{name} ({unit.strip('[]()')})" for name, unit in zip(first, last, strict=True))
+            if not any(
+                re.search(r"[(\[]", word) for word in first
+            ):  # a line of names, then one of units
+                return tuple(
+                    f"{name} ({unit.strip('[]()')})" for name, unit in zip(first, last, strict=True)
+                )
         return last
 
     def _names(self, line: str) -> tuple[str, ...]:
         """As many names as there are columns; none where the line has another number of them."""
-        for parts in (_split(line, self.separator), NAME.findall(line), re.split(r"\s{2,}|\t", line)):
+        for parts in (
+            _split(line, self.separator),
+            NAME.findall(line),
+            re.split(r"\s{2,}|\t", line),
+        ):
             words = [word for word in (word.strip() for word in parts) if word]
             if len(words) == self.width and all(re.search(r"[^\W\d]|#", word) for word in words):
                 return tuple(words)
@@ -120,10 +131,17 @@ def text_of(raw: bytes) -> Text | None:
     if not places:
         return None
     first, last = places[0], places[-1]
-    others = set(range(first, min(last + 2, len(lines)))) - set(places)  # a line more: the last may be cut
+    others = set(range(first, min(last + 2, len(lines)))) - set(
+        places
+    )  # a line more: the last may be cut
     odd = sum(_numeric(_split(lines[k], separator), comma) for k in others)
     as_it_is = raw.isascii() or (raw[:3] != b"\xef\xbb\xbf" and _is_utf8(raw))
-    plain = as_it_is and separator in ("\t", None) and not comma and all(isinstance(row, str) for row in rows)
+    plain = (
+        as_it_is
+        and separator in ("\t", None)
+        and not comma
+        and all(isinstance(row, str) for row in rows)
+    )
     return Text(tuple(lines[:first]), tuple(rows), separator, width, odd, comma, plain)
 
 
@@ -153,7 +171,9 @@ def decoded(raw: bytes) -> str | None:
 def _layout(lines: Sequence[str]) -> tuple[str | None, bool]:
     """Separator of values, and whether numbers have decimal commas."""
     numbers = [line for line in lines if re.search(r"\d", line)]
-    sample = numbers[len(numbers) // 4 :: max(1, len(numbers) // SAMPLE)][:SAMPLE]  # past most of a header
+    sample = numbers[len(numbers) // 4 :: max(1, len(numbers) // SAMPLE)][
+        :SAMPLE
+    ]  # past most of a header
     if _one_column(sample):
         return None, True
     best, layout = 0.0, (None, False)
@@ -169,7 +189,9 @@ def _understood(sample: Sequence[str], separator: str | None, comma: bool) -> fl
     """How many words of these lines are numbers, less where others are beside them."""
     score = 0.0
     for line in sample:
-        words = [word for word in _split(line, separator) if word][:SAMPLE_WORDS]  # empty places are missing points
+        words = [word for word in _split(line, separator) if word][
+            :SAMPLE_WORDS
+        ]  # empty places are missing points
         numbers = sum(_as_number(word, comma) is not None for word in words)
         score += numbers**2 / max(1, len(words))
     return score
@@ -183,8 +205,12 @@ def _one_column(sample: Sequence[str]) -> bool:
     return not (np.diff(first) > 0).all()
 
 
-def _rows(lines: Sequence[str], separator: str | None, comma: bool) -> tuple[list[int], list[Sequence[str] | str], int]:
-    """Places of the rows, the rows and their width; a row that readers take as it is stays a line."""
+def _rows(
+    lines: Sequence[str], separator: str | None, comma: bool
+) -> tuple[list[int], list[Sequence[str] | str], int]:
+    """Places of the rows, the rows and their width; a row that readers take as it is stays a
+    line.
+    """
     plain: dict[int, int] = {}  # width by place
     others: dict[int, list[str]] = {}
     for place, line in enumerate(lines):
@@ -200,7 +226,9 @@ def _rows(lines: Sequence[str], separator: str | None, comma: bool) -> tuple[lis
     if not widths:
         return [], [], 0
     width = widths.most_common(1)[0][0]
-    kept: dict[int, Sequence[str] | str] = {place: lines[place] for place, count in plain.items() if count == width}
+    kept: dict[int, Sequence[str] | str] = {
+        place: lines[place] for place, count in plain.items() if count == width
+    }
     for place in numeric:
         words = others[place]
         if separator is not None and len(words) < width <= lines[place].count(separator) + 1:
@@ -210,7 +238,12 @@ def _rows(lines: Sequence[str], separator: str | None, comma: bool) -> tuple[lis
     first, last = min(kept), max(kept)
     for place, words in others.items():  # a row of words alone, among rows of numbers
         may_be_lost = len(words) == width and (width > 3 or width == 1 or len(set(words)) == 1)
-        if first < place < last and place not in numeric and may_be_lost and not any(len(word) > 12 for word in words):
+        if (
+            first < place < last
+            and place not in numeric
+            and may_be_lost
+            and not any(len(word) > 12 for word in words)
+        ):
             kept[place] = words
     places = sorted(kept)
     return places, [kept[place] for place in places], width
@@ -223,7 +256,9 @@ def _numeric(words: Sequence[str], comma: bool) -> bool:
 
 
 def _split(line: str, separator: str | None) -> Sequence[str]:
-    """Words of a line; an empty place between two separators is one, after the last one it is none."""
+    """Words of a line; an empty place between two separators is one, after the last one it is
+    none.
+    """
     if separator is None:
         return line.replace('"', "").split()
     if '"' in line:

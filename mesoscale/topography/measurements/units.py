@@ -7,12 +7,38 @@ from mesoscale.errors import InputError
 WORDS = {  # spellings that the table of SurfaceTopography lacks, in m
     1e-3: ("millimeter", "millimeters", "millimetre", "millimetres", "mms", "мм", "毫米"),
     1e-6: (
-        *("\u03bcm", "\u339b", "\u00c2\u00b5m", "micron", "microns", "micrometer", "micrometers", "micrometre"),
-        *("micrometres", "mikrometer", "micromètre", "micromètres", "micrómetro", "micrómetros", "micrometri"),
+        *(
+            "\u03bcm",
+            "\u339b",
+            "\u00c2\u00b5m",
+            "micron",
+            "microns",
+            "micrometer",
+            "micrometers",
+            "micrometre",
+        ),
+        *(
+            "micrometres",
+            "mikrometer",
+            "micromètre",
+            "micromètres",
+            "micrómetro",
+            "micrómetros",
+            "micrometri",
+        ),
         *("mikron", "mikrometr", "mum", "мкм", "мкм.", "微米", "マイクロメートル"),
     ),
     1e-9: (
-        *("\u339a", "nanometer", "nanometers", "nanometre", "nanometres", "nanomètre", "nanomètres", "nanómetro"),
+        *(
+            "\u339a",
+            "nanometer",
+            "nanometers",
+            "nanometre",
+            "nanometres",
+            "nanomètre",
+            "nanomètres",
+            "nanómetro",
+        ),
         *("nanómetros", "nanometri", "nanometr", "нм", "纳米", "ナノメートル"),
     ),
     1e-10: ("angstrom", "angstroms", "ångström", "ångstrom", "ang", "\u212b"),
@@ -38,12 +64,17 @@ def nm_of(where: str, unit: str) -> float:
     ------
     InputError : it is no unit of length.
     """
-    from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor, mangle_length_unit_utf8
+    from SurfaceTopography.Support.UnitConversion import (
+        get_unit_conversion_factor,
+        mangle_length_unit_utf8,
+    )
 
     try:
         return float(get_unit_conversion_factor(mangle_length_unit_utf8(unit), "nm"))
     except ValueError:
-        raise InputError(f"{where}: unit {unit!r} is not a length; save heights and size in nm, um or m") from None
+        raise InputError(
+            f"{where}: unit {unit!r} is not a length; save heights and size in nm, um or m"
+        ) from None
 
 
 def unit_of_head(head: str) -> str | None:

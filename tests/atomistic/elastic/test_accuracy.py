@@ -1,4 +1,6 @@
-"""Error of B against run time: known energies stand for the engine, so that every error is known."""
+"""Error of B against run time: known energies stand for the engine, so that every error is
+known.
+"""
 
 import numpy as np
 import pytest
@@ -38,7 +40,9 @@ class Solid(Calculator):
 def glasses(monkeypatch):
     monkeypatch.setattr(accuracy, "make_calculator", Solid)
     edge = V0_A3 ** (1 / 3)
-    cells = [Atoms("Si3", positions=np.random.default_rng(seed).uniform(0, 5, (3, 3))) for seed in (1, 2)]
+    cells = [
+        Atoms("Si3", positions=np.random.default_rng(seed).uniform(0, 5, (3, 3))) for seed in (1, 2)
+    ]
     for cell, factor in zip(cells, (1.0, 1.005), strict=True):
         cell.set_cell([factor * edge] * 3)
         cell.pbc = True
@@ -65,7 +69,9 @@ def test_the_error_of_a_cut_off_is_that_of_its_modulus(glasses):
     by_cutoff, shipped = errors_of(variations(glasses, [220.0], 1.0), "cut-off of the density, Ha")
     assert shipped == 50
     assert by_cutoff[50].values == pytest.approx(np.full((2, 1), 100 * (1 / 1.01 - 1)), rel=1e-3)
-    assert by_cutoff[40].values == pytest.approx(np.full((2, 1), 100 * (0.995 / 1.01 - 1)), rel=1e-3)
+    assert by_cutoff[40].values == pytest.approx(
+        np.full((2, 1), 100 * (0.995 / 1.01 - 1)), rel=1e-3
+    )
     assert by_cutoff[50].cpu_s > 0
 
 

@@ -1,4 +1,6 @@
-"""The cached-grid Γ-point potential against PySCF's own FFTDF, and its forces against energy differences."""
+"""The cached-grid Γ-point potential against PySCF's own FFTDF, and its forces against energy
+differences.
+"""
 
 from typing import Any
 
@@ -35,7 +37,9 @@ def test_orbitals_on_the_grid_are_pyscfs():
 
 @pytest.mark.parametrize(("xc", "tolerance_Ha"), [("LDA", 1e-7), ("GGA", 5e-4)])
 def test_energy_at_fixed_density_against_fftdf(xc, tolerance_Ha):
-    """LDA: the same discrete expression.  GGA: FFTDF takes gradients of orbitals, which differs by the mesh error."""
+    """LDA: the same discrete expression.  GGA: FFTDF takes gradients of orbitals, which differs by
+    the mesh error.
+    """
     from pyscf.pbc import dft
     from pyscf.pbc.dft import numint
 
@@ -110,7 +114,9 @@ def test_forces_are_the_slope_of_the_energy():
 
 
 def test_single_precision_moves_the_curvature_of_a_scan_by_less_than_a_ten_thousandth():
-    """A hundredth of what the choices of the stage move; kernels of other processors round otherwise, by 1 to 3e-5."""
+    """A hundredth of what the choices of the stage move; kernels of other processors round
+    otherwise, by 1 to 3e-5.
+    """
     energies_Ha = np.empty((2, 3))
     for row, tolerance in enumerate((1e-7, 0.99e-7)):  # single precision, and just below it double
         for column, strain in enumerate((-0.02, 0.0, 0.02)):
@@ -139,7 +145,9 @@ def test_replayed_series_is_the_same_to_the_last_bit_and_computes_nothing():
 
 
 def test_a_nearly_dependent_basis_gives_the_energy_of_a_bound_solid():
-    """GTH-DZVP is not optimised for solids: its functions overlap so much that the condition is large."""
+    """GTH-DZVP is not optimised for solids: its functions overlap so much that the condition is
+    large.
+    """
     overlap = build_cell(silicon(), "GGA", "gth-dzvp", MESH).pbc_intor("int1e_ovlp")
     assert np.linalg.cond(overlap) > 1e3
     energies = []
@@ -151,7 +159,9 @@ def test_a_nearly_dependent_basis_gives_the_energy_of_a_bound_solid():
 
 
 def test_orbitals_along_a_line_are_extrapolated_as_a_polynomial():
-    """Rotating orbitals in a basis whose overlap changes: the start comes nearer with every former point."""
+    """Rotating orbitals in a basis whose overlap changes: the start comes nearer with every former
+    point.
+    """
 
     def solution(t):
         overlap = np.eye(6) + 0.2 * np.outer(*2 * [np.cos(np.arange(6) + t)])
@@ -163,7 +173,9 @@ def test_orbitals_along_a_line_are_extrapolated_as_a_polynomial():
     density = goal.orbitals @ goal.orbitals.T
     errors = []
     for count in (1, 2, 3):
-        start = extrapolated_orbitals([solution(t) for t in (0.25, 0.3, 0.35)[-count:]], goal.overlap)
+        start = extrapolated_orbitals(
+            [solution(t) for t in (0.25, 0.3, 0.35)[-count:]], goal.overlap
+        )
         assert start is not None
         assert np.allclose(start.T @ goal.overlap @ start, np.eye(2))
         errors.append(np.linalg.norm(start @ start.T - density))

@@ -1,4 +1,6 @@
-"""Equations of state: exact curves come back. Those that cannot be trusted are hard cases (test_stability.py)."""
+"""Equations of state: exact curves come back. Those that cannot be trusted are hard cases
+(test_stability.py).
+"""
 
 import numpy as np
 import pytest
@@ -16,7 +18,9 @@ def birch_murnaghan(volume, V0, E0, B, B_prime):
 
 
 def test_birch_murnaghan_curve_comes_back_exactly():
-    fit = fit_equation_of_state(VOLUMES, birch_murnaghan(VOLUMES, 300, -5000, 235 / EV_PER_A3_IN_GPA, 4.2))
+    fit = fit_equation_of_state(
+        VOLUMES, birch_murnaghan(VOLUMES, 300, -5000, 235 / EV_PER_A3_IN_GPA, 4.2)
+    )
     assert not fit.flags
     assert (fit.V0_A3, fit.B_GPa, fit.B_prime) == pytest.approx((300, 235, 4.2), rel=1e-8)
 
@@ -30,6 +34,9 @@ def test_vinet_curve_gives_the_same_modulus_within_the_difference_of_the_forms()
 def test_error_of_the_modulus_is_its_scatter_when_energies_scatter():
     rng = np.random.default_rng(1)
     energies = birch_murnaghan(VOLUMES, 300, -5000, 235 / EV_PER_A3_IN_GPA, 4.2)
-    fits = [fit_equation_of_state(VOLUMES, energies + 0.003 * rng.standard_normal(len(VOLUMES))) for _ in range(300)]
+    fits = [
+        fit_equation_of_state(VOLUMES, energies + 0.003 * rng.standard_normal(len(VOLUMES)))
+        for _ in range(300)
+    ]
     scatter = np.std([fit.B_GPa for fit in fits])
     assert scatter == pytest.approx(np.sqrt(np.mean([fit.B_error_GPa**2 for fit in fits])), rel=0.1)

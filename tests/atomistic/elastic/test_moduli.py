@@ -36,7 +36,9 @@ class FailsWhenStretched(EMT):
 
 def test_modulus_of_two_bodies():
     # 1/E* = (1 - 0.04)/282.6 + (1 - 0.1024)/116
-    assert plane_strain_modulus(157, 0.2, 116, 0.32) == pytest.approx(1 / (0.96 / 282.6 + 0.8976 / 116))
+    assert plane_strain_modulus(157, 0.2, 116, 0.32) == pytest.approx(
+        1 / (0.96 / 282.6 + 0.8976 / 116)
+    )
 
 
 def test_the_share_of_the_glass_is_the_slope_of_e_star_by_its_bulk_modulus():
@@ -46,7 +48,9 @@ def test_the_share_of_the_glass_is_the_slope_of_e_star_by_its_bulk_modulus():
 
 
 def test_e_star_falls_steadily_to_zero_as_the_body_becomes_incompressible():
-    e_star = plane_strain_modulus(150.0, np.array([0.3, 0.4, 0.45, 0.49, 0.499, 0.499999]), 116.0, 0.32)
+    e_star = plane_strain_modulus(
+        150.0, np.array([0.3, 0.4, 0.45, 0.49, 0.499, 0.499999]), 116.0, 0.32
+    )
     assert np.all(e_star > 0)
     assert np.all(np.diff(e_star) < 0)
     assert e_star[-1] == pytest.approx(3 * 150.0 * (1 - 2 * 0.499999) / (1 - 0.499999**2), rel=1e-4)
@@ -80,10 +84,14 @@ def test_mean_and_deviation_agree_with_samples():
 
 
 def test_ions_that_follow_soften_the_glass_as_its_elastic_constants_say():
-    """Six glasses: 232 GPa clamped, and E* of 90.5 +- 2.5 GPa by elastic constants (study `elastic.glasses`)."""
+    """Six glasses: 232 GPa clamped, and E* of 90.5 +- 2.5 GPa by elastic constants (study
+    `elastic.glasses`).
+    """
     moduli = [Modulus(f"a{k}", "GGA", B, True) for k, B in enumerate((227.0, 230.0, 233.0, 236.0))]
     moduli += [Modulus(f"a{k}", "LDA", m.B_GPa + 19.8, True) for k, m in enumerate(moduli[:2])]
-    summary, samples = effective_modulus(moduli, NITRIDE, TITANIUM, ElasticSettings(poisson_ratio=(0.246, 0.271)))
+    summary, samples = effective_modulus(
+        moduli, NITRIDE, TITANIUM, ElasticSettings(poisson_ratio=(0.246, 0.271))
+    )
     assert summary["mean_GPa"] == pytest.approx(90.5, abs=1.0)
     assert summary["std_GPa"] == pytest.approx(2.5, abs=0.5)
     assert summary["clamped_GPa"] == pytest.approx(96.2, abs=1.0)
@@ -123,7 +131,9 @@ def test_poisson_ratio_of_a_liquid_is_refused():
 
 
 def test_rejected_glass_costs_nothing_and_carries_its_reason():
-    rows = scan_rows("a08", bulk("Cu"), "GGA", DftSettings(), rejected="6 atoms without their valence")
+    rows = scan_rows(
+        "a08", bulk("Cu"), "GGA", DftSettings(), rejected="6 atoms without their valence"
+    )
     fit = fit_scan([{key: str(value) for key, value in row.items()} for row in rows])
     assert fit["B_GPa"] is None
     assert fit["flags"].count("6 atoms without their valence") == 1

@@ -72,13 +72,18 @@ def test_a_missing_bond_fails_the_gate_of_a_quenched_cell_only():
 
 
 def test_cores_leave_beta_untouched():
-    """They mend the glass; a crystal with no like atoms that near must not feel them (but for 0.1 Å)."""
+    """They mend the glass; a crystal with no like atoms that near must not feel them (but for 0.1
+    Å).
+    """
     beta = crystal(NITRIDE, "beta")
     shortest = examine(beta, GLASS).shortest_A
     for pair, core in GLASS.cores.items():
         assert core.r_A < shortest[pair] + 0.1
     commands = core_commands(GLASS.cores, ("N", "Si"))
-    assert [line.split()[1:4] for line in commands] == [["2", "2", "harmonic/cut"], ["1", "1", "harmonic/cut"]]
+    assert [line.split()[1:4] for line in commands] == [
+        ["2", "2", "harmonic/cut"],
+        ["1", "1", "harmonic/cut"],
+    ]
 
 
 def test_a_crystal_bent_to_fit_its_box_spreads_its_bonds_like_a_glass_and_keeps_a_symmetry():
@@ -107,7 +112,9 @@ def test_a_network_is_known_again_in_another_orientation_order_and_description()
     beta = crystal(NITRIDE, "beta")
     beta.rattle(0.3, seed=2)
     again = beta[np.random.default_rng(3).permutation(len(beta))]
-    mirrored_edges = np.diag([1, -1, 1]) @ beta.cell.array @ np.diag([1, -1, 1])  # another hand, the same handed cell
+    mirrored_edges = (
+        np.diag([1, -1, 1]) @ beta.cell.array @ np.diag([1, -1, 1])
+    )  # another hand, the same handed cell
     again.set_cell(np.array([[1, 1, 0], [0, 1, 0], [0, 0, 1]]) @ mirrored_edges)
     again.positions = again.positions @ np.diag([1, -1, 1]) + 0.7
     again.rotate(40, (1, 2, 3), rotate_cell=True)
@@ -147,7 +154,11 @@ def test_box_has_the_wanted_density_and_edges():
 
 def test_anchors_have_their_atoms_and_volume_per_formula():
     counts = {}
-    for name, unit, volume in (("silicon", 2, 40.05), ("silicon_dioxide", 3, 23.31), ("silicon_nitride", 14, 145.9)):
+    for name, unit, volume in (
+        ("silicon", 2, 40.05),
+        ("silicon_dioxide", 3, 23.31),
+        ("silicon_nitride", 14, 145.9),
+    ):
         material = load_material(MATERIALS / f"{name}.yaml")
         (anchor,) = material.crystals
         atoms = crystal(material, anchor)

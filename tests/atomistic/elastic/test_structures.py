@@ -44,14 +44,18 @@ def test_no_calculation_is_spent_on_a_cell_that_no_quench_made_right(shaken):
     def never():
         pytest.fail("a calculator was made")
 
-    rejected = relaxed_structure(shaken, GLASS, never, STEPS, refused="8 atoms without their valence")
+    rejected = relaxed_structure(
+        shaken, GLASS, never, STEPS, refused="8 atoms without their valence"
+    )
     assert rejected.calculator is None
     assert rejected.atoms is shaken
     assert rejected.reasons == ("8 atoms without their valence",)
 
 
 def test_a_broken_bond_is_relaxed_where_it_is_allowed_and_its_gap_decides(shaken):
-    shaken.positions[shaken.symbols.indices()["N"][0], 0] += 1.2  # leaves one of its three neighbours
+    shaken.positions[shaken.symbols.indices()["N"][0], 0] += (
+        1.2  # leaves one of its three neighbours
+    )
     broken = relaxed_structure(shaken, GLASS, tersoff, STEPS)
     assert broken.calculator is not None
     assert broken.report("a01")["defects"] == broken.verdict.defects
@@ -67,7 +71,9 @@ def test_a_failed_calculation_and_a_closed_gap_are_reasons(shaken):
 
     failed = relaxed_structure(shaken, GLASS, lambda: Fails(tersoff().parameters), STEPS)
     assert any("SCF not converged" in reason for reason in failed.reasons)
-    assert np.allclose(failed.atoms.positions, shaken.positions)  # to rounding: the cell is scaled by one
+    assert np.allclose(
+        failed.atoms.positions, shaken.positions
+    )  # to rounding: the cell is scaled by one
     assert not failed.relaxation.converged
 
     def metal():
@@ -81,18 +87,50 @@ def test_a_failed_calculation_and_a_closed_gap_are_reasons(shaken):
 
 def report(name, *reasons):
     gate = {"passed": not reasons, "reasons": list(reasons)}
-    relaxation = {"steps": 3, "force_left_eV_A": 0.1, "converged": True, "energy_gained_eV": 1.0, "gap_eV": 2.0}
-    made = {"structure": name, "atoms": 28, "density_g_cm3": 3.0, "coordination_Si": 4.0, "coordination_N": 3.0}
+    relaxation = {
+        "steps": 3,
+        "force_left_eV_A": 0.1,
+        "converged": True,
+        "energy_gained_eV": 1.0,
+        "gap_eV": 2.0,
+    }
+    made = {
+        "structure": name,
+        "atoms": 28,
+        "density_g_cm3": 3.0,
+        "coordination_Si": 4.0,
+        "coordination_N": 3.0,
+    }
     made |= {"defects": 0, "provenance": {"commit": "none"}}
-    return {**made, "bond_spread_A": 0.05, "symmetry_operations": 1, "relaxation": relaxation, "gate": gate}
+    return {
+        **made,
+        "bond_spread_A": 0.05,
+        "symmetry_operations": 1,
+        "relaxation": relaxation,
+        "gate": gate,
+    }
 
 
 def test_a_modulus_counts_if_neither_its_fit_nor_its_structure_has_a_flag():
     def fit(name, B_GPa, flags=""):
-        return {"structure": name, "xc": "GGA", "ions": "clamped", "B_GPa": B_GPa, "B_error_GPa": "0.2", "flags": flags}
+        return {
+            "structure": name,
+            "xc": "GGA",
+            "ions": "clamped",
+            "B_GPa": B_GPa,
+            "B_error_GPa": "0.2",
+            "flags": flags,
+        }
 
-    fits = [fit("beta", "240.0"), fit("a01", "157.0"), fit("a02", "160.0"), fit("a03", "", "3 of 5 strains converged")]
-    good, gapless, unfitted = trusted_moduli(fits, [report("a01"), report("a02", "no insulator"), report("a03")])
+    fits = [
+        fit("beta", "240.0"),
+        fit("a01", "157.0"),
+        fit("a02", "160.0"),
+        fit("a03", "", "3 of 5 strains converged"),
+    ]
+    good, gapless, unfitted = trusted_moduli(
+        fits, [report("a01"), report("a02", "no insulator"), report("a03")]
+    )
     assert (good.structure, good.B_GPa, good.trusted, good.reason) == ("a01", 157.0, True, "")
     assert (gapless.trusted, gapless.reason) == (False, "no insulator")
     assert (unfitted.trusted, unfitted.reason) == (False, "3 of 5 strains converged")

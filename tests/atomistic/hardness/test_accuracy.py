@@ -1,4 +1,6 @@
-"""Error of a closing against run time: what is known of made-up closings, and a real one of some hundred atoms."""
+"""Error of a closing against run time: what is known of made-up closings, and a real one of some
+hundred atoms.
+"""
 
 import numpy as np
 import pytest
@@ -25,7 +27,9 @@ def closings(potential, oxides, tmp_path_factory):
 
 @pytest.fixture
 def made_up(closings, monkeypatch):
-    """Pressure and force grow by 2 % when the speed doubles from the scene's, and so on in proportion."""
+    """Pressure and force grow by 2 % when the speed doubles from the scene's, and so on in
+    proportion.
+    """
 
     def outputs(choice):
         factor = 1 + 0.02 * choice.speed + 0.1 * (1 - choice.base)
@@ -63,7 +67,13 @@ def test_the_error_of_a_base_is_against_a_thicker_one(made_up):
 def test_a_body_lowered_keeps_its_top_and_its_charge():
     rng = np.random.default_rng(0)
     types = rng.permutation(np.repeat([1, 2], [100, 200]))
-    body = Atoms(("Si", "O"), types, rng.uniform(0, 20, (300, 3)), np.full(3, 20.0), rng.normal(size=(300, 3)))
+    body = Atoms(
+        ("Si", "O"),
+        types,
+        rng.uniform(0, 20, (300, 3)),
+        np.full(3, 20.0),
+        rng.normal(size=(300, 3)),
+    )
     lower = lowered(body, 8.0, np.array([1, 2]))
     assert lower.count("O") == 2 * lower.count("Si") > 0
     assert lower.positions_A[:, 2].min() >= 0
@@ -78,11 +88,14 @@ def test_pressure_at_depth_does_not_depend_on_how_often_it_was_measured(count):
     heights = np.linspace(50.2, 45.9, count)
     depth = np.maximum(0, 50.0 - heights)
     samples = [
-        Sample(np.array([z, 3.0 * d, 300.0]), 60.0 * d, np.empty((0, 2))) for z, d in zip(heights, depth, strict=True)
+        Sample(np.array([z, 3.0 * d, 300.0]), 60.0 * d, np.empty((0, 2)))
+        for z, d in zip(heights, depth, strict=True)
     ]
     pressure_GPa, force_nN = at_depth(samples, 50.0, 4.0)
     assert pressure_GPa == pytest.approx(3.0 / 60.0 * EV_PER_A3_IN_GPA)
-    assert force_nN == pytest.approx(3.0 * 3.5 * EV_PER_A3_IN_GPA / 100, rel=1e-3)  # a quarter of 4 Å, at its end
+    assert force_nN == pytest.approx(
+        3.0 * 3.5 * EV_PER_A3_IN_GPA / 100, rel=1e-3
+    )  # a quarter of 4 Å, at its end
 
 
 def test_a_real_closing_is_repeated_to_the_last_bit_and_presses(closings):
@@ -90,12 +103,16 @@ def test_a_real_closing_is_repeated_to_the_last_bit_and_presses(closings):
     assert first.force_nN > 0
     assert first.pressure_GPa > 0
     assert first.cpu_s > 0
-    again = SmallClosings(ASPERITY, closings.glass, closings.potential, CLOSING, closings.work / "again")
+    again = SmallClosings(
+        ASPERITY, closings.glass, closings.potential, CLOSING, closings.work / "again"
+    )
     assert again.pressed(1, Choice()).force_nN == first.force_nN
     assert closings.pressed(1, Choice(reversed_velocities=True)).force_nN != first.force_nN
 
 
 def test_more_steps_of_the_minimiser_change_the_attraction_little(closings):
-    few, many = (closings.cutoff_nm(1, iterations)[0] for iterations in (accuracy.ITERATIONS[-1], 600))
+    few, many = (
+        closings.cutoff_nm(1, iterations)[0] for iterations in (accuracy.ITERATIONS[-1], 600)
+    )
     assert few == pytest.approx(many, rel=0.05)
     assert 0.1 < many < 1.0

@@ -27,7 +27,9 @@ def test_profile_of_eq_6():
 
 def test_the_mean_height_is_that_of_the_profile():
     x = np.linspace(0, 8, 321)[:-1]
-    assert profile(x[:, None], x[None, :], 8.0, 1.2).mean() == pytest.approx(1.2 * (-4 / np.pi**2), rel=1e-4)
+    assert profile(x[:, None], x[None, :], 8.0, 1.2).mean() == pytest.approx(
+        1.2 * (-4 / np.pi**2), rel=1e-4
+    )
 
 
 def test_cut_is_neutral_unstrained_and_below_the_profile(glass):
@@ -46,7 +48,9 @@ def test_cut_is_neutral_unstrained_and_below_the_profile(glass):
 def test_cuts_differ_with_the_seed_and_only_with_it(glass):
     first, again, other = (cut_asperity(glass, 2, 4.0, 20.0, seed) for seed in (5, 5, 6))
     np.testing.assert_array_equal(first.positions_A, again.positions_A)
-    assert first.positions_A.shape != other.positions_A.shape or not np.allclose(first.positions_A, other.positions_A)
+    assert first.positions_A.shape != other.positions_A.shape or not np.allclose(
+        first.positions_A, other.positions_A
+    )
 
 
 def test_strays_go_with_their_charge(glass):

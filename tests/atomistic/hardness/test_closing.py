@@ -79,9 +79,13 @@ def test_closing_conserves_energy_and_builds_up_stress(closing):
     assert np.all(column["force_nN"][:2] == 0)
     assert column["force_nN"][-1] > 1
     assert column["contact_area_nm2"][-1] > column["contact_area_nm2"][len(closing.curve) // 2] > 0
-    assert np.abs(column["energy_drift_meV_per_atom"]).max() < 3  # 0.2 meV per atom and ps is the gate
+    assert (
+        np.abs(column["energy_drift_meV_per_atom"]).max() < 3
+    )  # 0.2 meV per atom and ps is the gate
     np.testing.assert_allclose(
-        column["contact_stress_GPa"][-1] * column["contact_area_nm2"][-1], column["force_nN"][-1], rtol=1e-9
+        column["contact_stress_GPa"][-1] * column["contact_area_nm2"][-1],
+        column["force_nN"][-1],
+        rtol=1e-9,
     )
 
 
@@ -106,7 +110,8 @@ KILLED = """
         make_glass(silica, potential, GLASS, 1, Path({work!r}), segment_steps=SEGMENT_STEPS)
     else:
         glass = load_data({glass!r}, ("Si", "O"))
-        run_closing(planned_runs(SETTINGS)[0], silica, glass, potential, SETTINGS.closing, Path({work!r}), THIN)
+        run_closing(planned_runs(SETTINGS)[0], silica, glass, potential, SETTINGS.closing,
+        Path({work!r}), THIN)
 """
 
 
@@ -151,7 +156,9 @@ def test_killed_closing_resumes_bit_for_bit(glass, potential, oxides, closing, t
     work, glass_file = tmp_path / "work", tmp_path / "glass.data"
     write_data(glass_file, glass, {"Si": 28.085, "O": 15.999})
     kill_after("closing", work, work / "closing" / "restart.2", glass_file)
-    resumed = run_closing(planned_runs(SETTINGS)[0], oxides["SiO2"], glass, potential, SETTINGS.closing, work, THIN)
+    resumed = run_closing(
+        planned_runs(SETTINGS)[0], oxides["SiO2"], glass, potential, SETTINGS.closing, work, THIN
+    )
     assert resumed.curve == closing.curve or all(
         np.array_equal(list(a.values()), list(b.values()), equal_nan=True)
         for a, b in zip(resumed.curve, closing.curve, strict=True)
@@ -167,7 +174,9 @@ def test_a_changed_setting_does_not_resume_old_work(tmp_path):
 
 
 def plant_commands(folder, outside):
-    (folder / "pairs").write_text(f"shell touch {outside / 'executed'}\n" + (folder / "pairs").read_text())
+    (folder / "pairs").write_text(
+        f"shell touch {outside / 'executed'}\n" + (folder / "pairs").read_text()
+    )
 
 
 def plant_links(folder, outside):
@@ -187,7 +196,9 @@ def outside(tmp_path):
 
 
 @pytest.mark.parametrize("plant", [plant_commands, plant_links])
-def test_a_received_quench_cannot_run_commands_nor_write_elsewhere(plant, glass, potential, oxides, outside, tmp_path):
+def test_a_received_quench_cannot_run_commands_nor_write_elsewhere(
+    plant, glass, potential, oxides, outside, tmp_path
+):
     work = tmp_path / "work"
     kill_after("glass", work, work / "restart.2")
     plant(work, outside)
@@ -195,8 +206,12 @@ def test_a_received_quench_cannot_run_commands_nor_write_elsewhere(plant, glass,
     np.testing.assert_array_equal(resumed.positions_A, glass.positions_A)
 
 
-def test_a_received_closing_cannot_run_commands(glass, potential, oxides, closing, outside, tmp_path):
-    """Neither the anneal, nor the closing, nor the relaxed snapshots execute what was planted beside their restarts."""
+def test_a_received_closing_cannot_run_commands(
+    glass, potential, oxides, closing, outside, tmp_path
+):
+    """Neither the anneal, nor the closing, nor the relaxed snapshots execute what was planted
+    beside their restarts.
+    """
     work, glass_file = tmp_path / "work", tmp_path / "glass.data"
     write_data(glass_file, glass, {"Si": 28.085, "O": 15.999})
     kill_after("closing", work, work / "closing" / "restart.2", glass_file)
@@ -208,8 +223,12 @@ def test_a_received_closing_cannot_run_commands(glass, potential, oxides, closin
     assert resumed.witness == closing.witness
 
 
-def test_halved_energies_move_as_full_ones_at_twice_the_temperature_in_longer_time(glass, potential, tmp_path):
-    """E/2 at T moves like E at 2T with time x sqrt 2: checks table, masses, units and time step at once."""
+def test_halved_energies_move_as_full_ones_at_twice_the_temperature_in_longer_time(
+    glass, potential, tmp_path
+):
+    """E/2 at T moves like E at 2T with time x sqrt 2: checks table, masses, units and time step at
+    once.
+    """
     hot = heated(glass, potential, 600)
     slow = replace(hot, velocities_A_ps=hot.velocities_A_ps / np.sqrt(2))
     _, full = free_motion(hot, potential, tmp_path / "full", 1.0, 100)

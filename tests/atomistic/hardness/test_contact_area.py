@@ -25,7 +25,9 @@ def random_solid(rng, height=30.0):
 
 def test_one_atom_is_a_disc_of_the_rim():
     area = contact_area(np.array([[30.0, 30.0]]), CELL, FINE, MIDDLE)
-    assert area == pytest.approx(np.pi * AREA.rim_A**2, rel=0.05)  # a tenth of an Å of grid on its radius
+    assert area == pytest.approx(
+        np.pi * AREA.rim_A**2, rel=0.05
+    )  # a tenth of an Å of grid on its radius
 
 
 def test_nothing_touches():
@@ -33,7 +35,9 @@ def test_nothing_touches():
 
 
 def test_everything_touches():
-    places = np.stack(np.meshgrid(np.arange(0, 60, 3.0), np.arange(0, 60, 3.0)), axis=-1).reshape(-1, 2)
+    places = np.stack(np.meshgrid(np.arange(0, 60, 3.0), np.arange(0, 60, 3.0)), axis=-1).reshape(
+        -1, 2
+    )
     assert contact_area(places, CELL, AREA, MIDDLE) == pytest.approx(3600)
 
 
@@ -55,7 +59,9 @@ def test_enclosed_holes_are_contact_and_wide_bays_are_not():
 
 
 def test_space_between_atoms_counts_where_the_closing_disc_does_not_fit():
-    """Four atoms at the corners of a square of 6 Å: its middle is 4.2 Å from each, so only a larger disc closes it."""
+    """Four atoms at the corners of a square of 6 Å: its middle is 4.2 Å from each, so only a larger
+    disc closes it.
+    """
     corners = 30 + np.array([[-3.0, -3.0], [-3.0, 3.0], [3.0, -3.0], [3.0, 3.0]])
     whole = contact_area(corners, CELL, Area(grid_A=0.1, closing_A=4.5), MIDDLE)
     assert whole > 36
@@ -76,9 +82,8 @@ def test_flat_punch_of_glass_density(radius):
 def test_sphere_cut_by_a_plane():
     """Rigid overlap d of a sphere R has the area pi (2 R d - d^2).
 
-    Discs of 1.5 Å found 80 % of it.  A rigid cut has no layer of atoms at the counterface, as a pressed body has
-    (docs/hardness.md), so some of its rim stays empty.
-    """
+    Discs of 1.5 Å found 80 % of it.  A rigid cut has no layer of atoms at the counterface, as a
+    pressed body has (docs/hardness.md), so some of its rim stays empty."""
     rng = np.random.default_rng(2)
     sphere, ratios = 25.0, []
     for overlap in (4.0, 6.0):
@@ -99,5 +104,7 @@ def test_the_map_is_centred():
 
 def test_potential_without_calibration(potential):
     assert calibrated(potential) == 0.05
-    with pytest.raises(InputError, match="potential pmmcs: no calibration of the contact area; measure it"):
+    with pytest.raises(
+        InputError, match="potential pmmcs: no calibration of the contact area; measure it"
+    ):
         calibrated(potential.model_copy(update={"contact_area": None}))

@@ -1,4 +1,6 @@
-"""The law of films: a made-up one is found, foretells what is left out, and runs that cannot show one say why."""
+"""The law of films: a made-up one is found, foretells what is left out, and runs that cannot show
+one say why.
+"""
 
 from itertools import product
 
@@ -14,13 +16,19 @@ FILMS = ("", "0", "0.6", "1", "2")
 
 
 def made_up(films=FILMS, seeds=(1, 2), noise=0.0, of_seed=0.0):
-    """Rows of points.csv and curves: stress by the law over contacts of 2 to 3.5 nm on a wavelength of 5 nm."""
+    """Rows of points.csv and curves: stress by the law over contacts of 2 to 3.5 nm on a wavelength
+    of 5 nm.
+    """
     rng, points, curves = np.random.default_rng(1), [], {}
     for film, seed in product(films, seeds):
         thickness, run, length = float(film or "inf"), f"{film}_{seed}", np.linspace(1.0, 4.5, 60)
-        stress = film_law.film(np.array(TRUE), length, np.array(thickness)) * np.exp(of_seed * rng.normal())
+        stress = film_law.film(np.array(TRUE), length, np.array(thickness)) * np.exp(
+            of_seed * rng.normal()
+        )
         stress = stress * np.exp(noise * rng.normal(size=60))
-        points.append({"run": run, "film_nm": film, "seed": str(seed), "energy_scale": "1.0", "sound": "True"})
+        points.append(
+            {"run": run, "film_nm": film, "seed": str(seed), "energy_scale": "1.0", "sound": "True"}
+        )
         points[-1] |= {
             "asperity": film or "oxide",
             "hardness_GPa": str(TRUE[0]),
@@ -30,7 +38,8 @@ def made_up(films=FILMS, seeds=(1, 2), noise=0.0, of_seed=0.0):
             **COST,
         }
         curves[run] = [
-            {"contact_length_nm": at, "contact_stress_GPa": of} for at, of in zip(length, stress, strict=True)
+            {"contact_length_nm": at, "contact_stress_GPa": of}
+            for at, of in zip(length, stress, strict=True)
         ]
     return points, curves
 
@@ -46,15 +55,21 @@ def test_a_made_up_law_is_found_and_foretells_the_thickness_left_out():
 
 
 def test_the_interval_of_k_and_m_holds_the_truth():
-    """Of 12 series whose runs scatter by 5 %, most 90 % regions of the film's share at L/t = 2 hold it."""
+    """Of 12 series whose runs scatter by 5 %, most 90 % regions of the film's share at L/t = 2 hold
+    it.
+    """
     share, held = 1 / (1 + TRUE[2] * 2 ** TRUE[3]), 0
     for series in range(12):
         rng = np.random.default_rng(series)
         points = film_law.points_of(*made_up())
-        runs = np.unique(np.column_stack([points.seed, np.nan_to_num(points.thickness_nm, posinf=99)]), axis=0)
+        runs = np.unique(
+            np.column_stack([points.seed, np.nan_to_num(points.thickness_nm, posinf=99)]), axis=0
+        )
         factors = {tuple(run): np.exp(0.05 * rng.normal()) for run in runs}
         keys = zip(points.seed, np.nan_to_num(points.thickness_nm, posinf=99), strict=True)
-        noisy = points._replace(stress_GPa=points.stress_GPa * np.array([factors[key] for key in keys]))
+        noisy = points._replace(
+            stress_GPa=points.stress_GPa * np.array([factors[key] for key in keys])
+        )
         _, _, k, m = film_law.likely(noisy, rng).T
         low, high = np.quantile(1 / (1 + k * 2**m), [0.05, 0.95])
         held += low < share < high
@@ -100,8 +115,13 @@ def test_unsound_runs_and_glasses_count_against_the_fit():
     for point in points:
         if point["film_nm"] in ("0.6", "1", "2"):
             point |= {"sound": "False", "status": "rejected: the film slid"}
-    fit = film_law.fit_films(points, curves, [{"gate": {"passed": False, "reasons": ["SiO2 glass: density"]}}], 0.03)
-    assert fit["gate"]["reasons"][:2] == ["SiO2 glass: density", "only 4 of 10 runs are sound (gate 50%)"]
+    fit = film_law.fit_films(
+        points, curves, [{"gate": {"passed": False, "reasons": ["SiO2 glass: density"]}}], 0.03
+    )
+    assert fit["gate"]["reasons"][:2] == [
+        "SiO2 glass: density",
+        "only 4 of 10 runs are sound (gate 50%)",
+    ]
     assert fit["points_rejected"][0]["status"] == "rejected: the film slid"
 
 

@@ -3,8 +3,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from atomistic.hardness.made_up_closings import APPROACH_NM, CELL_AREA_NM2, TRAVEL_NM, curve, plateau, witness
-from atomistic.hardness.plateau import RULES, find_hardness, interval_of_mean, may_stop, plastic_onset, point, settled
+from atomistic.hardness.made_up_closings import (
+    APPROACH_NM,
+    CELL_AREA_NM2,
+    TRAVEL_NM,
+    curve,
+    plateau,
+    witness,
+)
+from atomistic.hardness.plateau import (
+    RULES,
+    find_hardness,
+    interval_of_mean,
+    may_stop,
+    plastic_onset,
+    point,
+    settled,
+)
 
 
 def find(curve_rows, witness_rows):
@@ -27,10 +42,15 @@ def test_a_contact_that_shrinks_for_a_moment_is_judged_on():
     first = int(np.argmax(length >= RULES.min_length_nm))
     length[first + 1] = RULES.min_length_nm - 0.01
     rows = curve(plateau, length)
-    assert find(rows, witness()).plateau_points == find(curve(plateau), witness()).plateau_points - 1
+    assert (
+        find(rows, witness()).plateau_points == find(curve(plateau), witness()).plateau_points - 1
+    )
     too_wide = (RULES.max_area_fraction * CELL_AREA_NM2) ** 0.5 + 0.1
     length[-12] = too_wide  # what comes after it is not used, however wide
-    assert find(curve(plateau, length), witness()).plateau_points < find(rows, witness()).plateau_points
+    assert (
+        find(curve(plateau, length), witness()).plateau_points
+        < find(rows, witness()).plateau_points
+    )
 
 
 def test_background_of_bond_exchanges_is_measured_before_contact():
@@ -50,7 +70,11 @@ def test_p_value_of_the_onset_is_that_of_two_poisson_counts():
     for _ in range(3000):
         counts = rng.poisson(8, 4)
         rows = [
-            {"displacement_nm": 0.1 * (k + 1), "new_exchanges": new, "lowering_nm": 0.0 if k < 3 else 0.1}
+            {
+                "displacement_nm": 0.1 * (k + 1),
+                "new_exchanges": new,
+                "lowering_nm": 0.0 if k < 3 else 0.1,
+            }
             for k, new in enumerate([0, *counts[:2], counts[2]])
         ]
         onset = plastic_onset(rows, 0.35)
@@ -99,7 +123,9 @@ def test_a_run_stops_on_a_narrow_interval_or_where_it_leaves_the_window():
     assert not stops(len(rows), stop_points=len(rows))
     assert not stops(len(rows), stop="window")
     for stop in ("settled", "window"):
-        assert stops(len(rows), cell_area=10.0, stop=stop)  # the last averages lie beyond half of the cell
+        assert stops(
+            len(rows), cell_area=10.0, stop=stop
+        )  # the last averages lie beyond half of the cell
     rising = curve(lambda length: 4 * length)
     assert not may_stop(rising, seen, cell, "settled", APPROACH_NM)
 
@@ -107,7 +133,9 @@ def test_a_run_stops_on_a_narrow_interval_or_where_it_leaves_the_window():
 def test_a_run_that_ends_before_its_rule_is_met_says_so():
     cell = 9.5 / RULES.stop_area_fraction  # the contact ends at 9 nm2
     found = find_hardness(curve(plateau), witness(), cell, APPROACH_NM)
-    assert found.status.startswith("rejected: stopped before its rule, on 0.24 of the cell instead of 0.25; ")
+    assert found.status.startswith(
+        "rejected: stopped before its rule, on 0.24 of the cell instead of 0.25; "
+    )
 
 
 def test_a_wide_interval_is_no_reason_to_refuse_a_run_that_went_to_its_end():

@@ -21,7 +21,8 @@ from atomistic.settings import GlassSettings, HardnessSettings
 
 FORCES = str(Path(__file__).with_name("forces.in"))
 POTENTIALS = Path(__file__).parents[3] / "config" / "potentials"
-# which glass this gives depends on the processor (its last bits grow in a melt): bounds hold for ten glasses
+# which glass this gives depends on the processor (its last bits grow in a melt): bounds hold for
+# ten glasses
 GLASS = GlassSettings(atoms=120, melt_ps=0.5, quench_rate_K_ps=2000, rest_ps=0.3)
 
 
@@ -40,7 +41,8 @@ QUICK = PROTOCOL.model_copy(
 def settings(**closing):
     quick = {
         "base_nm": 1,
-        "speed_m_s": 400,  # violent: with the time step of slower closings an atom can be driven through the thin base
+        # violent: with the time step of slower closings an atom can be driven through the thin base
+        "speed_m_s": 400,
         "anneal_ps": 0.1,
     }
     return HardnessSettings.model_validate(
@@ -56,7 +58,9 @@ def settings(**closing):
 
 @pytest.fixture(scope="module")
 def glass(potential, oxides, tmp_path_factory):
-    return make_glass(oxides["SiO2"], potential, GLASS, 1, tmp_path_factory.mktemp("glass") / "work")
+    return make_glass(
+        oxides["SiO2"], potential, GLASS, 1, tmp_path_factory.mktemp("glass") / "work"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +79,9 @@ def close(potential, oxides, glass, tmp_path):
     def run(own, **protocol):
         [planned] = planned_runs(own)
         varied, work = QUICK.model_copy(update=protocol), tmp_path / "work"
-        return run_closing(planned, oxides[own.material], glass, potential, own.closing, work, varied)
+        return run_closing(
+            planned, oxides[own.material], glass, potential, own.closing, work, varied
+        )
 
     return run
 
@@ -85,13 +91,21 @@ def column(rows, name):
 
 
 def test_two_processes_move_the_same_atoms(potential, glass, tmp_path):
-    """`mpirun -np 2`: sums in another order, else the same motion; progress is that of the thermo lines alone."""
+    """`mpirun -np 2`: sums in another order, else the same motion; progress is that of the thermo
+    lines alone.
+    """
     ends, steps = [], []
     for processes in (1, 2):
         workspace = LammpsFolder(tmp_path / str(processes), {}, "nve.in")
         write_forcefield(workspace, potential, glass.elements, 1.0)
         write_data(workspace / "start.data", glass, {"Si": 28.085, "O": 15.999})
-        variables = {"data": "start.data", "pairs": "pairs", "timestep": 0.001, "steps": 20, "every": 10}
+        variables = {
+            "data": "start.data",
+            "pairs": "pairs",
+            "timestep": 0.001,
+            "steps": 20,
+            "every": 10,
+        }
         run_lammps("nve.in", workspace, variables, steps.append, processes)
         ends.append(load_data(workspace / "end.data", glass.elements).positions_A)
     np.testing.assert_allclose(ends[1], ends[0], atol=1e-9)
@@ -127,14 +141,16 @@ def test_the_plan_counts_what_a_run_has(close, oxides):
 
 @pytest.mark.parametrize("slab", [False, True])
 @pytest.mark.parametrize("name", ["pmmcs", "matsui_akaogi"])
-def test_the_damped_coulomb_sum_is_that_of_long_range_to_a_tenth_of_a_bond(name, slab, request, tmp_path):
-    """Forces of the table against PPPM's, rms over the Coulomb force of two ions 2 Å apart (3 to 8 %).
+def test_the_damped_coulomb_sum_is_that_of_long_range_to_a_tenth_of_a_bond(
+    name, slab, request, tmp_path
+):
+    """Forces of the table against PPPM's, rms over the Coulomb force of two ions 2 Å apart (3 to 8
+    %).
 
     The glass of a test is another one on another processor, where its cut gave 12 %.
 
-    A neutral cut still has a dipole, whose uniform field PPPM keeps and the damped sum leaves out, as charges that
-    compensate the surface would.  It is taken off.
-    """
+    A neutral cut still has a dipole, whose uniform field PPPM keeps and the damped sum leaves out,
+    as charges that compensate the surface would.  It is taken off."""
     of = {"pmmcs": ("potential", "glass"), "matsui_akaogi": ("other_potential", "other_titania")}
     own, cell = (request.getfixturevalue(fixture) for fixture in of[name])
     atoms = cut_asperity(cell, 2, 0.0, 14.0, 1) if slab else cell
@@ -144,13 +160,26 @@ def test_the_damped_coulomb_sum_is_that_of_long_range_to_a_tenth_of_a_bond(name,
         workspace = LammpsFolder(tmp_path / method, {}, FORCES)
         write_forcefield(workspace, own, atoms.elements, 1.0)
         if method == "pppm":
-            bare = {name: ion.model_copy(update={"charge_e": 0.0}) for name, ion in own.species.items()}
+            bare = {
+                name: ion.model_copy(update={"charge_e": 0.0}) for name, ion in own.species.items()
+            }
             table = own.model_copy(update={"species": bare}).table(atoms.elements)
             (workspace / "table").write_text(table, encoding="utf-8")
-            lines = (workspace / "pairs").read_text(encoding="utf-8").replace(" table ", " table table ")
-            style = f"pair_style hybrid/overlay table linear 4000 coul/long {own.cutoff_A}\npair_coeff * * coul/long\n"
+            lines = (
+                (workspace / "pairs")
+                .read_text(encoding="utf-8")
+                .replace(" table ", " table table ")
+            )
+            style = (
+                f"pair_style hybrid/overlay table linear 4000 coul/long {own.cutoff_A}\npair_coeff"
+                " * * coul/long\n"
+            )
             (workspace / "pairs").write_text(style + lines.partition("\n")[2], encoding="utf-8")
-        write_data(workspace / "start.data", atoms, {ion: own.species[ion].mass_u for ion in atoms.elements})
+        write_data(
+            workspace / "start.data",
+            atoms,
+            {ion: own.species[ion].mass_u for ion in atoms.elements},
+        )
         set_charges = [f"set type {k} charge {charge}" for k, charge in enumerate(charges, 1)]
         (workspace / "charges").write_text("\n".join(set_charges) + "\n", encoding="utf-8")
         files = {"data": "start.data", "pairs": "pairs", "charges": "charges"}
@@ -176,18 +205,28 @@ def test_an_overlapping_start_is_refused_in_one_line(potential, glass, tmp_path)
     ("name", "material", "coordination", "bond_A"),
     [("teter", "SiO2", 4.0, 1.61), ("matsui_akaogi", "TiO2", 5.8, 1.93)],
 )
-def test_other_potentials_make_a_glass_and_close(name, material, coordination, bond_A, oxides, tmp_path):
-    """Coordination and bond of the glass as known for the potential; then the whole chain with it."""
+def test_other_potentials_make_a_glass_and_close(
+    name, material, coordination, bond_A, oxides, tmp_path
+):
+    """Coordination and bond of the glass as known for the potential; then the whole chain with
+    it.
+    """
     other = load_potential(POTENTIALS / f"{name}.yaml")
-    calibration = load_potential(POTENTIALS / "pmmcs.yaml").contact_area  # Matsui and Akaogi's set has none of its own
+    calibration = load_potential(
+        POTENTIALS / "pmmcs.yaml"
+    ).contact_area  # Matsui and Akaogi's set has none of its own
     other = other.model_copy(update={"contact_area": calibration})
-    own = HardnessSettings.model_validate({**settings().model_dump(), "potential": name, "material": material})
+    own = HardnessSettings.model_validate(
+        {**settings().model_dump(), "potential": name, "material": material}
+    )
     made = make_glass(oxides[material], other, own.glass, 1, tmp_path / "glass")
     found = glass_properties(oxides[material], other, made)
     assert found["cation_coordination"] == pytest.approx(coordination, rel=0.06)
     assert found["bond_A"] == pytest.approx(bond_A, abs=0.05)
     [planned] = planned_runs(own)
-    closing = run_closing(planned, oxides[material], made, other, own.closing, tmp_path / "work", QUICK)
+    closing = run_closing(
+        planned, oxides[material], made, other, own.closing, tmp_path / "work", QUICK
+    )
     assert closing.curve[-1]["force_nN"] > 1
     assert np.abs(column(closing.curve, "energy_drift_meV_per_atom")).max() < 3
 

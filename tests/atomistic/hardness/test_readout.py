@@ -14,7 +14,9 @@ def samples(position, drive):
 
 
 def test_energy_that_work_and_heat_explain_is_no_drift():
-    """A spring of 2 eV/Å² pressed from 10 to 8 Å stores 4 eV; 1 eV of them leaves as heat, 0.5 appear from nowhere."""
+    """A spring of 2 eV/Å² pressed from 10 to 8 Å stores 4 eV; 1 eV of them leaves as heat, 0.5
+    appear from nowhere.
+    """
     middles = 10 - 0.2 * (np.arange(10) + 0.5)
     ends = {
         0: np.array([10.0, -100.0, 0.0]),
@@ -36,7 +38,10 @@ def test_work_by_samples_at_the_end_of_their_interval_gains_nothing():
     assert list(drift.values()) == pytest.approx([0] * 6, abs=1e-12)
 
 
-FRAME = "ITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n{count}\nITEM: BOX BOUNDS pp pp ff\n0 1\n0 1\n0 1\n{atoms}"
+FRAME = (
+    "ITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n{count}\nITEM: BOX BOUNDS pp pp ff\n0 1\n0 1\n0"
+    " 1\n{atoms}"
+)
 ATOMS = "ITEM: ATOMS id x\n1 0.5\n2 0.25\n"
 
 

@@ -31,19 +31,34 @@ def test_a_flat_stack_of_layers_has_the_work_of_dense_solids():
     by_force, by_work = combined_cutoffs_nm([attract_top(depths, np.ones(40), 1 / LAYER, DENSITY)])
     # a stack of 40 layers lacks the share (0.165 / 9.9)^2 of an infinite one
     assert by_work == pytest.approx(0.165, rel=1e-3)
-    # its stress rises over a distance, so that it is lower than that of the law at touch: 1.26 instead of 2.54 GPa
+    # its stress rises over a distance, so that it is lower than that of the law at touch: 1.26
+    # instead of 2.54 GPa
     assert 0.215 / (6 * np.pi * by_force**3) == pytest.approx(1.26, abs=0.01)
 
 
 def shapes():
-    """Depths below the highest place (Å) and areas (Å^2) of bodies in the shapes of a switch's contacts."""
+    """Depths below the highest place (Å) and areas (Å^2) of bodies in the shapes of a switch's
+    contacts.
+    """
     side = np.linspace(0.0, 1.0, 4001)[1:] - 1 / 8000
     for radius in (5.0, 20.0, 100.0):  # nm: spheres, out to three tenths of the radius or 15 nm
         across = 10 * min(0.3 * radius, 15.0) * side
-        yield f"sphere of {radius:g} nm", across**2 / (20 * radius), 2 * np.pi * across * across[-1] / 4000
-    for half in (2.5, 5.0, 10.0):  # nm: a top that was pressed flat at H = 8 GPa and sprang back, E* = 96 GPa (Hertz)
+        yield (
+            f"sphere of {radius:g} nm",
+            across**2 / (20 * radius),
+            2 * np.pi * across * across[-1] / 4000,
+        )
+    for half in (
+        2.5,
+        5.0,
+        10.0,
+    ):  # nm: a top that was pressed flat at H = 8 GPa and sprang back, E* = 96 GPa (Hertz)
         across, radius = 10 * half * side, 4 * half * 96 / (3 * np.pi * 8)
-        yield f"top of {2 * half:g} nm", across**2 / (20 * radius), 2 * np.pi * across * across[-1] / 4000
+        yield (
+            f"top of {2 * half:g} nm",
+            across**2 / (20 * radius),
+            2 * np.pi * across * across[-1] / 4000,
+        )
     for height in (1.0, 5.0):  # nm: a wave in two directions
         wave = 5 * height * (1 - np.cos(np.pi * side[::8]))
         yield f"wave of {height:g} nm", np.add.outer(wave, wave).ravel(), np.full(500**2, 1.0)
@@ -51,16 +66,24 @@ def shapes():
 
 @pytest.mark.parametrize(("name", "depths", "areas"), list(shapes()))
 def test_the_work_and_not_the_force_decides_the_pull_off_of_what_is_not_flat(name, depths, areas):
-    """Each place of a shape is a stack of layers: their exact sum, against the law with either cut-off."""
+    """Each place of a shape is a stack of layers: their exact sum, against the law with either
+    cut-off.
+    """
     stack = SPACING * np.arange(200)
     gaps = np.linspace(1.5, 200.0, 40_000)
     contact = contact_distance_A(DENSITY)
     distances = np.add.outer(gaps, stack)
-    stress = (3 * LAYER / (6 * np.pi * DENSITY)) * (distances**-4.0 - contact**6 * distances**-10.0).sum(axis=1)
+    stress = (3 * LAYER / (6 * np.pi * DENSITY)) * (
+        distances**-4.0 - contact**6 * distances**-10.0
+    ).sum(axis=1)
     exact = max(areas @ np.interp(gap + depths, gaps, stress) for gap in np.arange(1.8, 3.2, 0.02))
     cutoffs = combined_cutoffs_nm([attract_top(-stack, np.ones(200), 1 / LAYER, DENSITY)])
-    by_force, by_work = (areas @ (1 / (6 * np.pi * (depths + 10 * cutoff) ** 3)) / exact for cutoff in cutoffs)
-    assert by_work == pytest.approx(1.0, abs=0.07), name  # terms of the order of D0 over the height of the shape
+    by_force, by_work = (
+        areas @ (1 / (6 * np.pi * (depths + 10 * cutoff) ** 3)) / exact for cutoff in cutoffs
+    )
+    assert by_work == pytest.approx(1.0, abs=0.07), (
+        name
+    )  # terms of the order of D0 over the height of the shape
     assert by_force < 0.7, name
 
 
@@ -84,7 +107,9 @@ def test_a_sphere_of_continuum_pulls_off_with_the_work_of_its_flat(radius_A):
     scale = sections.max()
     sphere = attract_top(-depths, sections / scale, 1.0, DENSITY)
     flat = attract_top(-depths, np.full(depths.size, fine * DENSITY), 1.0, DENSITY)
-    assert sphere.force_per_A * scale == pytest.approx(2 * np.pi * radius_A * flat.work, rel=3.0 / radius_A)
+    assert sphere.force_per_A * scale == pytest.approx(
+        2 * np.pi * radius_A * flat.work, rel=3.0 / radius_A
+    )
 
 
 def test_the_highest_atom_keeps_the_others_away():
@@ -106,7 +131,9 @@ def test_atoms_that_do_not_count_do_not_matter():
     depths = -SPACING * np.arange(40)
     beside = np.concatenate([depths, [3.0]])
     shares = np.append(np.ones(40), 0.0)
-    assert attract_top(beside, shares, 1 / LAYER, DENSITY) == attract_top(depths, np.ones(40), 1 / LAYER, DENSITY)
+    assert attract_top(beside, shares, 1 / LAYER, DENSITY) == attract_top(
+        depths, np.ones(40), 1 / LAYER, DENSITY
+    )
 
 
 def test_a_top_without_contact_is_refused():
@@ -122,7 +149,11 @@ def test_the_density_is_counted_in_the_bulk():
 
 def rows(*tops):
     return [
-        {"top_area_nm2": t.area_A2 / 100, "top_force_over_hamaker": 10 * t.force_per_A, "top_work_over_hamaker": t.work}
+        {
+            "top_area_nm2": t.area_A2 / 100,
+            "top_force_over_hamaker": 10 * t.force_per_A,
+            "top_work_over_hamaker": t.work,
+        }
         for t in tops
     ]
 
@@ -134,17 +165,31 @@ SEEDS = {name: number // 3 for number, name in enumerate("abcdef")}
 def test_the_distribution_spans_free_and_rigid_tops_of_all_runs():
     depths = -SPACING * np.arange(40)
     smooth = attract_top(depths, np.ones(40), 1 / LAYER, DENSITY)
-    small = {"top_area_nm2": np.nan, "top_force_over_hamaker": np.nan, "top_work_over_hamaker": np.nan}
-    witnesses = {"a": [small, *rows(smooth)], **{name: rows(smooth, smooth) for name in "bcdef"}, "none": [small]}
+    small = {
+        "top_area_nm2": np.nan,
+        "top_force_over_hamaker": np.nan,
+        "top_work_over_hamaker": np.nan,
+    }
+    witnesses = {
+        "a": [small, *rows(smooth)],
+        **{name: rows(smooth, smooth) for name in "bcdef"},
+        "none": [small],
+    }
     found = gap_cutoff(witnesses, {**SEEDS, "none": 7})
     assert found is not None
     by_force, by_work = combined_cutoffs_nm([smooth])
-    # runs of one kind of top do not scatter: what is left are atoms that follow, and the rim of the area
+    # runs of one kind of top do not scatter: what is left are atoms that follow, and the rim of the
+    # area
     ratio = np.array(found["values"]) / by_work
     assert ratio.mean() == pytest.approx(FOLLOW[0], rel=5e-3)
-    assert ratio.std() == pytest.approx(np.hypot(FOLLOW[1], FOLLOW[0] * RIM_ERROR / 3**0.5), rel=0.1)
+    assert ratio.std() == pytest.approx(
+        np.hypot(FOLLOW[1], FOLLOW[0] * RIM_ERROR / 3**0.5), rel=0.1
+    )
     assert found["runs"][0]["by_force_nm"] == pytest.approx(by_force)
-    assert [(run["run"], run["snapshots"]) for run in found["runs"]] == [("a", 1), *((name, 2) for name in "bcdef")]
+    assert [(run["run"], run["snapshots"]) for run in found["runs"]] == [
+        ("a", 1),
+        *((name, 2) for name in "bcdef"),
+    ]
 
 
 def test_fewer_runs_than_a_fit_needs_give_no_distribution():
@@ -159,7 +204,9 @@ def test_the_mean_over_glasses_is_held_as_often_as_stated(of_glasses, least, run
     held = []
     for _ in range(100):
         values = np.repeat(of_glasses * rng.normal(size=2), runs) + rng.normal(size=2 * runs)
-        low, high = np.quantile(mean_over_glasses(values, np.repeat([1, 2], runs), 1000, rng), [0.05, 0.95])
+        low, high = np.quantile(
+            mean_over_glasses(values, np.repeat([1, 2], runs), 1000, rng), [0.05, 0.95]
+        )
         held.append(low < 0 < high)
     assert np.mean(held) >= least
 
@@ -168,7 +215,12 @@ def test_glasses_that_differ_widen_the_mean():
     rng = np.random.default_rng(2)
     of_runs = np.array([0.0, 0.1, -0.1])
     alike, apart = (
-        np.ptp(np.quantile(mean_over_glasses(np.r_[of_runs, of_runs + by], [1] * 3 + [2] * 3, 4000, rng), [0.05, 0.95]))
+        np.ptp(
+            np.quantile(
+                mean_over_glasses(np.r_[of_runs, of_runs + by], [1] * 3 + [2] * 3, 4000, rng),
+                [0.05, 0.95],
+            )
+        )
         for by in (0.0, 1.0)
     )
     assert apart > 1.3 * alike

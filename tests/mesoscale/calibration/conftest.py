@@ -1,4 +1,6 @@
-"""Responses of made-up observables with known coefficients and scatter: no contact cycle is needed."""
+"""Responses of made-up observables with known coefficients and scatter: no contact cycle is
+needed.
+"""
 
 import numpy as np
 import pytest
@@ -16,7 +18,13 @@ def made_up_observables(x, rng):
     begin = rms * (3.0 + 0.4 * hurst + 0.3 * rng.standard_normal(len(x)))
     steps = [
         rms
-        * np.exp(-3.2 + 0.01 * (e_star - 91) + 0.02 * h_prime + 10 * (q0 - 0.025) + 0.3 * rng.standard_normal(len(x)))
+        * np.exp(
+            -3.2
+            + 0.01 * (e_star - 91)
+            + 0.02 * h_prime
+            + 10 * (q0 - 0.025)
+            + 0.3 * rng.standard_normal(len(x))
+        )
         for _ in range(5)
     ]
     pull_off = np.exp(4.5 + 8 * (hamaker - 0.21) - 0.08 * rms + 0.3 * rng.standard_normal(len(x)))

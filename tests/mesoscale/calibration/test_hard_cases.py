@@ -1,4 +1,5 @@
-"""Hard cases of the calibration: each must give the known answer, name what is wrong, or refuse in one line.
+"""Hard cases of the calibration: each must give the known answer, name what is wrong, or refuse in
+one line.
 
 Behind all of them are the engine's own cycles on 128 x 128 points.
 """
@@ -37,7 +38,15 @@ from mesoscale.uncertainty.surrogate import Surrogate
 Array = NDArray[np.float64]
 
 CONTACT = ContactSettings(mechanics="asperity", pixels=128)
-TRUTH = {"hamaker": 0.21, "e_star": 91.0, "h_macro": 1.5, "h_prime": 8.0, "q0": 0.022, "hurst": 0.8, "rms": 6.0}
+TRUTH = {
+    "hamaker": 0.21,
+    "e_star": 91.0,
+    "h_macro": 1.5,
+    "h_prime": 8.0,
+    "q0": 0.022,
+    "hurst": 0.8,
+    "rms": 6.0,
+}
 RUNS, SURFACES = 400, 12
 FIRST_SURFACE = 2_100_000_000
 
@@ -71,7 +80,9 @@ class Bench:
         values = self.seen[:, NAMES.index(name)]
         return values[np.isfinite(values)]
 
-    def calibrated(self, *tables: Measurements, prior: InputTable | None = None, steps: int = 10_000) -> Calibration:
+    def calibrated(
+        self, *tables: Measurements, prior: InputTable | None = None, steps: int = 10_000
+    ) -> Calibration:
         """The posterior without further cycles."""
         model = self.model(prior)
         posterior = model.posterior(tables)
@@ -83,7 +94,9 @@ class Bench:
         return self.model(prior).posterior(tables)
 
     def model(self, prior: InputTable | None = None) -> Model:
-        """What tables are compared with, over the prior or another one; releases fall from 14 V at 2 nm to -12 V."""
+        """What tables are compared with, over the prior or another one; releases fall from 14 V at
+        2 nm to -12 V.
+        """
         prior = prior or self.table
         degrees = np.vstack([np.zeros(7, int), np.eye(7, dtype=int)[prior.names.index("rms")]])
         release = Voltage(Surrogate(self.table.ranges(), degrees, np.array([1.0, -13.0])), 0.5, 0.5)
@@ -95,18 +108,25 @@ class Bench:
 
     def prior_with(self, **rows: Distribution) -> InputTable:
         """The prior with some distributions exchanged."""
-        changed = tuple(replace(row, distribution=rows.get(row.name, row.distribution)) for row in self.table.rows)
+        changed = tuple(
+            replace(row, distribution=rows.get(row.name, row.distribution))
+            for row in self.table.rows
+        )
         return InputTable(changed, self.table.correlation)
 
 
-def values_of(kind: str, values: Sequence[float] | Array, error: float, discrepancy: float = 0.0) -> Measurements:
+def values_of(
+    kind: str, values: Sequence[float] | Array, error: float, discrepancy: float = 0.0
+) -> Measurements:
     """Values of one kind (modulus, pull_off, release, ...) with one error."""
     name = "e_star" if kind == "modulus" else kind
     given = np.asarray(values, float)
     columns = {name: given, f"{name}_error": np.full_like(given, error)}
     if kind == "hardness":
         columns["area"] = np.full_like(given, 100.0)
-    return Measurements(kind, columns, tuple(f"{kind} {k}" for k in range(len(given))), False, discrepancy, kind)
+    return Measurements(
+        kind, columns, tuple(f"{kind} {k}" for k in range(len(given))), False, discrepancy, kind
+    )
 
 
 def pull_offs(values: Array, discrepancy: float = 0.0) -> Measurements:
@@ -125,7 +145,9 @@ def _curves(bench: Bench, zero_nm: float = 0.0) -> Measurements:
     first = NAMES.index(curve_names(CURVES["closing_curves"])[0])
     part = bench.seen[:, first : first + LEVELS]
     part = part[np.isfinite(part).all(axis=1)]
-    separations = part[:, :1] - np.column_stack([np.zeros(len(part)), np.cumsum(part[:, 1:], axis=1)])
+    separations = part[:, :1] - np.column_stack(
+        [np.zeros(len(part)), np.cumsum(part[:, 1:], axis=1)]
+    )
     size = separations.size
     columns = {
         "separation": separations.ravel() + zero_nm,
@@ -196,7 +218,9 @@ def _outlier(bench: Bench) -> list[str]:
 
 
 def _excluded_truth(bench: Bench) -> list[str]:
-    prior = bench.prior_with(h_macro=Distribution("uniform", 3.0, 3.2), h_prime=Distribution("uniform", 8.0, 14.8))
+    prior = bench.prior_with(
+        h_macro=Distribution("uniform", 3.0, 3.2), h_prime=Distribution("uniform", 8.0, 14.8)
+    )
     data = values_of("hardness", [1.5 + 8 * 100**-0.25] * 4, 0.1)
     result = bench.calibrated(data, prior=prior)
     (verdict,) = _verdicts(result)
@@ -210,7 +234,9 @@ def _edge(bench: Bench) -> list[str]:
     result = bench.calibrated(values_of("hardness", [0.7 + 1.95 * 100**-0.25] * 5, 0.05))
     low = np.quantile(bench.column(result, "h_macro"), 0.05)
     return _unless(
-        converged=result.chain.converged, inside=bench.column(result, "h_macro").min() >= 0.7, reaches_it=low < 0.75
+        converged=result.chain.converged,
+        inside=bench.column(result, "h_macro").min() >= 0.7,
+        reaches_it=low < 0.75,
     )
 
 
@@ -226,7 +252,9 @@ def _many(bench: Bench) -> list[str]:
     values = np.tile(bench.of("pull_off_nN"), 50)
     result = bench.calibrated(pull_offs(values))
     width = bench.column(result, "rms").std()
-    return _unless(finite=np.isfinite(result.chain.log_likelihood).all(), not_of_no_width=width > 0.05)
+    return _unless(
+        finite=np.isfinite(result.chain.log_likelihood).all(), not_of_no_width=width > 0.05
+    )
 
 
 def _fixed(bench: Bench) -> list[str]:
@@ -236,18 +264,23 @@ def _fixed(bench: Bench) -> list[str]:
 
 
 def _one_unknown(bench: Bench) -> list[str]:
-    known = {name: Distribution("fixed", value) for name, value in TRUTH.items() if name != "e_star"}
+    known = {
+        name: Distribution("fixed", value) for name, value in TRUTH.items() if name != "e_star"
+    }
     result = bench.calibrated(values_of("modulus", [91.0], 3.8), prior=bench.prior_with(**known))
     # two equal normal distributions
     return _unless(
-        converged=result.chain.converged, width=abs(bench.column(result, "e_star").std() / (3.8 / np.sqrt(2)) - 1) < 0.1
+        converged=result.chain.converged,
+        width=abs(bench.column(result, "e_star").std() / (3.8 / np.sqrt(2)) - 1) < 0.1,
     )
 
 
 def _ridge(bench: Bench) -> list[str]:
     result = bench.calibrated(values_of("hardness", [4.0], 0.02))
     both = bench.column(result, "h_macro") + bench.column(result, "h_prime") * 100**-0.25
-    correlation = np.corrcoef(bench.column(result, "h_macro"), bench.column(result, "h_prime"))[0, 1]
+    correlation = np.corrcoef(bench.column(result, "h_macro"), bench.column(result, "h_prime"))[
+        0, 1
+    ]
     return _unless(
         converged=result.chain.converged,
         along_the_line=correlation < -0.99,
@@ -257,22 +290,34 @@ def _ridge(bench: Bench) -> list[str]:
 
 def _all_or_none(bench: Bench, stuck: float) -> list[str]:
     result = bench.calibrated(_sticking(stuck, 20.0))
-    return _unless(converged=result.chain.converged, finite=np.isfinite(result.chain.log_likelihood).all())
+    return _unless(
+        converged=result.chain.converged, finite=np.isfinite(result.chain.log_likelihood).all()
+    )
 
 
 def _doubtful_model(bench: Bench) -> list[str]:
-    """One force teaches nothing; of twelve, what they share is in doubt, and their scatter still teaches."""
+    """One force teaches nothing; of twelve, what they share is in doubt, and their scatter still
+    teaches.
+    """
     values = bench.of("pull_off_nN")
-    one, twelve = (bench.calibrated(pull_offs(some, discrepancy=100.0)) for some in (values[:1], values))
+    one, twelve = (
+        bench.calibrated(pull_offs(some, discrepancy=100.0)) for some in (values[:1], values)
+    )
     z = np.random.default_rng(9).standard_normal((20000, len(one.posterior.free)))
-    logs = [twelve.posterior.log_likelihood(twelve.posterior.inputs(part)) for part in np.array_split(z, 40)]
+    logs = [
+        twelve.posterior.log_likelihood(twelve.posterior.inputs(part))
+        for part in np.array_split(z, 40)
+    ]
     weights = np.exp(np.concatenate(logs) - max(part.max() for part in logs))
     known = z[np.random.default_rng(10).choice(len(z), len(z), p=weights / weights.sum())]
     off = (twelve.chain.z.mean(axis=0) - known.mean(axis=0)) / known.std(axis=0)
     return _unless(
         converged=one.chain.converged and twelve.chain.converged,
         nothing_learned_of_one=_nothing_learned(one),
-        widths_as_by_weighing_the_prior=np.abs(twelve.chain.z.std(axis=0) / known.std(axis=0) - 1).max() < 0.15,
+        widths_as_by_weighing_the_prior=np.abs(
+            twelve.chain.z.std(axis=0) / known.std(axis=0) - 1
+        ).max()
+        < 0.15,
         means_as_by_weighing_the_prior=np.abs(off).max() < 0.15,
     )
 
@@ -333,9 +378,14 @@ def _twice(bench: Bench) -> list[str]:
     x = bench.table.sample(20, 3)
     twice, once = (
         bench.posterior(data).log_likelihood(x)
-        for data in (values_of("modulus", [92.0, 92.0], 3.0), values_of("modulus", [92.0], 3.0 / np.sqrt(2)))
+        for data in (
+            values_of("modulus", [92.0, 92.0], 3.0),
+            values_of("modulus", [92.0], 3.0 / np.sqrt(2)),
+        )
     )
-    return _unless(as_one_of_half_the_variance=np.allclose(twice - twice[0], once - once[0], atol=1e-9))
+    return _unless(
+        as_one_of_half_the_variance=np.allclose(twice - twice[0], once - once[0], atol=1e-9)
+    )
 
 
 def _no_tables(bench: Bench) -> list[str]:
@@ -347,10 +397,18 @@ Case = tuple[str, str, Callable[[Bench], list[str]]]
 CASES: tuple[Case, ...] = (
     ("flat likelihood", "a modulus known to 500 GPa", _flat),
     ("no data", "no table at all: the prior", _no_tables),
-    ("contradicting data", "a modulus ten deviations above the prior beside fitting hardness points", _contradicting),
+    (
+        "contradicting data",
+        "a modulus ten deviations above the prior beside fitting hardness points",
+        _contradicting,
+    ),
     ("one datum", "one pull-off force", _one_datum),
     ("outlier", "one of twelve pull-off forces is forty times too large", _outlier),
-    ("prior excludes the truth", "hardness 4.0 GPa where the prior gives 5.5 and more", _excluded_truth),
+    (
+        "prior excludes the truth",
+        "hardness 4.0 GPa where the prior gives 5.5 and more",
+        _excluded_truth,
+    ),
     ("truth at the edge", "hardness of the lowest H_macro and H' of the prior", _edge),
     ("tiny error", "a modulus known to 1 MPa", _tiny_error),
     ("many data", "600 pull-off forces", _many),

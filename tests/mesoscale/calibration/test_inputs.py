@@ -1,4 +1,6 @@
-"""Inputs of origin calibration: posteriors with their correlations go on, priors come from elsewhere."""
+"""Inputs of origin calibration: posteriors with their correlations go on, priors come from
+elsewhere.
+"""
 
 import numpy as np
 import pytest
@@ -36,11 +38,15 @@ RESULT = {
 
 
 def test_posterior_and_its_correlations_are_the_inputs():
-    table = collect(settings(**CALIBRATED), {"calibration": RESULT}, {"calibration": "posterior.json"})
+    table = collect(
+        settings(**CALIBRATED), {"calibration": RESULT}, {"calibration": "posterior.json"}
+    )
     samples = dict(zip(table.names, table.sample(4000, 1).T, strict=True))
     assert samples["h_macro"].min() >= 1.4
     assert samples["h_macro"].max() <= 1.6
-    assert np.corrcoef(samples["h_macro"], samples["h_prime"])[0, 1] == pytest.approx(-0.8, abs=0.05)
+    assert np.corrcoef(samples["h_macro"], samples["h_prime"])[0, 1] == pytest.approx(
+        -0.8, abs=0.05
+    )
     # rms keeps its prior, so nothing is correlated with it
     assert np.corrcoef(samples["h_macro"], samples["rms"])[0, 1] == pytest.approx(0, abs=0.06)
 
@@ -72,6 +78,9 @@ def test_rows_that_contradict_themselves_are_refused(row, words):
 
 
 def test_without_convergence_there_is_no_input():
-    failed = {"gate": {"passed": False, "reasons": ["the chain has not converged: R-hat 1.2"]}, "inputs": {}}
+    failed = {
+        "gate": {"passed": False, "reasons": ["the chain has not converged: R-hat 1.2"]},
+        "inputs": {},
+    }
     with pytest.raises(InputError, match="has not converged"):
         collect(settings(**CALIBRATED), {"calibration": failed}, {"calibration": "posterior.json"})

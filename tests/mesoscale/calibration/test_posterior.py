@@ -23,7 +23,9 @@ from mesoscale.calibration.values import normal_with_common
 from mesoscale.errors import InputError
 from tests.mesoscale.calibration.conftest import MAX_FORCE_NN, made_up_observables
 
-AREAS_NM2 = np.array([40.0, 100.0, 400.0, 4000.0])  # one area alone leaves a ridge of H_macro and H', slow to sample
+AREAS_NM2 = np.array(
+    [40.0, 100.0, 400.0, 4000.0]
+)  # one area alone leaves a ridge of H_macro and H', slow to sample
 TRUTH = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, 5.0]])
 
 
@@ -36,13 +38,21 @@ def result_of(model, *tables, settings=None):
 def pull_offs(values, share=0.1):
     values = np.asarray(values, float)
     columns = {"pull_off": values, "pull_off_error": share * values}
-    return Measurements("pull_off", columns, tuple(f"p{k}" for k in range(len(values))), False, 0.0, "pull_off.csv")
+    return Measurements(
+        "pull_off", columns, tuple(f"p{k}" for k in range(len(values))), False, 0.0, "pull_off.csv"
+    )
 
 
 def hardness(values, error=0.1, area=100.0):
     values = np.asarray(values, float)
-    columns = {"area": np.full_like(values, area), "hardness": values, "hardness_error": np.full_like(values, error)}
-    return Measurements("hardness", columns, tuple(f"h{k}" for k in range(len(values))), False, 0.0, "hardness.csv")
+    columns = {
+        "area": np.full_like(values, area),
+        "hardness": values,
+        "hardness_error": np.full_like(values, error),
+    }
+    return Measurements(
+        "hardness", columns, tuple(f"h{k}" for k in range(len(values))), False, 0.0, "hardness.csv"
+    )
 
 
 def modulus(value, error):
@@ -65,17 +75,23 @@ def curves(count, rng, zero_known=False, error=0.1, x=TRUTH, discrepancy=0.0):
         "force": np.tile(forces, count),
         "separation_error": np.full(12 * count, error),
     }
-    return Measurements("closing_curves", columns, tuple(names), zero_known, discrepancy, "curves.csv")
+    return Measurements(
+        "closing_curves", columns, tuple(names), zero_known, discrepancy, "curves.csv"
+    )
 
 
 def test_responses_find_mean_and_scatter(prior, cycles):
-    """A fresh set of runs: standardised differences have mean 0 and variance 1 within the noise of 4000 runs."""
+    """A fresh set of runs: standardised differences have mean 0 and variance 1 within the noise of
+    4000 runs.
+    """
     x = prior.sample(4000, 11)
     y = Cycles(x, made_up_observables(x, np.random.default_rng(11))).of(NAMES)
     prediction = fit_responses(NAMES, cycles, prior)(x)
     sd = np.sqrt(np.einsum("mkk->mk", prediction.scatter) * (1 + prediction.error[:, None]))
     off = (y - prediction.mean) / sd
-    assert np.abs(off.mean(axis=0)).max() < 0.12  # 900 runs know the mean to 0.03, a region of them less
+    assert (
+        np.abs(off.mean(axis=0)).max() < 0.12
+    )  # 900 runs know the mean to 0.03, a region of them less
     assert np.abs(off.std(axis=0) - 1).max() < 0.08
 
 
@@ -91,7 +107,9 @@ def test_scatter_that_changes_over_the_inputs_is_found(prior):
 
 
 def test_runs_that_lack_one_observable_still_teach_the_others(prior, cycles):
-    """Smooth surfaces without a closing curve: their pull-off forces count where only those are asked for."""
+    """Smooth surfaces without a closing curve: their pull-off forces count where only those are
+    asked for.
+    """
     y = cycles.y.copy()
     y[cycles.x[:, 6] < 4, :6] = np.nan
     some = Cycles(cycles.x, y)
@@ -109,10 +127,11 @@ def test_common_error_is_the_dense_normal_density():
 
 
 def test_surface_likelihood_is_the_dense_normal_density(model, prior):
-    """Pull-off forces of several surfaces: all numbers at once in one dense covariance, up to one constant.
+    """Pull-off forces of several surfaces: all numbers at once in one dense covariance, up to one
+    constant.
 
-    Data are linearised where they and the prior put them, which moves the error of a tenth by a hundredth of itself.
-    """
+    Data are linearised where they and the prior put them, which moves the error of a tenth by a
+    hundredth of itself."""
     posterior = model.posterior([replace(pull_offs([60.0, 75.0, 90.0]), discrepancy=0.2)])
     x = prior.sample(5, 1)
     prediction = posterior.surfaces.responses(x)
@@ -122,13 +141,17 @@ def test_surface_likelihood_is_the_dense_normal_density(model, prior):
         shared = 0.2**2 + prediction.error[k] * scatter
         dense = np.eye(3) * (scatter + 0.1**2) + shared
         off = np.log([60.0, 75.0, 90.0]) - prediction.mean[k, 0]
-        exact.append(-0.5 * (off @ np.linalg.solve(dense, off) + np.linalg.slogdet(2 * np.pi * dense)[1]))
+        exact.append(
+            -0.5 * (off @ np.linalg.solve(dense, off) + np.linalg.slogdet(2 * np.pi * dense)[1])
+        )
     found = posterior.log_likelihood(x)
     assert found - found[0] == pytest.approx(np.array(exact) - exact[0], abs=1e-6)
 
 
 def test_likelihood_of_curves_is_the_dense_normal_density(model, prior):
-    """Curves and pull-off forces of the same surfaces: covariance of all observables of all surfaces at once."""
+    """Curves and pull-off forces of the same surfaces: covariance of all observables of all
+    surfaces at once.
+    """
     rng = np.random.default_rng(3)
     tables = (
         curves(3, rng, zero_known=True, discrepancy=0.5),
@@ -140,7 +163,9 @@ def test_likelihood_of_curves_is_the_dense_normal_density(model, prior):
     exact = []
     for k in range(4):
         size = len(part.specimens)
-        spread = np.kron(np.eye(size), prediction.scatter[k]) + np.kron(np.ones((size, size)), common[k])
+        spread = np.kron(np.eye(size), prediction.scatter[k]) + np.kron(
+            np.ones((size, size)), common[k]
+        )
         precision = np.zeros_like(spread)
         for s, block in enumerate(part.precision):
             place = slice(7 * s, 7 * s + 7)
@@ -156,14 +181,18 @@ def test_likelihood_of_curves_is_the_dense_normal_density(model, prior):
 
 def test_an_unknown_zero_changes_nothing(model, prior):
     data = curves(2, np.random.default_rng(4))
-    moved = replace(data, columns={**data.columns, "separation": data.columns["separation"] + 123.0})
+    moved = replace(
+        data, columns={**data.columns, "separation": data.columns["separation"] + 123.0}
+    )
     x = prior.sample(20, 2)
     a, b = (model.posterior([some]).log_likelihood(x) for some in (data, moved))
     assert a - a[0] == pytest.approx(b - b[0], abs=1e-5)
 
 
 def test_sampler_finds_a_normal_posterior():
-    """Mean and variance of a normal likelihood times the standard normal prior, to 5 standard errors of 400 draws."""
+    """Mean and variance of a normal likelihood times the standard normal prior, to 5 standard
+    errors of 400 draws.
+    """
     chain = sample(lambda z: -0.5 * ((z[:, 0] - 2) / 0.1) ** 2, 3)
     assert chain.converged
     assert chain.z[:, 0].mean() == pytest.approx(2 / 1.01, abs=5 * 0.0995 / 20)
@@ -171,15 +200,20 @@ def test_sampler_finds_a_normal_posterior():
 
 
 def test_draws_that_are_returned_come_from_all_walkers():
-    """Weights of two modes over eight seeds: 400 independent draws know each to 0.023, so their scatter is below 0.035.
+    """Weights of two modes over eight seeds: 400 independent draws know each to 0.023, so their
+    scatter is below 0.035.
 
     Every sixth draw of 32 walkers comes from five of them: it scattered by 0.049.
     """
 
     def two_modes(z):
-        return np.logaddexp(np.log(0.7) - 50 * (z[:, 0] - 1.5) ** 2, np.log(0.3) - 50 * (z[:, 0] + 1.5) ** 2)
+        return np.logaddexp(
+            np.log(0.7) - 50 * (z[:, 0] - 1.5) ** 2, np.log(0.3) - 50 * (z[:, 0] + 1.5) ** 2
+        )
 
-    shares = [(sample(two_modes, 2, Sampling(seed=seed)).z[:, 0] > 0).mean() for seed in range(2, 10)]
+    shares = [
+        (sample(two_modes, 2, Sampling(seed=seed)).z[:, 0] > 0).mean() for seed in range(2, 10)
+    ]
     assert np.std(shares) < 0.035
     assert np.mean(shares) == pytest.approx(0.7, abs=0.03)
 
@@ -191,12 +225,16 @@ def test_walkers_that_follow_each_other_count_once():
     assert effective == pytest.approx(1600, rel=0.5)
 
 
-RIDGE = np.linalg.qr(np.random.default_rng(0).standard_normal((7, 7)))[0] / np.geomspace(0.01, 100, 7)
+RIDGE = np.linalg.qr(np.random.default_rng(0).standard_normal((7, 7)))[0] / np.geomspace(
+    0.01, 100, 7
+)
 """Of a normal likelihood of all seven inputs, as columns: rotated, deviations 0.01 to 100."""
 FIRST_INPUT = {  # logarithms of likelihoods of the first input
     "flat": np.zeros_like,
     "edge": lambda x: np.where(x > 0, -3 * x, -1e3 * x**2),
-    "two modes": lambda x: np.logaddexp(np.log(0.7) - 50 * (x - 1) ** 2, np.log(0.3) - 50 * (x + 1) ** 2),
+    "two modes": lambda x: np.logaddexp(
+        np.log(0.7) - 50 * (x - 1) ** 2, np.log(0.3) - 50 * (x + 1) ** 2
+    ),
 }
 
 
@@ -214,7 +252,9 @@ def test_a_converged_chain_knows_means_as_well_as_it_says(case):
         sd[0] = np.sqrt(weights @ (x - mean[0]) ** 2)
 
     def log_likelihood(z):
-        return -0.5 * ((z @ RIDGE) ** 2).sum(axis=1) if case == "ridge" else FIRST_INPUT[case](z[:, 0])
+        return (
+            -0.5 * ((z @ RIDGE) ** 2).sum(axis=1) if case == "ridge" else FIRST_INPUT[case](z[:, 0])
+        )
 
     chains = [sample(log_likelihood, 7, Sampling(samples=10**6, seed=seed)) for seed in range(4)]
     assert all(chain.converged for chain in chains)
@@ -223,7 +263,11 @@ def test_a_converged_chain_knows_means_as_well_as_it_says(case):
 
 
 def test_a_chain_that_is_too_short_says_so():
-    chain = sample(lambda z: -0.5 * ((z[:, 0] - 3) / 1e-4) ** 2, 6, Sampling(walkers=16, block=100, max_steps=100))
+    chain = sample(
+        lambda z: -0.5 * ((z[:, 0] - 3) / 1e-4) ** 2,
+        6,
+        Sampling(walkers=16, block=100, max_steps=100),
+    )
     assert not chain.converged
     assert "R-hat" in chain.reason or "independent draws" in chain.reason
 
@@ -265,11 +309,16 @@ def test_contradictions_and_outliers_are_named(model):
 
 
 def test_predictive_probability_is_uniform_under_the_prior(model, prior):
-    """Data drawn from the prior: probabilities below 0.2 come up in about a fifth of 40 cases (4 standard errors)."""
+    """Data drawn from the prior: probabilities below 0.2 come up in about a fifth of 40 cases (4
+    standard errors).
+    """
     rng = np.random.default_rng(6)
     template = model.posterior([pull_offs([70.0, 80.0])])
     x, others = prior.sample(40, 5), prior.sample(300, 9)
-    shares = [predictive_probability(template.simulated(x[k : k + 1], rng), others, rng) for k in range(40)]
+    shares = [
+        predictive_probability(template.simulated(x[k : k + 1], rng), others, rng)
+        for k in range(40)
+    ]
     assert abs(np.mean(np.array(shares) < 0.2) - 0.2) < 4 * np.sqrt(0.16 / 40)
 
 
@@ -281,7 +330,12 @@ def test_measurements_outside_the_model_are_refused(model, table):
 
 
 def test_measurements_inside_the_model_are_taken(model):
-    for table in (modulus(91.0, 3.0), hardness([4.0]), pull_offs([60.0, 90.0]), curves(3, np.random.default_rng(2))):
+    for table in (
+        modulus(91.0, 3.0),
+        hardness([4.0]),
+        pull_offs([60.0, 90.0]),
+        curves(3, np.random.default_rng(2)),
+    ):
         model.check_range(table)
 
 
@@ -296,7 +350,9 @@ def test_curves_outside_the_forces_of_the_responses_and_unknown_pull_offs_are_re
 
 def test_without_convergence_nothing_goes_on(model):
     """Neither samples nor inputs, and the reason in the gate."""
-    result = result_of(model, hardness([4.0], error=1e-5), settings=Sampling(block=50, max_steps=50))
+    result = result_of(
+        model, hardness([4.0], error=1e-5), settings=Sampling(block=50, max_steps=50)
+    )
     content = posterior_json(result, {})
     assert not content["gate"]["passed"]
     assert "has not converged" in content["gate"]["reasons"][0]
@@ -308,7 +364,11 @@ def test_without_convergence_nothing_goes_on(model):
 
 def test_swapped_columns_and_wrong_units_of_a_curve_are_refused(model):
     data = curves(1, np.random.default_rng(1))
-    swapped = {**data.columns, "separation": data.columns["force"][::-1], "force": 200 + 10 * np.arange(12.0)}
+    swapped = {
+        **data.columns,
+        "separation": data.columns["force"][::-1],
+        "force": 200 + 10 * np.arange(12.0),
+    }
     micrometres = {**data.columns, "separation": 1e3 * data.columns["separation"]}
     for columns in (swapped, micrometres):
         with pytest.raises(InputError, match="look at units, columns"):

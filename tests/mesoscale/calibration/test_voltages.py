@@ -18,7 +18,9 @@ EACH_V, SHARED_V = 0.5, 1.0
 
 
 def pads(prior, count=200, middle_V=20.0):
-    """Releases that fall by 2 V a nanometre of RMS, with scatter by the first property of each device and by D0."""
+    """Releases that fall by 2 V a nanometre of RMS, with scatter by the first property of each
+    device and by D0.
+    """
     settings = DeviceSettings()
     design = plan_points(prior, ContactSettings(mechanics="asperity"), settings, count)
     each = design.varies.index("each")
@@ -26,7 +28,12 @@ def pads(prior, count=200, middle_V=20.0):
     scaled = np.sqrt(12) * (design.probability - 0.5)
     points = []
     for k, point in enumerate(design.points):
-        release = middle_V - 2 * (point.values["rms"] - 8.5) + EACH_V * scaled[k, each] - SHARED_V * scaled[k, d0]
+        release = (
+            middle_V
+            - 2 * (point.values["rms"] - 8.5)
+            + EACH_V * scaled[k, each]
+            - SHARED_V * scaled[k, d0]
+        )
         states = {"pull_in_V": 60.0 + 0.1 * release, "release_V": max(release, 0.0)}
         points.append(Solved(point, None, states, (release, release)))
     central = Solved(Point(prior.medians(), 0.2, settings), None, {}, (0.0, 0.0), "not needed")
@@ -36,7 +43,9 @@ def pads(prior, count=200, middle_V=20.0):
 def measured(kind, values, error=0.1):
     values = np.asarray(values, float)
     columns = {kind: values, f"{kind}_error": np.full_like(values, error)}
-    return Measurements(kind, columns, tuple(f"s{k}" for k in range(len(values))), False, 0.0, f"{kind}.csv")
+    return Measurements(
+        kind, columns, tuple(f"s{k}" for k in range(len(values))), False, 0.0, f"{kind}.csv"
+    )
 
 
 def sticking(stuck, switches):
@@ -59,7 +68,9 @@ def test_mean_and_scatter_are_told_apart(prior, switches):
 
 
 def test_switches_that_stick_count_below_zero(prior):
-    """Half of the switches stick: the line of the others goes on below zero, where least squares would end at it."""
+    """Half of the switches stick: the line of the others goes on below zero, where least squares
+    would end at it.
+    """
     release = fit_voltages(pads(prior, middle_V=0.0), prior)["release"]
     x = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, rms] for rms in (3.0, 8.5, 14.0)])
     assert release(x) == pytest.approx([11.0, 0.0, -11.0], abs=1.2)
@@ -70,7 +81,9 @@ def test_switches_that_stick_do_not_bias_the_others(prior, count):
     """Lines through known and sticking switches are those that made them, whatever their number."""
     release = fit_voltages(pads(prior, count, middle_V=0.0), prior)["release"]
     x = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, rms] for rms in (3.0, 8.5, 14.0)])
-    assert release(x) == pytest.approx([11.0, 0.0, -11.0], abs=0.05)  # the made-up switches have no other scatter
+    assert release(x) == pytest.approx(
+        [11.0, 0.0, -11.0], abs=0.05
+    )  # the made-up switches have no other scatter
     assert release.each_V == pytest.approx(EACH_V, rel=0.1)
     assert release.shared_V == pytest.approx(SHARED_V, rel=0.1)
 
@@ -107,6 +120,8 @@ def test_voltages_that_no_switch_has_are_refused(switches):
 
 def test_too_few_switches_are_refused(prior):
     model = pads(prior, 30)
-    stuck = tuple(replace(point, states={**point.states, "release_V": 0.0}) for point in model.points)
+    stuck = tuple(
+        replace(point, states={**point.states, "release_V": 0.0}) for point in model.points
+    )
     with pytest.raises(InputError, match=r"pad\.points: 0 of 30 switches over the prior let go"):
         fit_voltages(replace(model, points=stuck), prior)

@@ -1,4 +1,6 @@
-"""Lumps in motion, by the equations of `mesoscale.circuit.lumps` as they stand there: a plain twin of the netlists."""
+"""Lumps in motion, by the equations of `mesoscale.circuit.lumps` as they stand there: a plain twin
+of the netlists.
+"""
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -15,7 +17,11 @@ def _gap_m(lumps, separation_nm):
 def capacitance_F(lumps, separation_nm):
     """Capacitance at separations of shape (..., n)."""
     gap, edge = _gap_m(lumps, separation_nm), lumps.fringe / lumps.width_m
-    return VACUUM_PERMITTIVITY * (1.0 / gap + edge * np.log(np.pi * lumps.width_m / gap)) @ lumps.area_m2
+    return (
+        VACUUM_PERMITTIVITY
+        * (1.0 / gap + edge * np.log(np.pi * lumps.width_m / gap))
+        @ lumps.area_m2
+    )
 
 
 def pull_Pa(lumps, separation_nm):
@@ -39,17 +45,25 @@ def gas_flow(lumps, separation_nm, amount_nm):
     dense = np.maximum(1.0 + excess, CIRCUIT.least_density)
     knudsen = CIRCUIT.free_path_nm_Pa / (lumps.gas_Pa * dense * s)
     viscosity = CIRCUIT.viscosity_Pa_s / (1.0 + 9.638 * knudsen**1.159)
-    return lumps.gas_Pa * excess, 1e3 * lumps.gas_Pa * dense * excess * (s * NM) ** 3 / (viscosity * lumps.width_m**2)
+    return lumps.gas_Pa * excess, 1e3 * lumps.gas_Pa * dense * excess * (s * NM) ** 3 / (
+        viscosity * lumps.width_m**2
+    )
 
 
 def rates(lumps, state, voltage, pad):
-    """Changes per us of separations (nm), velocities (nm/us), depths closed (nm) and gas (nm), shape (4 n,)."""
+    """Changes per us of separations (nm), velocities (nm/us), depths closed (nm) and gas (nm),
+    shape (4 n,).
+    """
     s, v, closed, amount = state.reshape(4, -1)
     deepest = np.minimum(CIRCUIT.start_nm - closed, s)
     excess, flow = gas_flow(lumps, s, amount)
-    pressure = pad(s[:, None], deepest[:, None])[0][:, 0] * GPA - voltage**2 * pull_Pa(lumps, s) + excess
+    pressure = (
+        pad(s[:, None], deepest[:, None])[0][:, 0] * GPA - voltage**2 * pull_Pa(lumps, s) + excess
+    )
     pressure -= held_Pa(lumps, s - lumps.rest_nm + lumps.loss_us * v)
-    follow = (np.maximum(CIRCUIT.start_nm - s - closed, 0.0) - CIRCUIT.leak * closed) / (1e6 * CIRCUIT.follow_s)
+    follow = (np.maximum(CIRCUIT.start_nm - s - closed, 0.0) - CIRCUIT.leak * closed) / (
+        1e6 * CIRCUIT.follow_s
+    )
     return np.concatenate([v, 1e-3 * pressure / lumps.mass_kg_m2, follow, -flow])
 
 

@@ -25,9 +25,13 @@ POINT = Point(VALUES, 0.2, DeviceSettings())
 
 
 def as_pressed(law):
-    """The pad without separations below its deepest opening: pressed ones are opened from where they end."""
+    """The pad without separations below its deepest opening: pressed ones are opened from where
+    they end.
+    """
     way = law.separation_nm >= law.depth_nm[0] - 1e-9
-    return PadLaw(law.separation_nm[way], law.closing[:, way], law.depth_nm, law.opening[:, :, way], law.flats)
+    return PadLaw(
+        law.separation_nm[way], law.closing[:, way], law.depth_nm, law.opening[:, :, way], law.flats
+    )
 
 
 CASES = hard_cases(POINT, ContactSettings(mechanics="asperity", pixels=64), as_pressed(pad()))
@@ -46,7 +50,9 @@ def test_no_hard_circuit_is_left_out():
 
 @pytest.mark.parametrize("lumps", CIRCUIT.lump_counts)
 def test_a_buckled_beam_of_any_number_of_lumps_comes_to_rest(lumps):
-    """Short elements near mid-span leave steps of 2e-4 nm by rounding, with which no beam of 48 came to rest."""
+    """Short elements near mid-span leave steps of 2e-4 nm by rounding, with which no beam of 48
+    came to rest.
+    """
     beam = lumped_beam(DeviceSettings(residual_stress_MPa=-60.0), lumps)
     few = lumped_beam(DeviceSettings(residual_stress_MPa=-60.0), 8)
     assert beam.tension_N == pytest.approx(few.tension_N, rel=1e-3)

@@ -1,4 +1,6 @@
-"""The switch in motion: ngspice at exact limits, ngspice and the compiled Verilog-A beside the equations in Python."""
+"""The switch in motion: ngspice at exact limits, ngspice and the compiled Verilog-A beside the
+equations in Python.
+"""
 
 import re
 import subprocess
@@ -20,7 +22,12 @@ from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_stability import made_up_law
 from tests.mesoscale.circuit.motion import capacitance_F, gas_flow, held_Pa, move, pull_Pa, rates
-from tests.mesoscale.circuit.simulators import by_ngspice, compile_for_ngspice, needs_ngspice, needs_openvaf
+from tests.mesoscale.circuit.simulators import (
+    by_ngspice,
+    compile_for_ngspice,
+    needs_ngspice,
+    needs_openvaf,
+)
 from tests.mesoscale.circuit.test_tables import pad
 
 BEAM = DeviceSettings()
@@ -53,7 +60,9 @@ def test_lumps_vibrate_as_a_clamped_beam():
     assert 1e6 / (CIRCUIT.quality * lumps.loss_us) == pytest.approx(exact, rel=2e-3)
 
 
-@pytest.mark.parametrize("law", [LAW, made_up_law(0.0), made_up_law(30.0)], ids=["tails", "no adhesion", "adhesion"])
+@pytest.mark.parametrize(
+    "law", [LAW, made_up_law(0.0), made_up_law(30.0)], ids=["tails", "no adhesion", "adhesion"]
+)
 def test_few_lumps_pull_in_and_release_as_the_finite_elements(law):
     errors = choose_lumps(BEAM, law)
     assert max(errors.pull_in, errors.release) <= 0.01
@@ -62,8 +71,12 @@ def test_few_lumps_pull_in_and_release_as_the_finite_elements(law):
 
 
 def test_tilt_hardly_changes_what_the_lumps_leave_out():
-    """At a tilt of one standard deviation; it grows with its square, as the half that is higher stretches more."""
-    flat, tilted = (solve_beam(BEAM.model_copy(update={"tilt_nm": tilt}), LAW) for tilt in (0.0, 200.0))
+    """At a tilt of one standard deviation; it grows with its square, as the half that is higher
+    stretches more.
+    """
+    flat, tilted = (
+        solve_beam(BEAM.model_copy(update={"tilt_nm": tilt}), LAW) for tilt in (0.0, 200.0)
+    )
     assert tilted.release_V == pytest.approx(flat.release_V, rel=1e-2)
     assert tilted.pull_in_V == pytest.approx(flat.pull_in_V, rel=2e-3)
 
@@ -86,15 +99,21 @@ def test_the_pull_is_the_slope_of_the_capacitance(fringe):
 @pytest.mark.parametrize("s", [30.0, 300.0, 3000.0])
 def test_the_gas_is_a_damper_when_slow_and_a_spring_when_fast(s):
     thin = 1.0 + 9.638 * (67.3 / s) ** 1.159
-    slow = CIRCUIT.viscosity_Pa_s / thin * PLATE.width_m**2 / (s * NM) ** 3 * NM * 1e6  # Pa per nm/us
+    slow = (
+        CIRCUIT.viscosity_Pa_s / thin * PLATE.width_m**2 / (s * NM) ** 3 * NM * 1e6
+    )  # Pa per nm/us
     excess = 1e-7
     pressure, flow = gas_flow(PLATE, s, s * (1.0 + excess))
     assert pressure == pytest.approx(PLATE.gas_Pa * excess, rel=1e-6)
-    assert pressure == pytest.approx(slow * flow, rel=1e-6)  # in balance the gas flows as fast as the walls come
+    assert pressure == pytest.approx(
+        slow * flow, rel=1e-6
+    )  # in balance the gas flows as fast as the walls come
 
 
 def compiled(lumps, tmp_path):
-    """Changes as `rates` gives them, and charge (C), by the module that OpenVAF compiles for one pair of lumps."""
+    """Changes as `rates` gives them, and charge (C), by the module that OpenVAF compiles for one
+    pair of lumps.
+    """
     import openvaf_py
 
     path = tmp_path / "rough_lump.va"
@@ -105,34 +124,53 @@ def compiled(lumps, tmp_path):
 
     def of_one(k, s, closed, amount, volts):
         values = same | {"rest": lumps.rest_nm[k], "area": lumps.area_m2[k], "V(top,bottom)": volts}
-        values |= {"V(moved)": lumps.rest_nm[k] - s, "V(closed)": closed, "V(lost)": lumps.rest_nm[k] - amount}
+        values |= {
+            "V(moved)": lumps.rest_nm[k] - s,
+            "V(closed)": closed,
+            "V(lost)": lumps.rest_nm[k] - amount,
+        }
         resistive = [pair[0] for pair in module.run_init_eval(values)[0]]
         # terminals, of which the last takes the charge; the states; what draws the lump down
-        return -resistive[5] / (1e3 * CIRCUIT.follow_s * 1e6), resistive[6], -resistive[4], resistive[7]
+        return (
+            -resistive[5] / (1e3 * CIRCUIT.follow_s * 1e6),
+            resistive[6],
+            -resistive[4],
+            resistive[7],
+        )
 
     def changes(state, volts):
         s, v, closed, amount = state.reshape(4, -1)
         each = [of_one(k, s[k], closed[k], amount[k], volts) for k in range(lumps.count)]
         closing, gained, charge, drawn = np.array(each).T
         held = held_Pa(lumps, s - lumps.rest_nm + lumps.loss_us * v)
-        return np.concatenate([v, -1e-3 * (drawn + held) / lumps.mass_kg_m2, closing, gained]), 1e-15 * charge.sum()
+        return (
+            np.concatenate([v, -1e-3 * (drawn + held) / lumps.mass_kg_m2, closing, gained]),
+            1e-15 * charge.sum(),
+        )
 
     return changes
 
 
 @needs_openvaf
-@pytest.mark.parametrize("lumps", [PLATE, replace(lumps_of(BEAM, 4), fringe=0.6)], ids=["plate", "beam"])
+@pytest.mark.parametrize(
+    "lumps", [PLATE, replace(lumps_of(BEAM, 4), fringe=0.6)], ids=["plate", "beam"]
+)
 def test_the_compiled_switch_has_the_same_rates_and_charge(tmp_path, lumps):
     changes = compiled(lumps, tmp_path)
     rng = np.random.default_rng(0)
     for volts, low, high in ((40.0, 22.0, 60.0), (7.0, 30.0, 500.0), (70.0, 1000.0, 3490.0)):
         s = rng.uniform(low, high, lumps.count)
-        deepest = np.minimum(s, rng.uniform(20.0, 28.0, lumps.count))  # opened from where its curves are
+        deepest = np.minimum(
+            s, rng.uniform(20.0, 28.0, lumps.count)
+        )  # opened from where its curves are
         gas = s * rng.uniform(0.5, 3.0, lumps.count)
-        state = np.concatenate([s, 100.0 * rng.normal(size=lumps.count), CIRCUIT.start_nm - deepest, gas])
+        state = np.concatenate(
+            [s, 100.0 * rng.normal(size=lumps.count), CIRCUIT.start_nm - deepest, gas]
+        )
         found, charge = changes(state, volts)
         wanted = rates(lumps, state, volts, PAD)
-        # the tables hold the pad's curves to a part of its pressure; the spring and the voltage are alike to the digit
+        # the tables hold the pad's curves to a part of its pressure; the spring and the voltage are
+        # alike to the digit
         pressed = abs(PAD(s[:, None], deepest[:, None])[0]).max() * GPA + 1e3
         scale = np.repeat([1.0, 1e-3 * pressed / lumps.mass_kg_m2, 1e3, 1.0], lumps.count)
         np.testing.assert_allclose(found / scale, wanted / scale, rtol=1e-6, atol=0.01)
@@ -140,14 +178,19 @@ def test_the_compiled_switch_has_the_same_rates_and_charge(tmp_path, lumps):
 
 
 def with_compiled_lump(netlist, folder, lumps):
-    """The netlist with the module that OpenVAF compiles for ngspice in the place of the subcircuit `rough_lump`."""
+    """The netlist with the module that OpenVAF compiles for ngspice in the place of the subcircuit
+    `rough_lump`.
+    """
     (folder / "rough_lump.va").write_text(verilog_lump(lumps, LAW, 256))
     compile_for_ngspice(folder / "rough_lump.va")
     names = ("rest", "area", "gas", "viscosity", "fringe", "follow")
     head, _, rest = netlist.partition(".subckt rough_lump")
-    return f"""{head}.subckt rough_lump{rest.partition("params:")[0]}params: {" ".join(f"{name}=1" for name in names)}
+    nodes = rest.partition("params:")[0]
+    unset = " ".join(f"{name}=1" for name in names)
+    passed = " ".join(f"{name}={{{name}}}" for name in names)
+    return f"""{head}.subckt rough_lump{nodes}params: {unset}
 Nlump {LUMP} lump
-.model lump rough_lump {" ".join(f"{name}={{{name}}}" for name in names)}
+.model lump rough_lump {passed}
 .ends rough_lump
 """
 
@@ -155,7 +198,9 @@ Nlump {LUMP} lump
 def stepped(folder, lumps, volts, end_us, compiled_lump=False, **parameters):
     """Time (us) after a step of the voltage, way of mid-span (nm) and charge (fC), by ngspice."""
     netlist = spice_switch(lumps, EXACT, LAW, 256, EXACT.pull_in_V)
-    (folder / "central.sub").write_text(with_compiled_lump(netlist, folder, lumps) if compiled_lump else netlist)
+    (folder / "central.sub").write_text(
+        with_compiled_lump(netlist, folder, lumps) if compiled_lump else netlist
+    )
     time_s, middle, charge = by_ngspice(
         folder,
         f"""* a step
@@ -198,7 +243,9 @@ def test_an_undamped_plate_takes_the_time_of_the_energy_integral(tmp_path):
         return np.sqrt(2.0 * (work - elastic) / PLATE.mass_kg_m2) * 1e3
 
     way = SPRING.gap_nm - 300.0
-    exact = quad(lambda root: 2.0 * root / speed(root**2), 0.0, np.sqrt(way))[0]  # x = root^2: 1/v has a root at rest
+    exact = quad(lambda root: 2.0 * root / speed(root**2), 0.0, np.sqrt(way))[
+        0
+    ]  # x = root^2: 1/v has a root at rest
     time_us, moved, _ = stepped(tmp_path, PLATE, volts, 1.005 * exact, gas=1e-3)
     assert np.interp(way, moved, time_us) == pytest.approx(exact, rel=2e-3)
 
@@ -220,7 +267,9 @@ def test_ngspice_closes_the_switch_as_fast_and_as_deep(tmp_path, compiled_lump):
         assert found == pytest.approx(known, rel=5e-3)
     assert middle.max() == pytest.approx(wanted.max(), abs=1.0)
     far = np.interp(20.0, time, charge)
-    assert far == pytest.approx(82e15 * np.interp(20.0, moved_us, capacitance_F(lumps, separation_nm.T)), rel=5e-3)
+    assert far == pytest.approx(
+        82e15 * np.interp(20.0, moved_us, capacitance_F(lumps, separation_nm.T)), rel=5e-3
+    )
 
 
 @needs_ngspice
@@ -230,7 +279,9 @@ def test_the_example_of_the_docs_runs_in_batch(tmp_path):
     (tmp_path / "central.sub").write_text(spice_switch(lumps, EXACT, LAW, 256, closes_V))
     assert "reltol=1e-5" in example  # 1e-3 allows 3 nm in the depth that the pad remembers
     (tmp_path / "step.cir").write_text(example)
-    subprocess.run(["ngspice", "-b", "step.cir"], cwd=tmp_path, check=True, capture_output=True, timeout=300)
+    subprocess.run(
+        ["ngspice", "-b", "step.cir"], cwd=tmp_path, check=True, capture_output=True, timeout=300
+    )
     time_s, middle_nm, _, _ = np.loadtxt(tmp_path / "step.txt").T
     assert time_s[-1] == pytest.approx(250e-6)
     assert middle_nm.max() > lumps.rest_nm[-1] - PAD.at_nm[-1]  # on the pad

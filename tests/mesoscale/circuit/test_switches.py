@@ -29,7 +29,10 @@ def test_corners_lie_beyond_the_draws_in_their_direction(monkeypatch):
     for module in (switches, points):
         monkeypatch.setattr(module, "press_pad", press_pad)
     contact = ContactSettings(mechanics="asperity")
-    made = {of.row["switch"]: of.row for of in spread_switches(model_of(BEAM, 48), TABLE, contact, CUTOFFS_NM, 16)}
+    made = {
+        of.row["switch"]: of.row
+        for of in spread_switches(model_of(BEAM, 48), TABLE, contact, CUTOFFS_NM, 16)
+    }
     assert set(made) == {*CORNERS, *(name for name in made if name.startswith("draw_"))}
     assert len(made) == len(CORNERS) + CIRCUIT.draws
     drawn = [row for name, row in made.items() if name.startswith("draw_")]
@@ -60,7 +63,9 @@ def test_draws_make_the_band_of_the_slow_loop():
     rows = loops(central, [softer] * 4)
     assert rows[-1]["voltage_V"] == pytest.approx(CIRCUIT.loop_top * central.row["pull_in_V"])
     assert all(row["up_q05_fF"] <= row["up_q95_fF"] for row in rows)
-    assert sum(row["up_q05_fF"] for row in rows) > sum(row["up_central_fF"] for row in rows)  # it closes earlier
+    assert sum(row["up_q05_fF"] for row in rows) > sum(
+        row["up_central_fF"] for row in rows
+    )  # it closes earlier
 
 
 def test_a_plate_on_a_spring_has_no_circuit():

@@ -31,7 +31,9 @@ def pad(hamaker=0.215, waves=0.0):
 
 
 def pressures(law):
-    """Separation, deepest closing so far and pressure (GPa) of every step of the history, by the curves."""
+    """Separation, deepest closing so far and pressure (GPa) of every step of the history, by the
+    curves.
+    """
     deepest = np.minimum.accumulate(HISTORY_NM)
     pressed = [
         float(law.closing_GPa(s) if s == deep else law.opening_GPa(s, deep))
@@ -45,7 +47,9 @@ def well(law):
 
 
 def compiled(law, tmp_path):
-    """Pressure (GPa) of the Verilog-A module at a separation and a deepest closing, by another compiler."""
+    """Pressure (GPa) of the Verilog-A module at a separation and a deepest closing, by another
+    compiler.
+    """
     import openvaf_py
 
     path = tmp_path / "rough_pad.va"
@@ -55,7 +59,9 @@ def compiled(law, tmp_path):
 
     def pressed(separation, deepest):
         state = CIRCUIT.start_nm - deepest
-        residuals, _ = module.run_init_eval({**values, "V(s,ref)": separation * 1e-9, "V(closed)": state})
+        residuals, _ = module.run_init_eval(
+            {**values, "V(s,ref)": separation * 1e-9, "V(closed)": state}
+        )
         # the state is at rest: it does not want to follow further, and hardly leaks
         assert abs(residuals[2][0]) <= 1e-9
         return -residuals[0][0] * 1e9 / AREA
@@ -70,7 +76,9 @@ def test_openvaf_follows_a_history_of_two_closings(tmp_path, waves):
     pressed = compiled(law, tmp_path)
     for separation, deepest, wanted in zip(*pressures(law), strict=True):
         found = pressed(separation, deepest)
-        assert found == pytest.approx(wanted, abs=2.0 * (CIRCUIT.of_well * well(law) + CIRCUIT.of_net * abs(wanted)))
+        assert found == pytest.approx(
+            wanted, abs=2.0 * (CIRCUIT.of_well * well(law) + CIRCUIT.of_net * abs(wanted))
+        )
 
 
 @needs_openvaf
@@ -117,14 +125,21 @@ def test_the_switch_releases_on_the_table_as_on_the_curves(tmp_path):
     for k, depth in enumerate(depths):
         above = s >= depth - 1e-9
         opening[k][:, above] = apart([pressed(at, depth) for at in s[above]], 20.0 * well(law))
-    made = PadLaw(s, apart([pressed(at, at) for at in s], 20.0 * well(law)), depths, opening, law.flats)
-    by_curves, by_table = solve_deepened(DeviceSettings(), law), solve_deepened(DeviceSettings(), made)
+    made = PadLaw(
+        s, apart([pressed(at, at) for at in s], 20.0 * well(law)), depths, opening, law.flats
+    )
+    by_curves, by_table = (
+        solve_deepened(DeviceSettings(), law),
+        solve_deepened(DeviceSettings(), made),
+    )
     for name in ("pull_in_V", "release_V"):
         assert by_table[name] == pytest.approx(by_curves[name], rel=0.01)
 
 
 def apart(net, pull):
-    """Net pressure as push and pull, whose logarithms are smooth where the net pressure changes its sign."""
+    """Net pressure as push and pull, whose logarithms are smooth where the net pressure changes its
+    sign.
+    """
     return np.stack([np.array(net) + pull, np.full(len(net), -pull)])
 
 
@@ -138,13 +153,21 @@ def by_spice(text, separation, deepest):
         nodes = [(of, [float(value) for value in row.replace("\n+", "").split(",")])
                  for of, row in re.findall(r"pwl\(([^,]*),(.*?)\)", sums, re.S)]  # fmt: skip
         closing, *opening = [float(np.interp(at[of], row[::2], row[1::2])) for of, row in nodes]
-        return closing + sum(weight * rise for weight, rise in zip(opening[1::3], opening[2::3], strict=True))
+        return closing + sum(
+            weight * rise for weight, rise in zip(opening[1::3], opening[2::3], strict=True)
+        )
 
     ((*far, faint),) = re.findall(r"\+ (\S+), \S+\)\) - (\S+)\n", text)
     far += re.findall(r"\+ (\S+), \S+\)\)\)\n.ends", text)
-    push, pull = (logarithm(name) + float(away) for name, away in zip(("push", "pull"), far, strict=True))
+    push, pull = (
+        logarithm(name) + float(away) for name, away in zip(("push", "pull"), far, strict=True)
+    )
     (hamaker,), (offset,) = re.findall(r"hamaker=(\S+)", text), re.findall(r"offset_nm=(\S+)", text)
-    return np.exp(push) - float(faint) - np.exp(pull) * Flats(float(hamaker), float(offset)).pull_GPa(separation)
+    return (
+        np.exp(push)
+        - float(faint)
+        - np.exp(pull) * Flats(float(hamaker), float(offset)).pull_GPa(separation)
+    )
 
 
 @pytest.mark.parametrize("waves", [0.0, 0.2])
@@ -153,14 +176,17 @@ def test_the_tables_for_spice_hold_the_curves(waves):
     text = spice_pad(law, 256)
     for separation, deepest, wanted in zip(*pressures(law), strict=True):
         found = by_spice(text, separation, deepest)
-        assert found == pytest.approx(wanted, abs=2.0 * (CIRCUIT.of_well * well(law) + CIRCUIT.of_net * abs(wanted)))
+        assert found == pytest.approx(
+            wanted, abs=2.0 * (CIRCUIT.of_well * well(law) + CIRCUIT.of_net * abs(wanted))
+        )
 
 
 @needs_ngspice
 def test_ngspice_follows_a_history_of_two_closings(tmp_path):
     law = pad()
     (tmp_path / "pad.sub").write_text(spice_pad(law, 256))
-    # a millisecond of motion and one of rest for every step; backward Euler, as what overshoots would be remembered
+    # a millisecond of motion and one of rest for every step; backward Euler, as what overshoots
+    # would be remembered
     points = " ".join(f"{2 * k + at}m {s:g}" for k, s in enumerate(HISTORY_NM) for at in (0.0, 1.0))
     time, force = by_ngspice(
         tmp_path,
@@ -182,7 +208,9 @@ quit
     )
     at_rest = np.interp((2 * np.arange(len(HISTORY_NM)) + 0.99) * 1e-3, time, force) / AREA
     wanted = pressures(law)[2]
-    np.testing.assert_allclose(at_rest, wanted, rtol=2.0 * CIRCUIT.of_net, atol=2.0 * CIRCUIT.of_well * well(law))
+    np.testing.assert_allclose(
+        at_rest, wanted, rtol=2.0 * CIRCUIT.of_net, atol=2.0 * CIRCUIT.of_well * well(law)
+    )
 
 
 def test_the_exports_name_what_they_were_made_of():
@@ -192,7 +220,10 @@ def test_the_exports_name_what_they_were_made_of():
 
 
 def test_a_pad_that_is_closed_deeper_than_its_table_says_so_at_run_time():
-    assert '$strobe("rough_pad: closed to %g nm, the table ends at 20 nm", deepest);' in verilog_pad(pad(), 256)
+    assert (
+        '$strobe("rough_pad: closed to %g nm, the table ends at 20 nm", deepest);'
+        in verilog_pad(pad(), 256)
+    )
 
 
 @pytest.mark.parametrize("depths", [1, 2])
@@ -201,7 +232,9 @@ def test_pads_of_few_depths_and_without_attraction_have_tables(depths, hamaker):
     law = pad(hamaker)
     if hamaker == 0.0:
         law.closing[1], law.opening[:, 1] = 0.0, 0.0 * law.opening[:, 1]
-    few = PadLaw(law.separation_nm, law.closing, law.depth_nm[:depths], law.opening[:depths], law.flats)
+    few = PadLaw(
+        law.separation_nm, law.closing, law.depth_nm[:depths], law.opening[:depths], law.flats
+    )
     tables = tables_of(few, cubic=True)
     assert len(tables.opening) == depths
     assert "nan" not in verilog_pad(few, 8) + spice_pad(few, 8)

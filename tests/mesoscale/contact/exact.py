@@ -1,12 +1,13 @@
 """Exact solutions for an elastic half-space: sphere, flat punch, sinusoid.
 
-The contact engines are tested against them. Frictionless, no adhesion, combined modulus E*; the flat is rigid.
-Units nm, nN, GPa: 1 GPa nm^2 = 1 nN. Every function takes numbers or arrays, which broadcast.
+The contact engines are tested against them. Frictionless, no adhesion, combined modulus E*; the
+flat is rigid. Units nm, nN, GPa: 1 GPa nm^2 = 1 nN. Every function takes numbers or arrays, which
+broadcast.
 
-The separation of a periodic contact is that of the mean planes: the mean over the cell of the gap between the
-deformed surface and the flat. The uniform compression of the half-space below is left out of it. Crests touch
-here; the engines touch at minima, so that their heights are minus the ones stated.
-"""
+The separation of a periodic contact is that of the mean planes: the mean over the cell of the gap
+between the deformed surface and the flat. The uniform compression of the half-space below is left
+out of it. Crests touch here; the engines touch at minima, so that their heights are minus the ones
+stated."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +42,8 @@ def hertz_indentation(force: Real, radius: Real, e_star: Real) -> Real:
 
 
 def hertz_contact_radius(force: Real, radius: Real, e_star: Real) -> Real:
-    """Radius of the contact, nm, of a sphere of a radius (nm) under a force (nN): a^3 = 3 F R / (4 E*).
+    """Radius of the contact, nm, of a sphere of a radius (nm) under a force (nN): a^3 = 3 F R / (4
+    E*).
 
     Source: Johnson (1985), sec. 4.2, doi 10.1017/CBO9781139171731.
     """
@@ -49,7 +51,8 @@ def hertz_contact_radius(force: Real, radius: Real, e_star: Real) -> Real:
 
 
 def hertz_pressure(distance: Real, force: Real, radius: Real, e_star: Real) -> Real:
-    """Pressure, GPa, at a distance from the axis (nm): p0 sqrt(1 - r^2/a^2) with p0 = 3 F / (2 pi a^2); 0 outside.
+    """Pressure, GPa, at a distance from the axis (nm): p0 sqrt(1 - r^2/a^2) with p0 = 3 F / (2 pi
+    a^2); 0 outside.
 
     Parameters
     ----------
@@ -67,7 +70,8 @@ def hertz_pressure(distance: Real, force: Real, radius: Real, e_star: Real) -> R
 
 
 def punch_force(indentation: Real, contact_radius: Real, e_star: Real) -> Real:
-    """Force, nN, that presses a rigid flat cylinder of a radius (nm) in by an approach (nm): F = 2 E* a delta.
+    """Force, nN, that presses a rigid flat cylinder of a radius (nm) in by an approach (nm): F = 2
+    E* a delta.
 
     An approach of 0 or less means no contact.
 
@@ -77,7 +81,8 @@ def punch_force(indentation: Real, contact_radius: Real, e_star: Real) -> Real:
 
 
 def punch_pressure(distance: Real, force: Real, contact_radius: Real) -> Real:
-    """Pressure, GPa, below a rigid flat cylinder: F / (2 pi a sqrt(a^2 - r^2)); infinite at its edge, 0 outside.
+    """Pressure, GPa, below a rigid flat cylinder: F / (2 pi a sqrt(a^2 - r^2)); infinite at its
+    edge, 0 outside.
 
     Parameters
     ----------
@@ -96,7 +101,8 @@ def punch_pressure(distance: Real, force: Real, contact_radius: Real) -> Real:
 
 
 def wave_full_pressure(amplitude: Real, wavelength: Real, e_star: Real) -> Real:
-    """Mean pressure, GPa, from which a wave h(x) = amplitude cos(2 pi x / wavelength) touches everywhere.
+    """Mean pressure, GPa, from which a wave h(x) = amplitude cos(2 pi x / wavelength) touches
+    everywhere.
 
     p* = pi E* amplitude / wavelength; amplitude and wavelength in nm, E* in GPa.
 
@@ -122,15 +128,19 @@ def wave_mean_pressure(area_share: Real, amplitude: Real, wavelength: Real, e_st
 
 
 def wave_area_share(mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real) -> Real:
-    """Share of a wave's area that touches under a mean pressure (GPa): inverse of `wave_mean_pressure`, at most 1."""
+    """Share of a wave's area that touches under a mean pressure (GPa): inverse of
+    `wave_mean_pressure`, at most 1.
+    """
     return 2.0 / np.pi * np.arcsin(np.sqrt(_load(mean_pressure, amplitude, wavelength, e_star)))
 
 
-def wave_pressure(x: Real, mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real) -> Real:
+def wave_pressure(
+    x: Real, mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real
+) -> Real:
     """Pressure, GPa, at a place x (nm) of a wave with its crests at x = 0, +-wavelength, ...
 
-    p(x) = 2 p* cos(pi x / wavelength) sqrt(sin^2(pi a / wavelength) - sin^2(pi x / wavelength)) in contact,
-    -a <= x <= a, and 0 outside. Above full contact the surplus is uniform.
+    p(x) = 2 p* cos(pi x / wavelength) sqrt(sin^2(pi a / wavelength) - sin^2(pi x / wavelength)) in
+    contact, -a <= x <= a, and 0 outside. Above full contact the surplus is uniform.
 
     Parameters
     ----------
@@ -149,11 +159,13 @@ def wave_pressure(x: Real, mean_pressure: Real, amplitude: Real, wavelength: Rea
 
 
 def wave_gap(x: Real, mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real) -> Real:
-    """Gap, nm, between a wave and the flat at a place x (nm); crests at x = 0, +-wavelength, ...; 0 in contact.
+    """Gap, nm, between a wave and the flat at a place x (nm); crests at x = 0, +-wavelength, ...; 0
+    in contact.
 
-    With S = abs(sin(pi x / wavelength)) and s^2 = p/p*: gap = 2 amplitude [S sqrt(S^2 - s^2) - s^2 arccosh(S/s)].
-    A strip that carries dp more lowers the flat like a punch: outside it the gap falls by
-    2 wavelength / (pi E*) arccosh(S/s) dp (potential of a charged arc); the sum over all dp is the line above.
+    With S = abs(sin(pi x / wavelength)) and s^2 = p/p*: gap = 2 amplitude [S sqrt(S^2 - s^2) - s^2
+    arccosh(S/s)]. A strip that carries dp more lowers the flat like a punch: outside it the gap
+    falls by 2 wavelength / (pi E*) arccosh(S/s) dp (potential of a charged arc); the sum over all
+    dp is the line above.
 
     Parameters
     ----------
@@ -173,11 +185,12 @@ def wave_gap(x: Real, mean_pressure: Real, amplitude: Real, wavelength: Real, e_
 
 
 def wave_separation(mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real) -> Real:
-    """Separation of the mean planes, nm, of a wave and the flat: amplitude [1 - P + P ln P] with P = p/p*.
+    """Separation of the mean planes, nm, of a wave and the flat: amplitude [1 - P + P ln P] with P
+    = p/p*.
 
-    It is the amplitude at first touch and 0 at full contact. A strip of half-width a that carries dp more moves the
-    flat by 2 wavelength / (pi E*) ln(sin(pi a / wavelength)) dp, the logarithmic capacity of an arc; the sum over
-    all dp is the line above.
+    It is the amplitude at first touch and 0 at full contact. A strip of half-width a that carries
+    dp more moves the flat by 2 wavelength / (pi E*) ln(sin(pi a / wavelength)) dp, the logarithmic
+    capacity of an arc; the sum over all dp is the line above.
 
     Parameters
     ----------
@@ -197,18 +210,22 @@ def _load(mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real) 
 
 
 def bisinusoid_full_pressure(amplitude: Real, wavelength: Real, e_star: Real) -> Real:
-    """Mean pressure, GPa, from which h = amplitude cos(2 pi x / wavelength) cos(2 pi y / wavelength) all touches.
+    """Mean pressure, GPa, from which h = amplitude cos(2 pi x / wavelength) cos(2 pi y /
+    wavelength) all touches.
 
-    p* = sqrt(2) pi E* amplitude / wavelength; amplitude and wavelength in nm, E* in GPa. Above it the pressure is
-    p + p* cos(2 pi x / wavelength) cos(2 pi y / wavelength).
+    p* = sqrt(2) pi E* amplitude / wavelength; amplitude and wavelength in nm, E* in GPa. Above it
+    the pressure is p + p* cos(2 pi x / wavelength) cos(2 pi y / wavelength).
 
     Source: Johnson, Greenwood and Higginson (1985), doi 10.1016/0020-7403(85)90029-3.
     """
     return np.sqrt(2.0) * np.pi * e_star * amplitude / wavelength
 
 
-def bisinusoid_area_at_first_touch(mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real) -> Real:
-    """Share of area that touches for p << p*: pi (3 p / (8 pi p*))^(2/3), two Hertzian summits per wavelength^2.
+def bisinusoid_area_at_first_touch(
+    mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real
+) -> Real:
+    """Share of area that touches for p << p*: pi (3 p / (8 pi p*))^(2/3), two Hertzian summits per
+    wavelength^2.
 
     Parameters
     ----------
@@ -223,8 +240,11 @@ def bisinusoid_area_at_first_touch(mean_pressure: Real, amplitude: Real, wavelen
     return np.pi * (3.0 * load / (8.0 * np.pi)) ** (2.0 / 3.0)
 
 
-def bisinusoid_area_near_full_contact(mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real) -> Real:
-    """Share of area that touches for p near p*: 1 - 3/(2 pi) (1 - p/p*), two open pennies per wavelength^2.
+def bisinusoid_area_near_full_contact(
+    mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real
+) -> Real:
+    """Share of area that touches for p near p*: 1 - 3/(2 pi) (1 - p/p*), two open pennies per
+    wavelength^2.
 
     Parameters
     ----------

@@ -5,7 +5,9 @@ from mesoscale.contact.asperity.engine import AsperityContact
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
-INPUTS = ContactInputs(hamaker=0.0, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
+INPUTS = ContactInputs(
+    hamaker=0.0, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5
+)
 
 
 def sphere_tip(pixels: int, spacing: float, radius: float) -> np.ndarray:
@@ -16,14 +18,22 @@ def sphere_tip(pixels: int, spacing: float, radius: float) -> np.ndarray:
 
 def settings_for(pixels: int, spacing: float, **changes) -> ContactSettings:
     return ContactSettings(
-        **{"mechanics": "asperity", "pixels": pixels, "length_nm": pixels * spacing, "model": "elastic", **changes}
+        **{
+            "mechanics": "asperity",
+            "pixels": pixels,
+            "length_nm": pixels * spacing,
+            "model": "elastic",
+            **changes,
+        }
     )
 
 
 @pytest.mark.parametrize(("prefactor", "force"), [("hertz", 1213.3), ("paper", 606.7)])
 @pytest.mark.parametrize("radius", ["curvature", "truncation"])
 def test_a_sphere_follows_hertz(prefactor, force, radius):
-    """R = 100 nm, indentation 1 nm, E* = 91 GPa; a cap's profile curvatures are 1/R to within 1 %."""
+    """R = 100 nm, indentation 1 nm, E* = 91 GPa; a cap's profile curvatures are 1/R to within 1
+    %.
+    """
     heights = sphere_tip(128, 0.5, 100.0)
     contact = AsperityContact(
         heights, INPUTS, settings_for(128, 0.5, reading={"prefactor": prefactor, "radius": radius})
@@ -36,7 +46,9 @@ def test_hertz_error_falls_with_the_grid_spacing():
     for spacing in (2.0, 1.0, 0.5):
         pixels = int(64 / spacing)
         contact = AsperityContact(
-            sphere_tip(pixels, spacing, 100.0), INPUTS, settings_for(pixels, spacing, reading={"radius": "truncation"})
+            sphere_tip(pixels, spacing, 100.0),
+            INPUTS,
+            settings_for(pixels, spacing, reading={"radius": "truncation"}),
         )
         sites = contact.move_to(-1.0, False)[1]
         errors.append(abs(sites * spacing**2 / (np.pi * (2 * 100.0 - 1.0)) - 1))
@@ -45,7 +57,8 @@ def test_hertz_error_falls_with_the_grid_spacing():
 
 
 def test_greenwood_williamson_with_exponential_heights():
-    """F = sqrt(pi) N E* sqrt(R) sigma^1.5 exp(-d/sigma), from 1024 equal caps at exponential heights.
+    """F = sqrt(pi) N E* sqrt(R) sigma^1.5 exp(-d/sigma), from 1024 equal caps at exponential
+    heights.
 
     The mean profile curvature over a cap exceeds 1/R by some delta / (2 R), about 1 % here, and the
     quantile heights miss the tail beyond the last summit, another 1 %.
@@ -55,10 +68,19 @@ def test_greenwood_williamson_with_exponential_heights():
     tip = sphere_tip(cell, spacing, radius)
     summits = -sigma * np.log((np.arange(cells**2) + 0.5) / cells**2)
     np.random.default_rng(0).shuffle(summits)
-    heights = np.kron(np.ones((cells, cells)), tip) - np.kron(summits.reshape(cells, cells), np.ones((cell, cell)))
+    heights = np.kron(np.ones((cells, cells)), tip) - np.kron(
+        summits.reshape(cells, cells), np.ones((cell, cell))
+    )
     settings = settings_for(pixels, spacing)
     force, _, asperities, *_ = AsperityContact(heights, INPUTS, settings).move_to(separation, False)
-    theory = np.sqrt(np.pi) * cells**2 * 91.0 * np.sqrt(radius) * sigma**1.5 * np.exp(-separation / sigma)
+    theory = (
+        np.sqrt(np.pi)
+        * cells**2
+        * 91.0
+        * np.sqrt(radius)
+        * sigma**1.5
+        * np.exp(-separation / sigma)
+    )
     assert asperities == np.sum(summits > separation)
     assert force == pytest.approx(theory, rel=0.03)
 

@@ -1,4 +1,6 @@
-"""The coupled engine: exact solutions, the plain model, tamaas, and what must hold for every cycle."""
+"""The coupled engine: exact solutions, the plain model, tamaas, and what must hold for every
+cycle.
+"""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -19,10 +21,13 @@ from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
 from tests.mesoscale.contact import exact
 
-INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0)
+INPUTS = ContactInputs(
+    hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0
+)
 FILM = replace(INPUTS, h_prime=0.0, h_film=8.0, t_film=2.0, k_film=0.24, m_film=1.2)
 MODELS = ("elastic", "nonlinear", "plastic")
-LATTICE = 3.900264920001956  # of a square lattice of charges in their neutralising background: sum 1/r - integral
+# of a square lattice of charges in their neutralising background: sum 1/r - integral
+LATTICE = 3.900264920001956
 
 
 def coupled(pixels: int, length_nm: float, **changes) -> ContactSettings:
@@ -37,11 +42,15 @@ def on_grid(contact: CoupledContact) -> np.ndarray:
 
 
 def worst_condition(contact: CoupledContact, limit: float = np.inf) -> float:
-    """Residual of the conditions over the whole cell, by a transform that the engine did not use."""
+    """Residual of the conditions over the whole cell, by a transform that the engine did not
+    use.
+    """
     p = on_grid(contact).ravel()
     u = grid.Grid(contact.n, contact.length, contact.e_star).displacement(p)
     limits = np.full(p.size, limit)
-    return dense.residual(contact.heights + contact.separation, p, u, limits, contact.stiffness, p.size)
+    return dense.residual(
+        contact.heights + contact.separation, p, u, limits, contact.stiffness, p.size
+    )
 
 
 def sphere(sites: float, contact_radius: float, radius: float, pixels: int):
@@ -55,7 +64,9 @@ def sphere(sites: float, contact_radius: float, radius: float, pixels: int):
 
 
 def pressed_sphere(sites: float, pixels: int):
-    """Errors of the force and of the pressures (RMS over the inner 90 % of the contact) beside Hertz."""
+    """Errors of the force and of the pressures (RMS over the inner 90 % of the contact) beside
+    Hertz.
+    """
     radius, contact_radius, e_star = 1000.0, 20.0, INPUTS.e_star
     bowl, distance, settings = sphere(sites, contact_radius, radius, pixels)
     contact = CoupledContact(bowl.copy(), INPUTS, settings)
@@ -73,14 +84,24 @@ def pressed_sphere(sites: float, pixels: int):
 def test_a_sphere_is_hertzs():
     errors = np.array([pressed_sphere(sites, int(32 * sites)) for sites in (5, 10, 20)])
     assert (errors[-1] < 0.01).all()
-    assert (np.log2(errors[0] / errors[-1]) / 2 > 0.8).all()  # first order, as the edge of the contact is resolved
+    assert (
+        np.log2(errors[0] / errors[-1]) / 2 > 0.8
+    ).all()  # first order, as the edge of the contact is resolved
 
 
-def hertz_attraction(contact_radius: float, radius: float, hamaker: float, cutoff: float, law: str) -> float:
-    """Attraction (nN) of a sphere outside its contact, over the gap of Hertz's solution (Johnson 1985, eq. 3.42a)."""
+def hertz_attraction(
+    contact_radius: float, radius: float, hamaker: float, cutoff: float, law: str
+) -> float:
+    """Attraction (nN) of a sphere outside its contact, over the gap of Hertz's solution (Johnson
+    1985, eq. 3.42a).
+    """
 
     def over_the_rim(x):
-        gap = contact_radius**2 / (np.pi * radius) * (np.sqrt(x * x - 1) + (x * x - 2) * np.arccos(1 / x))
+        gap = (
+            contact_radius**2
+            / (np.pi * radius)
+            * (np.sqrt(x * x - 1) + (x * x - 2) * np.arccos(1 / x))
+        )
         walls = gap + cutoff if law == "offset" else max(gap, cutoff)
         return 2 * np.pi * x * contact_radius**2 / walls**3
 
@@ -92,18 +113,23 @@ def hertz_attraction(contact_radius: float, radius: float, hamaker: float, cutof
 @pytest.mark.parametrize("radius", [13.0, 40.0])
 @pytest.mark.parametrize(("law", "sites"), [("clamped", 4), ("offset", 8)])
 def test_a_sphere_attracts_over_the_rim_of_its_contact_as_hertzs_gap_does(radius, law, sites):
-    # sites that touch cover 6 % more than the contact, 4 sites wide: without the strip at its edge the clamped law's
-    # attraction falls short by 9 to 12 % (R = 13 nm) and 4 to 5 % (40 nm); one position on the grid scatters by 4 and
-    # 1 %. The offset law is steeper at the edge: on 4 sites to the radius it falls short by 14 and 3 %
+    # sites that touch cover 6 % more than the contact, 4 sites wide: without the strip at its edge
+    # the clamped law's attraction falls short by 9 to 12 % (R = 13 nm) and 4 to 5 % (40 nm); one
+    # position on the grid scatters by 4 and 1 %. The offset law is steeper at the edge: on 4 sites
+    # to the radius it falls short by 14 and 3 %
     contact_radius, pixels = 4.0, 20 * sites
     spacing = contact_radius / sites
     settings = coupled(pixels, pixels * spacing, model="elastic", attraction=law)
     force = exact.hertz_force(contact_radius**2 / radius, radius, INPUTS.e_star)
-    separation = -(contact_radius**2) / radius + LATTICE * force / (np.pi * INPUTS.e_star * settings.length_nm)
+    separation = -(contact_radius**2) / radius + LATTICE * force / (
+        np.pi * INPUTS.e_star * settings.length_nm
+    )
     found = []
     for x0, y0 in np.random.default_rng(1).random((16, 2)):
         x, y = ((np.arange(pixels) - pixels // 2 + at) * spacing for at in (x0, y0))
-        contact = CoupledContact((x[:, None] ** 2 + y[None, :] ** 2) / (2 * radius), INPUTS, settings)
+        contact = CoupledContact(
+            (x[:, None] ** 2 + y[None, :] ** 2) / (2 * radius), INPUTS, settings
+        )
         contact.move_to(separation, False)
         found.append(-contact.attraction(separation))
     wanted = hertz_attraction(contact_radius, radius, INPUTS.hamaker, settings.gap_cutoff_nm, law)
@@ -127,12 +153,15 @@ def test_a_wave_is_westergaards(share):
 @pytest.mark.parametrize("inputs", [INPUTS, FILM], ids=["paper", "film"])
 @pytest.mark.parametrize("model", MODELS)
 def test_pressures_and_surface_agree_with_the_plain_model(model, inputs):
-    # bounded least squares is slow: fewer sites; the engine takes the number of sites from the surface
+    # bounded least squares is slow: fewer sites; the engine takes the number of sites from the
+    # surface
     pixels, length = (32, 40.0) if model == "elastic" else (18, 22.5)
     settings = coupled(32, length, model=model)
     heights = synthesize(pixels, length, 0.3, 0.75, 1.0, 3)
     lowest = np.unravel_index(np.argmin(heights), heights.shape)
-    heights = np.roll(heights, (-lowest[0], -lowest[1]), (0, 1))  # the first cluster straddles the corner
+    heights = np.roll(
+        heights, (-lowest[0], -lowest[1]), (0, 1)
+    )  # the first cluster straddles the corner
     separations = -heights.min() - np.linspace(0.05, 2.2, 5)
     expected, surface = plain_coupled.walk(heights, separations, inputs, settings)
     contact = CoupledContact(heights.copy(), inputs, settings)
@@ -145,7 +174,9 @@ def test_pressures_and_surface_agree_with_the_plain_model(model, inputs):
     assert 0.05 < (expected[-1] > 0).mean() < 0.9
 
 
-def by_tamaas(heights: np.ndarray, load_nN: float, hardness: float | None = None) -> half_space.Pressed:
+def by_tamaas(
+    heights: np.ndarray, load_nN: float, hardness: float | None = None
+) -> half_space.Pressed:
     pytest.importorskip("tamaas", reason="optional extra peers is not installed")
     return half_space.by_tamaas(heights, 62.5, load_nN, INPUTS.e_star, hardness)
 
@@ -172,7 +203,12 @@ def test_a_flattened_surface_unloads_as_tamaas_says():
     constant = ContactInputs(**{**vars(INPUTS), "hamaker": 0.0, "h_prime": 0.0})
     settings = coupled(64, 62.5, max_force_nN=2e3)
     cycle = run_cycle(
-        constant, settings, 0, heights=synthesize(64, 62.5, 0.15, 0.75, 2.0, 1), contact_at="lowest", keep_surface=True
+        constant,
+        settings,
+        0,
+        heights=synthesize(64, 62.5, 0.15, 0.75, 2.0, 1),
+        contact_at="lowest",
+        keep_surface=True,
     )
     assert cycle.converged
     assert cycle.flags["changed_sites"] > 50
@@ -215,7 +251,9 @@ def test_no_repulsion_is_lost_on_closing_and_no_energy_won(case, h_prime):
     # trapezoids over 20 to 30 points know the work to a per cent
     assert lost >= (-1e-12 * spent if settings.model != "plastic" else 0.1 * spent)
     if settings.model == "plastic":
-        second = run_cycle(inputs, settings, 1, heights=cycle.heights, contact_at="lowest", numerics=numerics)
+        second = run_cycle(
+            inputs, settings, 1, heights=cycle.heights, contact_at="lowest", numerics=numerics
+        )
         assert second.converged
         assert abs(dissipated(second)[0]) < 0.01 * lost
 
@@ -238,7 +276,9 @@ def test_few_sites_and_the_whole_grid_give_the_same():
     few.dense, whole.dense = 4096, 0
     for depth in (0.1, 0.5, 1.5):
         separation = few.touching_separation - depth
-        assert few.move_to(separation, True).force == pytest.approx(whole.move_to(separation, True).force, rel=1e-7)
+        assert few.move_to(separation, True).force == pytest.approx(
+            whole.move_to(separation, True).force, rel=1e-7
+        )
         assert few.attraction(separation) == pytest.approx(whole.attraction(separation), rel=5e-3)
     assert few.grid is None
     assert whole.grid is not None
@@ -260,19 +300,30 @@ def test_gradient_projection_finds_what_active_sets_find(dense, monkeypatch):
     monkeypatch.setattr(grid, "solve", refused)
     monkeypatch.setattr("mesoscale.contact.coupled.engine.dense.solve", refused)
     assert contacts[1].move_to(separation, True).settled
-    np.testing.assert_allclose(on_grid(contacts[1]), on_grid(contacts[0]), atol=1e-6 * on_grid(contacts[0]).max())
-    assert contacts[1].attraction(separation) == pytest.approx(contacts[0].attraction(separation), rel=1e-6)
+    np.testing.assert_allclose(
+        on_grid(contacts[1]), on_grid(contacts[0]), atol=1e-6 * on_grid(contacts[0]).max()
+    )
+    assert contacts[1].attraction(separation) == pytest.approx(
+        contacts[0].attraction(separation), rel=1e-6
+    )
 
 
 @pytest.mark.parametrize("dense", [0, 4096])
 def test_a_step_that_is_undone_leaves_no_trace(dense):
-    contact = CoupledContact(synthesize(64, 62.5, 0.15, 0.75, 2.0, 4), INPUTS, coupled(64, 62.5, model="elastic"))
+    contact = CoupledContact(
+        synthesize(64, 62.5, 0.15, 0.75, 2.0, 4), INPUTS, coupled(64, 62.5, model="elastic")
+    )
     contact.dense = dense
     first = contact.touching_separation
     separation = first - 4.5
     contact.move_to(separation, False)
     force, attraction = contact.force, contact.attraction(separation)
-    for depth in (5.0, 0.5, 5.2, 4.6):  # the second one on, all sites of the grid are known; steps both ways
+    for depth in (
+        5.0,
+        0.5,
+        5.2,
+        4.6,
+    ):  # the second one on, all sites of the grid are known; steps both ways
         contact.move_to(first - depth, False)
         contact.back()
         assert contact.force == pytest.approx(force, rel=1e-12)
@@ -297,7 +348,8 @@ def test_attraction_is_that_of_the_deformed_gap():
         gap = contact.heights + separation + grid.Grid(128, 125.0, INPUTS.e_star).displacement(p)
         touching = p.reshape(128, 128) > 0
         edges = sum(np.roll(touching, shift, axis) for shift in (-1, 1) for axis in (0, 1))
-        # sites touch that the contact covers in part only: 0.118 of a site for each edge (attraction.EXCESS)
+        # sites touch that the contact covers in part only: 0.118 of a site for each edge
+        # (attraction.EXCESS)
         weight = np.where(touching, 0.0, 1.0 + (np.pi - 1 + np.log(2)) / 24 * edges)
         cubes = (np.maximum(gap, 0.0) + settings.gap_cutoff_nm) ** -3.0
         exact_sum = -INPUTS.hamaker * (125 / 128) ** 2 / (6 * np.pi) * weight.ravel() @ cubes
@@ -318,16 +370,21 @@ def test_roughness_of_waves_is_exact():
     pixels, length, amplitude = 64, 10.0, 0.3
     k = 2 * np.pi / length
     x = np.arange(pixels) * length / pixels
-    crossed = validity.roughness(amplitude * np.cos(2 * k * x)[:, None] * np.cos(k * x)[None, :], length)
+    crossed = validity.roughness(
+        amplitude * np.cos(2 * k * x)[:, None] * np.cos(k * x)[None, :], length
+    )
     assert crossed.slope == pytest.approx(amplitude * np.sqrt(5) * k / 2, rel=1e-12)
     assert crossed.curvature == pytest.approx(amplitude * 5 * k**2 / 2, rel=1e-12)
     wave = validity.roughness(np.repeat(amplitude * np.cos(k * x)[:, None], pixels, axis=1), length)
-    assert wave.flattening * 91.0 == pytest.approx(exact.wave_full_pressure(amplitude, length, 91.0), rel=1e-12)
+    assert wave.flattening * 91.0 == pytest.approx(
+        exact.wave_full_pressure(amplitude, length, 91.0), rel=1e-12
+    )
 
 
 def test_flags_say_where_the_model_holds():
     flags = run_cycle(INPUTS, coupled(64, 62.5, max_force_nN=500.0), 1).flags
-    # DMT on stiff small summits; softer and with more adhesion, Tabor's parameter rises as E*^(-2/3)
+    # DMT on stiff small summits; softer and with more adhesion, Tabor's parameter rises as
+    # E*^(-2/3)
     soft = ContactInputs(**{**vars(INPUTS), "e_star": INPUTS.e_star / 8})
     softer = run_cycle(soft, coupled(64, 62.5, max_force_nN=500.0), 1).flags
     assert softer["tabor"] / flags["tabor"] == pytest.approx(4.0, rel=1e-9)
@@ -337,28 +394,39 @@ def test_flags_say_where_the_model_holds():
 
 
 def test_stickiness_is_pastewka_and_robbins_criterion_worked_by_hand():
-    # their eq. 10 in its printed form: h' = 0.1, h'' = 0.05 /nm, dr = 0.3 nm, w = 0.4277 J/m2, E* = 91 GPa, so that
-    # l_a = 4.700 pm, d = 8 nm and (h' dr / (2 l_a)) (h' d / 4 dr)^(2/3) = 3.191 * 0.7631 = 2.435: not sticky
+    # their eq. 10 in its printed form: h' = 0.1, h'' = 0.05 /nm, dr = 0.3 nm, w = 0.4277 J/m2, E* =
+    # 91 GPa, so that l_a = 4.700 pm, d = 8 nm and (h' dr / (2 l_a)) (h' d / 4 dr)^(2/3) = 3.191 *
+    # 0.7631 = 2.435: not sticky
     numbers = validity.adhesion_numbers(
-        0.215, coupled(32, 32.0, gap_cutoff_nm=0.2, attraction="clamped"), 91.0, validity.Roughness(0.1, 0.05, 0.0)
+        0.215,
+        coupled(32, 32.0, gap_cutoff_nm=0.2, attraction="clamped"),
+        91.0,
+        validity.Roughness(0.1, 0.05, 0.0),
     )
     assert 1.0292 / numbers["stickiness"] == pytest.approx(2.435, rel=1e-3)
 
 
 @pytest.mark.parametrize(("draw", "pixels"), [(695, 64), (1420, 64), (1332, 128)])
 def test_second_cycle_ends_where_the_first_did_although_clusters_soften_beyond(draw, pixels):
-    # one rim site further a cluster is softer: a step beyond the end would look like one that fell short of it
+    # one rim site further a cluster is softer: a step beyond the end would look like one that fell
+    # short of it
     inputs = draw_inputs(draw)
     settings = ContactSettings(mechanics="coupled", pixels=pixels)
     first = run_cycle(inputs, settings, draw, keep_surface=True)
-    second = run_cycle(inputs, settings, draw, heights=first.heights, contact_at="lowest", keep_surface=True)
+    second = run_cycle(
+        inputs, settings, draw, heights=first.heights, contact_at="lowest", keep_surface=True
+    )
     assert abs(dissipated_energy(second)[0]) < 1e-3 * dissipated_energy(first)[0]
 
 
 @pytest.mark.parametrize(("model", "rms"), [("elastic", 15.0), ("plastic", 15.0), ("elastic", 5.0)])
 def test_attraction_at_single_steps_is_that_of_the_whole_deformed_surface(model, rms):
-    """Steep tips push the surface around them away: without that, the attraction of the roughest is 30 % too large."""
-    inputs = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.4, q0=0.03, hurst=0.75, rms=rms)
+    """Steep tips push the surface around them away: without that, the attraction of the roughest is
+    30 % too large.
+    """
+    inputs = ContactInputs(
+        hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.4, q0=0.03, hurst=0.75, rms=rms
+    )
     settings = ContactSettings(mechanics="coupled", pixels=128, q1_per_nm=0.2, model=model)
     contact = CoupledContact(random_surface(inputs, settings, 3), inputs, settings)
     for separation in contact.touching_separation - rms * np.arange(0.005, 0.4, 0.02):
@@ -367,8 +435,17 @@ def test_attraction_at_single_steps_is_that_of_the_whole_deformed_surface(model,
         pressure = np.zeros(contact.heights.size)
         pressure[contact.sites] = contact.pressure
         moved = grid.Grid(contact.n, contact.length, contact.e_star).displacement(pressure)
-        of_all = (contact.heights, separation, moved, contact.sites, contact.place, contact.pressure)
-        assert contact.attraction(separation) == pytest.approx(contact.adhesion.around(*of_all), rel=0.015)
+        of_all = (
+            contact.heights,
+            separation,
+            moved,
+            contact.sites,
+            contact.place,
+            contact.pressure,
+        )
+        assert contact.attraction(separation) == pytest.approx(
+            contact.adhesion.around(*of_all), rel=0.015
+        )
 
 
 @pytest.mark.parametrize("pixels", [90, 128])
@@ -410,5 +487,9 @@ def test_rows_without_pressure_are_left_out_of_transforms(precision, error):
     sites = np.sort(rng.choice(96 * 40, 300, replace=False)) + 96 * 20
     pressure = rng.random(300).astype(precision)
     exact = whole.displacement(whole.spread(sites, pressure.astype(float)))
-    np.testing.assert_allclose(whole.displacement_by(sites, pressure), exact, atol=error * exact.max())
-    np.testing.assert_allclose(whole.displacement_at(sites, pressure), exact[sites], atol=error * exact.max())
+    np.testing.assert_allclose(
+        whole.displacement_by(sites, pressure), exact, atol=error * exact.max()
+    )
+    np.testing.assert_allclose(
+        whole.displacement_at(sites, pressure), exact[sites], atol=error * exact.max()
+    )

@@ -9,7 +9,9 @@ from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings
 
-MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
+MIDDLE = ContactInputs(
+    hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5
+)
 SMALL = ContactSettings(mechanics="asperity", pixels=128)
 SEPARATIONS = np.arange(45.0, 24.0, -0.1)
 DEEPEST = np.array([SEPARATIONS.size - 1])
@@ -24,7 +26,9 @@ def closed(settings=SMALL, separations=SEPARATIONS, depths=DEEPEST, inputs=MIDDL
 def test_elastic_forces_are_those_of_closing_by_force(mechanics):
     settings = SMALL.model_copy(update={"model": "elastic", "mechanics": mechanics})
     found = closed(settings)
-    cycle = run_cycle(MIDDLE, settings, 3, max_force_nN=float(found.closing[0, -1]), keep_surface=False)
+    cycle = run_cycle(
+        MIDDLE, settings, 3, max_force_nN=float(found.closing[0, -1]), keep_surface=False
+    )
     # the force of an elastic contact depends on the separation alone
     again = closed(settings, np.asarray(cycle.closing.separation_nm[-20:]), np.empty(0, int))
     np.testing.assert_allclose(again.closing[0], cycle.closing.repulsive_nN[-20:], rtol=1e-8)
@@ -53,11 +57,15 @@ def test_openings_on_the_way_change_nothing():
 
 
 def test_finer_steps_converge():
-    """Plastic flow depends on the path; the mean over surfaces at full depth does so by less with smaller steps."""
+    """Plastic flow depends on the path; the mean over surfaces at full depth does so by less with
+    smaller steps.
+    """
     ends = {}
     for step in (0.4, 0.1, 0.025):
         separations = np.arange(45.0, 24.99, -step)
-        ends[step] = np.mean([closed(SMALL, separations, np.empty(0, int), seed=s).closing[0, -1] for s in range(12)])
+        ends[step] = np.mean(
+            [closed(SMALL, separations, np.empty(0, int), seed=s).closing[0, -1] for s in range(12)]
+        )
     assert abs(ends[0.1] / ends[0.025] - 1) < 0.02
     assert abs(ends[0.1] - ends[0.025]) <= abs(ends[0.4] - ends[0.025])
 

@@ -1,4 +1,6 @@
-"""Exact solutions: forces as integrals of their pressures, limits, scaling, and a half-space by FFT beside them."""
+"""Exact solutions: forces as integrals of their pressures, limits, scaling, and a half-space by FFT
+beside them.
+"""
 
 import numpy as np
 import pytest
@@ -12,7 +14,9 @@ SHARES = (0.05, 0.3, 0.5, 0.8, 0.95)
 
 
 def displacement(pressure: np.ndarray, length: float, e_star: float) -> np.ndarray:
-    """Displacement of a periodic half-space of any dimension under a pressure: 2 p(q) / (E* q), mean zero."""
+    """Displacement of a periodic half-space of any dimension under a pressure: 2 p(q) / (E* q),
+    mean zero.
+    """
     axes = [2.0 * np.pi * fft.fftfreq(n, length / n) for n in pressure.shape]
     q = np.sqrt(sum(wave**2 for wave in np.meshgrid(*axes, indexing="ij")))
     green = np.divide(2.0 / e_star, q, out=np.zeros_like(q), where=q > 0)
@@ -20,7 +24,9 @@ def displacement(pressure: np.ndarray, length: float, e_star: float) -> np.ndarr
 
 
 def test_a_sphere_by_hand():
-    """R = 100 nm, indentation 1 nm, E* = 91 GPa: 1213.3 nN, contact radius 10 nm, highest pressure 5.793 GPa."""
+    """R = 100 nm, indentation 1 nm, E* = 91 GPa: 1213.3 nN, contact radius 10 nm, highest pressure
+    5.793 GPa.
+    """
     force = exact.hertz_force(1.0, 100.0, E_STAR)
     assert force == pytest.approx(1213.333, rel=1e-6)
     assert exact.hertz_contact_radius(force, 100.0, E_STAR) == pytest.approx(10.0, rel=1e-12)
@@ -40,17 +46,28 @@ def test_pressures_carry_the_forces():
     """r = a sin t takes the singular edges out of the integrals."""
     force, radius = 700.0, 40.0
     for contact, profile in (
-        (exact.hertz_contact_radius(force, radius, E_STAR), lambda r: exact.hertz_pressure(r, force, radius, E_STAR)),
+        (
+            exact.hertz_contact_radius(force, radius, E_STAR),
+            lambda r: exact.hertz_pressure(r, force, radius, E_STAR),
+        ),
         (12.0, lambda r: exact.punch_pressure(r, force, 12.0)),
     ):
-        ring = lambda t, a=contact, p=profile: p(a * np.sin(t)) * 2 * np.pi * a**2 * np.sin(t) * np.cos(t)  # noqa: E731
-        assert integrate.quad(ring, 0.0, np.pi / 2, epsrel=1e-12)[0] == pytest.approx(force, rel=1e-10)
+
+        def ring(angle, a=contact, pressure=profile):
+            sine = np.sin(angle)
+            return pressure(a * sine) * 2 * np.pi * a**2 * sine * np.cos(angle)
+
+        assert integrate.quad(ring, 0.0, np.pi / 2, epsrel=1e-12)[0] == pytest.approx(
+            force, rel=1e-10
+        )
 
 
 @pytest.mark.parametrize("share", [*SHARES, 1.0])
 def test_the_pressure_of_a_wave_has_its_mean(share):
     mean = exact.wave_mean_pressure(share, **WAVE)
-    assert exact.wave_area_share(mean, **WAVE) == pytest.approx(share, rel=1e-7)  # arcsine loses half the digits at 1
+    assert exact.wave_area_share(mean, **WAVE) == pytest.approx(
+        share, rel=1e-7
+    )  # arcsine loses half the digits at 1
     edge = np.sin(0.5 * np.pi * share)
 
     def strip(t):  # sin(pi x / wavelength) = sin(pi a / wavelength) sin(t)
@@ -64,18 +81,21 @@ def test_the_pressure_of_a_wave_has_its_mean(share):
 
 @pytest.mark.parametrize("share", SHARES)
 def test_a_wave_solves_the_half_space(share):
-    """The stated pressure, by the periodic Green's function: gap 0 inside, positive outside, as stated.
+    """The stated pressure, by the periodic Green's function: gap 0 inside, positive outside, as
+    stated.
 
-    A pressure that ends like a square root is integrated on a grid with an error of its spacing to the 3/2, whose
-    factor depends on where the edge lies between two sites.
-    """
+    A pressure that ends like a square root is integrated on a grid with an error of its spacing to
+    the 3/2, whose factor depends on where the edge lies between two sites."""
     mean = exact.wave_mean_pressure(share, **WAVE)
     for sites in (1024, 4096):
         x = (np.arange(sites) + 0.5) * WAVE["wavelength"] / sites
         bent = displacement(exact.wave_pressure(x, mean, **WAVE), WAVE["wavelength"], E_STAR)
         undeformed = -WAVE["amplitude"] * np.cos(2 * np.pi * x / WAVE["wavelength"])
         gap = exact.wave_separation(mean, **WAVE) + undeformed + bent
-        assert np.abs(gap - exact.wave_gap(x, mean, **WAVE)).max() / WAVE["amplitude"] < 10 * sites**-1.5
+        assert (
+            np.abs(gap - exact.wave_gap(x, mean, **WAVE)).max() / WAVE["amplitude"]
+            < 10 * sites**-1.5
+        )
         inside = np.abs(np.sin(np.pi * x / WAVE["wavelength"])) < np.sin(0.5 * np.pi * share)
         assert np.all(exact.wave_gap(x, mean, **WAVE)[inside] == 0.0)
         assert np.all(exact.wave_gap(x, mean, **WAVE)[~inside] > 0.0)
@@ -85,7 +105,10 @@ def test_a_wave_solves_the_half_space(share):
 def test_the_mean_gap_of_a_wave_is_its_separation(share):
     mean = exact.wave_mean_pressure(share, **WAVE)
     half = 0.5 * WAVE["wavelength"]
-    gap = integrate.quad(exact.wave_gap, share * half, half, (mean, *WAVE.values()), epsrel=1e-11)[0] / half
+    gap = (
+        integrate.quad(exact.wave_gap, share * half, half, (mean, *WAVE.values()), epsrel=1e-11)[0]
+        / half
+    )
     assert gap == pytest.approx(exact.wave_separation(mean, **WAVE), rel=1e-9)
 
 
@@ -98,7 +121,8 @@ def test_limits_of_a_wave():
     x = np.linspace(0.0, 50.0, 11)
     expected = 1.5 * full + full * np.cos(2 * np.pi * x / 50.0)
     assert exact.wave_pressure(x, 1.5 * full, **WAVE) == pytest.approx(expected)
-    # a light line contact is Hertz's: a^2 = 4 P R / (pi E*), P per length, R = wavelength^2 / (4 pi^2 amplitude)
+    # a light line contact is Hertz's: a^2 = 4 P R / (pi E*), P per length, R = wavelength^2 / (4
+    # pi^2 amplitude)
     light = 1e-6 * full
     radius = 50.0**2 / (4 * np.pi**2 * 3.0)
     half_width = np.sqrt(4 * light * 50.0 * radius / (np.pi * E_STAR))
@@ -106,23 +130,31 @@ def test_limits_of_a_wave():
 
 
 def test_a_punch_and_a_sphere_solve_the_half_space():
-    """In a periodic cell of 16 contact radii, whose images bend the gap by some (a/L)^3; the grid costs more."""
+    """In a periodic cell of 16 contact radii, whose images bend the gap by some (a/L)^3; the grid
+    costs more.
+    """
     n, length, contact, radius = 512, 160.0, 10.0, 100.0
     x = (np.arange(n) - n // 2) * length / n
     r = np.hypot(x[:, None], x[None, :])
     force = exact.hertz_force(contact**2 / radius, radius, E_STAR)
-    sphere = r**2 / (2 * radius) + displacement(exact.hertz_pressure(r, force, radius, E_STAR), length, E_STAR)
+    sphere = r**2 / (2 * radius) + displacement(
+        exact.hertz_pressure(r, force, radius, E_STAR), length, E_STAR
+    )
     sphere -= sphere[n // 2, n // 2]
     indentation = contact**2 / radius
     assert np.abs(sphere[r < contact]).max() < 3e-3 * indentation
     assert sphere[r > 1.1 * contact].min() > 0
 
     # at the centre of an isolated contact, u = (2/E*) int p dr
-    at_centre = integrate.quad(exact.hertz_pressure, 0.0, contact, (force, radius, E_STAR), epsrel=1e-12)[0]
+    at_centre = integrate.quad(
+        exact.hertz_pressure, 0.0, contact, (force, radius, E_STAR), epsrel=1e-12
+    )[0]
     assert 2 / E_STAR * at_centre == pytest.approx(indentation, rel=1e-10)
     force = exact.punch_force(1.0, contact, E_STAR)
     at_centre = integrate.quad(
-        lambda t: exact.punch_pressure(contact * np.sin(t), force, contact) * contact * np.cos(t), 0, np.pi / 2
+        lambda t: exact.punch_pressure(contact * np.sin(t), force, contact) * contact * np.cos(t),
+        0,
+        np.pi / 2,
     )[0]
     assert 2 / E_STAR * at_centre == pytest.approx(1.0, rel=1e-10)
 
@@ -134,13 +166,25 @@ def test_the_stiffness_of_a_sphere_is_a_punch():
 
 
 def test_lengths_and_moduli_scale():
-    """Twice all lengths: forces four times, pressures the same. Twice E*: forces and pressures twice."""
-    assert exact.hertz_force(2.0, 200.0, E_STAR) == pytest.approx(4 * exact.hertz_force(1.0, 100.0, E_STAR))
-    assert exact.punch_force(2.0, 20.0, 2 * E_STAR) == pytest.approx(8 * exact.punch_force(1.0, 10.0, E_STAR))
+    """Twice all lengths: forces four times, pressures the same. Twice E*: forces and pressures
+    twice.
+    """
+    assert exact.hertz_force(2.0, 200.0, E_STAR) == pytest.approx(
+        4 * exact.hertz_force(1.0, 100.0, E_STAR)
+    )
+    assert exact.punch_force(2.0, 20.0, 2 * E_STAR) == pytest.approx(
+        8 * exact.punch_force(1.0, 10.0, E_STAR)
+    )
     large = {"amplitude": 6.0, "wavelength": 100.0, "e_star": 2 * E_STAR}
-    assert exact.wave_separation(2.0, **large) == pytest.approx(2 * exact.wave_separation(1.0, **WAVE))
-    assert exact.wave_gap(40.0, 2.0, **large) == pytest.approx(2 * exact.wave_gap(20.0, 1.0, **WAVE))
-    assert exact.wave_pressure(4.0, 2.0, **large) == pytest.approx(2 * exact.wave_pressure(2.0, 1.0, **WAVE))
+    assert exact.wave_separation(2.0, **large) == pytest.approx(
+        2 * exact.wave_separation(1.0, **WAVE)
+    )
+    assert exact.wave_gap(40.0, 2.0, **large) == pytest.approx(
+        2 * exact.wave_gap(20.0, 1.0, **WAVE)
+    )
+    assert exact.wave_pressure(4.0, 2.0, **large) == pytest.approx(
+        2 * exact.wave_pressure(2.0, 1.0, **WAVE)
+    )
     for area in (exact.bisinusoid_area_at_first_touch, exact.bisinusoid_area_near_full_contact):
         assert area(2.0, **large) == pytest.approx(area(1.0, **WAVE))
 
@@ -155,7 +199,8 @@ def test_the_first_touch_of_two_crossed_waves_is_hertz():
 
 
 def test_the_last_gaps_of_two_crossed_waves_close_like_pennies():
-    """The stress intensity at a gap's edge vanishes: int of the full-contact pressure r / sqrt(a^2 - r^2) is zero.
+    """The stress intensity at a gap's edge vanishes: int of the full-contact pressure r / sqrt(a^2
+    - r^2) is zero.
 
     Close to full contact, where the trough of the pressure is a parabola.
     """

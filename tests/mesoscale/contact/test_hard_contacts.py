@@ -1,8 +1,8 @@
 """Contacts that are hard to solve: few sites or all, jumps, extreme stiffness, hardness and grids.
 
-Each is closed in few large steps by both ways of solving, a matrix of the known sites and transforms of the whole grid.
-Both must settle, meet the conditions of contact at every site, and agree.
-"""
+Each is closed in few large steps by both ways of solving, a matrix of the known sites and
+transforms of the whole grid. Both must settle, meet the conditions of contact at every site, and
+agree."""
 
 from dataclasses import replace
 
@@ -19,8 +19,12 @@ N = 48
 ROW, COL = np.mgrid[:N, :N]
 ROUGH = synthesize(N, 50.0, 0.2, 0.75, 2.0, 4)
 NOISE = np.random.default_rng(1).standard_normal((N, N))
-SOFT_FILM = [[{"young_GPa": 0.1, "poisson": 0.3, "thickness_nm": 2.0}, {"young_GPa": 100, "poisson": 0.3}]]
-HARD_FILM = [[{"young_GPa": 1e5, "poisson": 0.3, "thickness_nm": 2.0}, {"young_GPa": 100, "poisson": 0.3}]]
+SOFT_FILM = [
+    [{"young_GPa": 0.1, "poisson": 0.3, "thickness_nm": 2.0}, {"young_GPa": 100, "poisson": 0.3}]
+]
+HARD_FILM = [
+    [{"young_GPa": 1e5, "poisson": 0.3, "thickness_nm": 2.0}, {"young_GPa": 100, "poisson": 0.3}]
+]
 
 
 def spike(*sites: tuple[int, int]) -> np.ndarray:
@@ -44,10 +48,20 @@ CASES = {
     "two sites across the edge": (spike((0, 7), (N - 1, 7)), (0.5, 2.0), {}, INPUTS),
     "a comb": (np.where(COL % 2, 3.0, 0.0) + 1e-3 * NOISE, (0.05, 0.2), {}, INPUTS),
     "a chessboard": (np.where((ROW + COL) % 2, 3.0, 0.0) + 1e-3 * NOISE, (0.05, 0.2), {}, INPUTS),
-    "a step of half the cell": (np.where(ROW < N // 2, 2.0, 0.0) + 1e-2 * NOISE, (0.05, 0.3), {}, INPUTS),
+    "a step of half the cell": (
+        np.where(ROW < N // 2, 2.0, 0.0) + 1e-2 * NOISE,
+        (0.05, 0.3),
+        {},
+        INPUTS,
+    ),
     "a wall one site wide": (np.where(ROW == 3, 0.0, 5.0), (0.2, 1.0), {}, INPUTS),
     "a saw tooth": (0.2 * ROW + 1e-3 * NOISE, (0.5, 1.2), {}, INPUTS),
-    "one long wave": (np.cos(2 * np.pi * ROW / N) * np.cos(2 * np.pi * COL / N), (0.5, 1.5), {}, INPUTS),
+    "one long wave": (
+        np.cos(2 * np.pi * ROW / N) * np.cos(2 * np.pi * COL / N),
+        (0.5, 1.5),
+        {},
+        INPUTS,
+    ),
     "nearly full contact": (0.05 * np.cos(2 * np.pi * ROW / N), (1.2, 1.40), {}, INPUTS),
     "a plane but for rounding": (1e-9 * NOISE, (0.5, 1.5), {}, INPUTS),
     "white noise": (NOISE, (1.0, 2.5), {}, INPUTS),
@@ -72,7 +86,13 @@ CASES = {
 def test_both_ways_settle_and_agree(case):
     heights, steps, changes, inputs = case
     settings = ContactSettings(
-        **{"mechanics": "coupled", "model": "elastic", "pixels": len(heights), "length_nm": 50.0, **changes}
+        **{
+            "mechanics": "coupled",
+            "model": "elastic",
+            "pixels": len(heights),
+            "length_nm": 50.0,
+            **changes,
+        }
     )
     few, whole = (CoupledContact(heights.copy(), inputs, settings) for _ in range(2))
     whole.dense = 0
@@ -87,10 +107,16 @@ def test_both_ways_settle_and_agree(case):
 
 
 def unmet(contact: CoupledContact) -> float:
-    """Residual of the conditions of contact at all sites, by a transform of its own, over the largest pressure."""
+    """Residual of the conditions of contact at all sites, by a transform of its own, over the
+    largest pressure.
+    """
     pressure = np.zeros(contact.heights.size)
-    limit = np.full(pressure.size, contact.hardness.pressure(contact.site_area) if contact.bounded else np.inf)
+    limit = np.full(
+        pressure.size, contact.hardness.pressure(contact.site_area) if contact.bounded else np.inf
+    )
     pressure[contact.sites], limit[contact.sites] = contact.pressure, contact.limit
     half_space = grid.Grid(contact.n, contact.length, contact.e_star, contact.bodies)
     gap = contact.heights + contact.separation
-    return dense.residual(gap, pressure, half_space.displacement(pressure), limit, contact.stiffness, pressure.size)
+    return dense.residual(
+        gap, pressure, half_space.displacement(pressure), limit, contact.stiffness, pressure.size
+    )

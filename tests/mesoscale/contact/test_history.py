@@ -1,4 +1,6 @@
-"""Repeated closing and creep: shakedown, relaxation laws, volume, and no trace where they are not asked for."""
+"""Repeated closing and creep: shakedown, relaxation laws, volume, and no trace where they are not
+asked for.
+"""
 
 import itertools
 
@@ -25,12 +27,17 @@ def test_without_creep_the_second_cycle_is_nearly_elastic():
     first, second, third = follow(MIDDLE, CONTACT, HistorySettings(cycles=3), seed=1)
 
     def lost(held):
-        work = [np.trapezoid(b.repulsive_nN, b.separation_nm) for b in (held.cycle.closing, held.cycle.opening)]
+        work = [
+            np.trapezoid(b.repulsive_nN, b.separation_nm)
+            for b in (held.cycle.closing, held.cycle.opening)
+        ]
         return -sum(work)
 
     assert lost(second) < 0.1 * lost(first)
     assert lost(third) < 0.01 * lost(first)
-    assert abs(third.cycle.closing.separation_nm[-1] - second.cycle.closing.separation_nm[-1]) < 0.02
+    assert (
+        abs(third.cycle.closing.separation_nm[-1] - second.cycle.closing.separation_nm[-1]) < 0.02
+    )
     assert not first.hold
 
 
@@ -48,7 +55,8 @@ def test_force_is_held_while_the_flat_sinks_and_the_contact_grows(crept):
 
 
 def test_mean_pressure_follows_the_creep_law(crept):
-    # yield-limited contact: the area grows as 1/H; not quite, because H itself falls with the area of an asperity
+    # yield-limited contact: the area grows as 1/H; not quite, because H itself falls with the area
+    # of an asperity
     rows = crept[0].hold
     grown = rows[-1].sites / rows[0].sites
     expected = 1 / hardness_factor(CREEP.dwell_s, CREEP)
@@ -78,8 +86,16 @@ def test_logarithmic_creep_has_its_strength_per_e_fold():
 
 
 @pytest.mark.parametrize(
-    ("cycles", "model", "word"), [(0, "plastic", "history.cycles = 0"), (1, "elastic", "contact.model = elastic")]
+    ("cycles", "model", "word"),
+    [(0, "plastic", "history.cycles = 0"), (1, "elastic", "contact.model = elastic")],
 )
 def test_no_history_is_refused(cycles, model, word):
     with pytest.raises(InputError, match=word):
-        next(follow(MIDDLE, ContactSettings(mechanics="asperity", model=model), HistorySettings(cycles=cycles), seed=1))
+        next(
+            follow(
+                MIDDLE,
+                ContactSettings(mechanics="asperity", model=model),
+                HistorySettings(cycles=cycles),
+                seed=1,
+            )
+        )

@@ -1,4 +1,6 @@
-"""Liquid of humid air in a contact: Kelvin and Laplace, flats, spheres, both limits of opening, extreme cases."""
+"""Liquid of humid air in a contact: Kelvin and Laplace, flats, spheres, both limits of opening,
+extreme cases.
+"""
 
 from dataclasses import replace
 
@@ -20,14 +22,21 @@ from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import AirSettings
 from mesoscale.studies.contact_stability import violations
 
-BARE = ContactInputs(hamaker=0.0, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0)
+BARE = ContactInputs(
+    hamaker=0.0, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0
+)
 HALF = AirSettings(humidity=0.5, temperature_C=25.0)
 GAMMA = 71.9722e-3  # of water at 25 C, nN/nm
 
 
 def contact(heights, air, inputs=BARE, length=64.0, mechanics="asperity", **changes):
     settings = ContactSettings(
-        mechanics=mechanics, pixels=len(heights), length_nm=length, model="elastic", air=air, **changes
+        mechanics=mechanics,
+        pixels=len(heights),
+        length_nm=length,
+        model="elastic",
+        air=air,
+        **changes,
     )
     return contact_on(heights, inputs, settings)
 
@@ -63,7 +72,9 @@ AIRS = {
     "water": HALF,
     "films": HALF.model_copy(update={"film_nm": 0.4}),
     "angles": HALF.model_copy(update={"contact_angles_deg": (60.0, 20.0)}),
-    "one wall repels": HALF.model_copy(update={"contact_angles_deg": (30.0, 110.0), "humidity": 0.9}),
+    "one wall repels": HALF.model_copy(
+        update={"contact_angles_deg": (30.0, 110.0), "humidity": 0.9}
+    ),
     "ethanol": AirSettings(humidity=0.7, surface_tension_mN_m=22.0, molar_volume_cm3=58.4),
 }
 
@@ -86,12 +97,16 @@ def test_flats_are_pulled_with_laplaces_pressure_until_the_liquid_ends(name, mec
 def test_dispersion_is_weaker_across_the_liquid():
     inputs, zero = replace(BARE, hamaker=0.2), np.zeros((32, 32))
     wet, dry, bare = contact(zero, HALF, inputs), contact(zero, None, inputs), contact(zero, HALF)
-    assert wet.attraction(1.0) == pytest.approx(0.3 * dry.attraction(1.0) + bare.attraction(1.0), rel=1e-12)
+    assert wet.attraction(1.0) == pytest.approx(
+        0.3 * dry.attraction(1.0) + bare.attraction(1.0), rel=1e-12
+    )
     assert wet.attraction(2.0) == dry.attraction(2.0)
 
 
 def lifshitz(first, medium, second) -> float:
-    """Hamaker constant (J) without retardation at 25 C (Israelachvili 2011, eq. 13.14), of dielectric functions."""
+    """Hamaker constant (J) without retardation at 25 C (Israelachvili 2011, eq. 13.14), of
+    dielectric functions.
+    """
     quantum = 1.380649e-23 * 298.15
     frequencies = 2.0 * np.pi * quantum / 1.054571817e-34 * np.arange(3000)
     a, m, b = (of(frequencies) for of in (first, medium, second))
@@ -102,7 +117,9 @@ def lifshitz(first, medium, second) -> float:
 
 
 def oscillators(static: float, *strengths_and_frequencies):
-    """Dielectric function at imaginary frequencies (rad/s) by its oscillators (Ninham and Parsegian)."""
+    """Dielectric function at imaginary frequencies (rad/s) by its oscillators (Ninham and
+    Parsegian).
+    """
 
     def epsilon(frequency):
         value = 1.0 + sum(c / (1.0 + (frequency / at) ** 2) for c, at in strengths_and_frequencies)
@@ -112,11 +129,18 @@ def oscillators(static: float, *strengths_and_frequencies):
 
 
 def test_the_share_of_dispersion_is_that_of_lifshitz_theory():
-    """Spectra of Hough and White (1980) and Bergstrom (1997), in round numbers: ratios are good to some 0.1."""
+    """Spectra of Hough and White (1980) and Bergstrom (1997), in round numbers: ratios are good to
+    some 0.1.
+    """
     air, water = oscillators(1.0), oscillators(80.0, (0.755, 1.90e16), (1.4, 2e14))
     silica = oscillators(3.82, (1.098, 2.03e16), (0.83, 0.87e14))
-    nitride, titania = oscillators(7.4, (2.98, 1.43e16), (3.4, 1.6e14)), oscillators(30.0, (3.8, 0.95e16), (20, 7e13))
-    assert lifshitz(silica, air, silica) == pytest.approx(6.5e-20, rel=0.05)  # Israelachvili, table 13.3
+    nitride, titania = (
+        oscillators(7.4, (2.98, 1.43e16), (3.4, 1.6e14)),
+        oscillators(30.0, (3.8, 0.95e16), (20, 7e13)),
+    )
+    assert lifshitz(silica, air, silica) == pytest.approx(
+        6.5e-20, rel=0.05
+    )  # Israelachvili, table 13.3
     share = {
         name: lifshitz(a, water, b) / lifshitz(a, air, b)
         for name, (a, b) in {"silica": (silica, silica), "default": (nitride, titania)}.items()
@@ -132,29 +156,40 @@ def test_a_sphere_is_pulled_off_by_4_pi_R_gamma_cos_theta(mechanics, angles):
     pulls = []
     for pixels in (64, 128):
         settings = ContactSettings(
-            mechanics=mechanics, pixels=pixels, length_nm=64.0, model="elastic", max_force_nN=10.0, air=air
+            mechanics=mechanics,
+            pixels=pixels,
+            length_nm=64.0,
+            model="elastic",
+            max_force_nN=10.0,
+            air=air,
         )
         cycle = run_cycle(BARE, settings, 1, heights=bowl(pixels, 64.0, 100.0), contact_at="lowest")
         assert cycle.converged
         pulls.append(pull_off(cycle.opening))
-    # r_K is 0.76 nm: the parabola is the sphere there; Tabor's parameter 0.04 lowers the adhesive one by 1 %
-    assert pulls[1] == pytest.approx(4 * np.pi * 100.0 * GAMMA * np.cos(np.radians(angles[0])), rel=0.02)
+    # r_K is 0.76 nm: the parabola is the sphere there; Tabor's parameter 0.04 lowers the adhesive
+    # one by 1 %
+    assert pulls[1] == pytest.approx(
+        4 * np.pi * 100.0 * GAMMA * np.cos(np.radians(angles[0])), rel=0.02
+    )
     assert pulls[0] == pytest.approx(pulls[1], rel=0.02)
 
 
 def young_laplace(radius: float) -> float:
-    """Pull of a meniscus that wets a touching sphere and a flat over 4 pi R gamma; radius in units of r_K.
+    """Pull of a meniscus that wets a touching sphere and a flat over 4 pi R gamma; radius in units
+    of r_K.
 
-    Its meridian turns from the flat (angle pi) to the sphere at the filling angle, with the curvature 1/r_K more than
-    that around the axis (Orr, Scriven and Rivas 1975, doi:10.1017/S0022112075000572).
-    """
+    Its meridian turns from the flat (angle pi) to the sphere at the filling angle, with the
+    curvature 1/r_K more than that around the axis (Orr, Scriven and Rivas 1975,
+    doi:10.1017/S0022112075000572)."""
 
     def meridian(start: float, filling: float):
         def slope(angle, point):
             curvature = 1.0 + np.sin(angle) / point[0]
             return [-np.cos(angle) / curvature, -np.sin(angle) / curvature]
 
-        return solve_ivp(slope, (np.pi, filling), [start, 0.0], rtol=1e-10, atol=1e-12, dense_output=True)
+        return solve_ivp(
+            slope, (np.pi, filling), [start, 0.0], rtol=1e-10, atol=1e-12, dense_output=True
+        )
 
     def miss(values):
         r, z = meridian(*values).y[:, -1]
@@ -167,12 +202,16 @@ def young_laplace(radius: float) -> float:
 
 @pytest.mark.parametrize("radius", [10.0, 30.0, 100.0, 1000.0])
 def test_a_small_sphere_is_pulled_less_as_the_exact_meniscus_is(radius):
-    """The law has 1 - r_K / R on the sphere itself. It leaves out the tension around the neck, 4.2 % at most."""
+    """The law has 1 - r_K / R on the sphere itself. It leaves out the tension around the neck, 4.2
+    % at most.
+    """
     air, unit = HALF, menisci_of(HALF).reach_nm / 2.0
     pixels, length = 256, 5.0 * np.sqrt(radius) * unit
     away = 2.0 * radius * bowl(pixels, length, radius)
     sphere = radius * unit - np.sqrt(np.maximum((radius * unit) ** 2 - away, 0.0))
-    ours = -contact(sphere, air, length=length).attraction(0.0) / (4 * np.pi * radius * unit * GAMMA)
+    ours = -contact(sphere, air, length=length).attraction(0.0) / (
+        4 * np.pi * radius * unit * GAMMA
+    )
     assert ours == pytest.approx(1.0 - 1.0 / radius, rel=5e-3)
     exact = young_laplace(radius)
     assert 1.0 < (1.0 - 1.0 / radius) / exact < 1.043
@@ -199,11 +238,18 @@ def test_menisci_that_keep_their_volume_pull_farther(mechanics):
     volume = np.pi * radius * menisci.reach_nm**2
     for gap in (0.01, 0.5, 1.5, 5.0):
         # Israelachvili 2011, eq. 17.38: 4 pi R gamma cos (1 - D / sqrt(V / pi R + D^2))
-        wanted = 4 * np.pi * radius * GAMMA * (1.0 - gap / np.sqrt(volume / (np.pi * radius) + gap**2))
+        wanted = (
+            4 * np.pi * radius * GAMMA * (1.0 - gap / np.sqrt(volume / (np.pi * radius) + gap**2))
+        )
         assert -sphere.attraction(gap) == pytest.approx(wanted, rel=0.01)
     flats = contact(np.zeros((32, 32)), air, mechanics=mechanics)
     flats.hold_liquid(1.0)
-    for gap in (1.0, 1.2, 2.0, 8.0):  # as much liquid, thinner; its suction is that in equilibrium at most
+    for gap in (
+        1.0,
+        1.2,
+        2.0,
+        8.0,
+    ):  # as much liquid, thinner; its suction is that in equilibrium at most
         pull = min(menisci.tension / gap, menisci.pull_GPa) * 1.0 / gap
         assert -flats.attraction(gap) == pytest.approx(pull * 64.0**2, rel=1e-9)
     flats.hold_liquid(None)
@@ -211,7 +257,13 @@ def test_menisci_that_keep_their_volume_pull_farther(mechanics):
 
 
 def rough(mechanics="coupled", pixels=128, **changes) -> tuple[ContactInputs, ContactSettings]:
-    given = {"gap_cutoff_nm": 0.3, "length_nm": 250.0, "max_force_nN": 300.0, "q1_per_nm": 0.8, **changes}
+    given = {
+        "gap_cutoff_nm": 0.3,
+        "length_nm": 250.0,
+        "max_force_nN": 300.0,
+        "q1_per_nm": 0.8,
+        **changes,
+    }
     return replace(BARE, hamaker=0.2, h_macro=8.0, h_prime=0.0), ContactSettings(
         mechanics=mechanics, pixels=pixels, **given
     )
@@ -246,7 +298,9 @@ def test_a_rough_contact_hardly_knows_the_grid():
 def test_coupled_and_adhesive_contacts_agree_where_attraction_hardly_deforms():
     pulls = {}
     for mechanics in ("coupled", "adhesive"):
-        inputs, settings = rough(mechanics, 64, model="elastic", air=AirSettings(humidity=0.5), gap_cutoff_nm=1.0)
+        inputs, settings = rough(
+            mechanics, 64, model="elastic", air=AirSettings(humidity=0.5), gap_cutoff_nm=1.0
+        )
         settings = settings.model_copy(update={"length_nm": 62.5, "max_force_nN": 50.0})
         cycle = run_cycle(replace(inputs, e_star=2e3, hamaker=0.0, rms=1.0), settings, 1)
         assert cycle.converged
@@ -257,9 +311,15 @@ def test_coupled_and_adhesive_contacts_agree_where_attraction_hardly_deforms():
 @pytest.mark.parametrize("humidity", [0.7, 0.9])
 def test_liquid_far_from_contacts_counts_undeformed(monkeypatch, humidity):
     pulls = {}
-    for share in (0.0, CoupledContact.NEAR_LIQUID, 1.0):  # of the sites near liquid that count with displacements
+    for share in (
+        0.0,
+        CoupledContact.NEAR_LIQUID,
+        1.0,
+    ):  # of the sites near liquid that count with displacements
         monkeypatch.setattr(CoupledContact, "NEAR_LIQUID", share)
-        inputs, settings = rough(air=AirSettings(humidity=humidity), max_force_nN=500.0, gap_cutoff_nm=0.165)
+        inputs, settings = rough(
+            air=AirSettings(humidity=humidity), max_force_nN=500.0, gap_cutoff_nm=0.165
+        )
         pulls[share] = run_cycle(inputs, settings, 1).closing.attractive_nN
     ours, exact = pulls[0.1], pulls[1.0]
     assert ours == pytest.approx(exact, rel=0.005)
@@ -272,7 +332,9 @@ def test_a_flooded_pad_is_two_flats(mechanics):
     inputs, settings = rough(mechanics, air=AirSettings(humidity=0.98))
     menisci = menisci_of(settings.air)
     surface = contact_on(random_surface(inputs, settings, 1), inputs, settings)
-    dry = contact_on(random_surface(inputs, settings, 1), inputs, settings.model_copy(update={"air": None}))
+    dry = contact_on(
+        random_surface(inputs, settings, 1), inputs, settings.model_copy(update={"air": None})
+    )
     flooded = -surface.attraction(surface.touching_separation + 1.0)
     assert flooded > 0.99 * menisci.pull_GPa * 250.0**2
     away = menisci.reach_nm + 20.0  # above the highest and the deepest site
@@ -333,8 +395,13 @@ def test_extreme_cases_of_adhesive_contacts_settle(name):
     inputs, settings = rough("adhesive", 64, length_nm=62.5, max_force_nN=50.0, model="elastic")
     settings = ContactSettings(**{**dict(settings), "air": {"humidity": 0.5, **EXTREMES[name]}})
     cycle = run_cycle(inputs, settings, 1)
-    # dispersion across air beyond Laplace's pressure rises where the liquid ends: no minimum, and the cycle says so
-    flagged = [f"{cycle.flags['unconverged_steps']} steps did not settle"] if name == "wide and shallow" else []
+    # dispersion across air beyond Laplace's pressure rises where the liquid ends: no minimum, and
+    # the cycle says so
+    flagged = (
+        [f"{cycle.flags['unconverged_steps']} steps did not settle"]
+        if name == "wide and shallow"
+        else []
+    )
     assert violations(cycle, inputs, settings) == flagged
     assert cycle.converged == (not flagged)
 
@@ -344,14 +411,24 @@ def test_liquid_counts_in_tabors_parameter_and_the_stickiness():
     surface = validity.Roughness(0.2, 0.05, 0.01)
     wet, dry, bare = (
         validity.adhesion_numbers(hamaker, chosen, 91.0, surface)
-        for hamaker, chosen in ((0.2, settings), (0.2, settings.model_copy(update={"air": None})), (0.0, settings))
+        for hamaker, chosen in (
+            (0.2, settings),
+            (0.2, settings.model_copy(update={"air": None})),
+            (0.0, settings),
+        )
     )
     reach = menisci_of(HALF).reach_nm
-    assert bare["tabor"] == pytest.approx(np.cbrt(2 / 0.05 * (2 * GAMMA) ** 2 / (91.0**2 * reach**3)), rel=1e-4)
-    assert wet["stickiness"] == pytest.approx(0.3 * dry["stickiness"] + bare["stickiness"], rel=1e-12)
+    assert bare["tabor"] == pytest.approx(
+        np.cbrt(2 / 0.05 * (2 * GAMMA) ** 2 / (91.0**2 * reach**3)), rel=1e-4
+    )
+    assert wet["stickiness"] == pytest.approx(
+        0.3 * dry["stickiness"] + bare["stickiness"], rel=1e-12
+    )
     cycle = run_cycle(inputs, settings, 1)
     assert 0.0 < cycle.flags["filled_share"] < 0.2
-    assert "filled_share" not in run_cycle(inputs, settings.model_copy(update={"air": None}), 1).flags
+    assert (
+        "filled_share" not in run_cycle(inputs, settings.model_copy(update={"air": None}), 1).flags
+    )
 
 
 def test_humidity_is_an_uncertain_input():
@@ -366,7 +443,10 @@ def test_humidity_is_an_uncertain_input():
     [
         ({"humidity": 1.0}, "air.humidity = 1.0: Input should be less than 1"),
         ({"humidity": -0.1}, "air.humidity = -0.1: Input should be greater than or equal to 0"),
-        ({"contact_angles_deg": (0.0, 181.0)}, "181 is no contact angle; accepted are 0 to 180 degrees"),
+        (
+            {"contact_angles_deg": (0.0, 181.0)},
+            "181 is no contact angle; accepted are 0 to 180 degrees",
+        ),
         ({"surface_tension_mN_m": 22.0}, "surface_tension_mN_m and molar_volume_cm3 go together"),
     ],
 )

@@ -9,7 +9,9 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import NOMINAL_SEED
 
-INPUTS = ContactInputs(hamaker=0.2, e_star=91.0, h_macro=2.0, h_prime=8.0, q0=0.025, hurst=0.75, rms=8.5)
+INPUTS = ContactInputs(
+    hamaker=0.2, e_star=91.0, h_macro=2.0, h_prime=8.0, q0=0.025, hurst=0.75, rms=8.5
+)
 
 
 def _spots(pixels, model):
@@ -24,13 +26,17 @@ def test_an_elastic_contact_is_where_the_flat_cuts_the_surface(pixels):
     spots, cycle = _spots(pixels, "elastic")
     for separation, share in zip(spots.separation_nm, spots.cut_share, strict=True):
         step = int(np.flatnonzero(cycle.closing.separation_nm == separation)[0])
-        assert share == pytest.approx(cycle.closing.contact_area_nm2[step] / cycle.cell_area_nm2, rel=1e-12)
+        assert share == pytest.approx(
+            cycle.closing.contact_area_nm2[step] / cycle.cell_area_nm2, rel=1e-12
+        )
 
 
 def test_a_plastic_contact_differs_by_what_flows():
     spots, cycle = _spots(128, "plastic")
     step = int(np.flatnonzero(cycle.closing.separation_nm == spots.separation_nm[-1])[0])
-    assert spots.cut_share[-1] == pytest.approx(cycle.closing.contact_area_nm2[step] / cycle.cell_area_nm2, rel=0.1)
+    assert spots.cut_share[-1] == pytest.approx(
+        cycle.closing.contact_area_nm2[step] / cycle.cell_area_nm2, rel=0.1
+    )
 
 
 def test_pictures_are_small_and_lose_no_spot():

@@ -32,11 +32,15 @@ def slope(rms):
     return float(np.sqrt(np.sum(power * (wave[:, None] ** 2 + wave**2))))
 
 
-@pytest.mark.parametrize(("wanted", "factor"), [(0.2 * 2**0.5, 0.75), (0.4, 1.0), (0.4 * 2**0.5, 1.25)])
+@pytest.mark.parametrize(
+    ("wanted", "factor"), [(0.2 * 2**0.5, 0.75), (0.4, 1.0), (0.4 * 2**0.5, 1.25)]
+)
 def test_hardness_is_that_at_the_slope_of_the_surface(wanted, factor):
     table = inputs(wanted / slope(1.0))  # slopes are proportional to heights
     row = next(row for row in at_slope(table, ENTRIES, CONTACT).rows if row.name == "h_prime")
-    assert (row.distribution.a, row.distribution.b) == pytest.approx((4 * factor, 12 * factor), rel=1e-6)
+    assert (row.distribution.a, row.distribution.b) == pytest.approx(
+        (4 * factor, 12 * factor), rel=1e-6
+    )
     assert row.source == f"hardness/fit.json, times {factor:.2f} at RMS slope {wanted:.2f}"
 
 
@@ -46,5 +50,8 @@ def test_inputs_that_are_stated_stay():
 
 @pytest.mark.parametrize("wanted", [0.19, 0.81])
 def test_a_slope_outside_the_runs_is_refused_in_one_line(wanted):
-    with pytest.raises(InputError, match=r"hardness/fit.json: the surface has an RMS slope of .* from 0.2 to 0.8; set"):
+    with pytest.raises(
+        InputError,
+        match=r"hardness/fit.json: the surface has an RMS slope of .* from 0.2 to 0.8; set",
+    ):
         at_slope(inputs(wanted / slope(1.0)), ENTRIES, CONTACT)

@@ -16,12 +16,16 @@ from mesoscale.topography.height_synthesis import Z
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable, slope_from_hurst
 from tests.mesoscale.topography.plain_spectrum import power_spectrum
 
-INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.05, hurst=0.75, rms=4.0)
+INPUTS = ContactInputs(
+    hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.05, hurst=0.75, rms=4.0
+)
 LENGTH, PIXELS = 500.0, 256
 
 
 def settings(**surface):
-    return ContactSettings.model_validate({"pixels": PIXELS, "length_nm": LENGTH, "surface": surface})
+    return ContactSettings.model_validate(
+        {"pixels": PIXELS, "length_nm": LENGTH, "surface": surface}
+    )
 
 
 def moments(heights):
@@ -55,7 +59,11 @@ def test_a_table_outside_the_grid_is_refused():
 
 @pytest.mark.parametrize(
     ("q", "psd", "word"),
-    [([1, 2, 3], [1, 1], "one length"), ([2, 1], [1, 1], "rising"), ([0, 1], [1, 1], "greater than or equal to")],
+    [
+        ([1, 2, 3], [1, 1], "one length"),
+        ([2, 1], [1, 1], "rising"),
+        ([0, 1], [1, 1], "greater than or equal to"),
+    ],
 )
 def test_a_table_that_is_no_function_is_refused(q, psd, word):
     with pytest.raises(ValidationError, match=word):
@@ -66,11 +74,15 @@ def test_a_table_integrates_to_the_rms_it_is_scaled_to():
     rough = RoughSpectrum.from_rms(7.0, 0.03, 2.5, 2.0)
     q = np.geomspace(0.01, 2.0, 400)
     table = SpectrumTable(q, 3.0 * rough.psd(q)).scaled(7.0, 2.0)
-    np.testing.assert_allclose(table.psd(q), rough.psd(q), rtol=1e-3)  # 400 points: the knee is cut a little
+    np.testing.assert_allclose(
+        table.psd(q), rough.psd(q), rtol=1e-3
+    )  # 400 points: the knee is cut a little
 
 
 def test_tall_peaks_touch_first():
     """Positive skewness is tall peaks: the flat meets them farther away."""
     few = [settings(heights=common_heights([side * np.exp(side * 0.3 * Z)])) for side in (1, -1)]
-    peaks, plateaus = (run_cycle(INPUTS, s.model_copy(update={"model": "elastic"}), 2, 300.0) for s in few)
+    peaks, plateaus = (
+        run_cycle(INPUTS, s.model_copy(update={"model": "elastic"}), 2, 300.0) for s in few
+    )
     assert peaks.first_contact_nm > 1.5 * plateaus.first_contact_nm

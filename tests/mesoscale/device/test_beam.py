@@ -20,7 +20,9 @@ DEFAULT = DeviceSettings(gap_um=2.3)
 
 def deflection_of(settings, pressure_Pa):
     beam = beam_of(settings, 32)
-    change, _ = beam.step(np.zeros((33, 2)), lambda s: (np.full_like(s, pressure_Pa), np.zeros_like(s)))
+    change, _ = beam.step(
+        np.zeros((33, 2)), lambda s: (np.full_like(s, pressure_Pa), np.zeros_like(s))
+    )
     return beam, change[16, 0]
 
 
@@ -35,14 +37,18 @@ def test_a_tense_beam_bends_as_the_exact_solution():
     beam, middle = deflection_of(DEFAULT.model_copy(update={"residual_stress_MPa": 20.0}), -1e3)
     load, tension, length = 1e3 * beam.width_m, beam.tension_N, beam.length_m
     k = np.sqrt(tension / beam.bending_N_m2)
-    exact = load * length**2 / (8 * tension) - load * length / (2 * tension * k) * np.tanh(k * length / 4)
+    exact = load * length**2 / (8 * tension) - load * length / (2 * tension * k) * np.tanh(
+        k * length / 4
+    )
     assert -middle == pytest.approx(exact, rel=1e-6)
 
 
 def exact_load(middle_m, beam, rest_N=0.0):
-    """Uniform load (N/m) that brings a clamped beam down by so much, and its axial force, after von Karman.
+    """Uniform load (N/m) that brings a clamped beam down by so much, and its axial force, after von
+    Karman.
 
-    w = q L^4 / (16 u^3 EI tanh u) [cosh(u (1 - 2 x / L)) / cosh u - 1] + q L^2 x (L - x) / (8 u^2 EI)
+    w = q L^4 / (16 u^3 EI tanh u) [cosh(u (1 - 2 x / L)) / cosh u - 1] + q L^2 x (L - x) / (8 u^2
+    EI)
 
     with u^2 = N L^2 / 4 EI, and N by the length of that curve.
     """
@@ -52,7 +58,10 @@ def exact_load(middle_m, beam, rest_N=0.0):
 
     def shapes(axial):
         u = np.sqrt(axial * length**2 / (4.0 * bending))
-        front, back = length**4 / (16.0 * u**3 * bending * np.tanh(u)), length**2 / (8.0 * u**2 * bending)
+        front, back = (
+            length**4 / (16.0 * u**3 * bending * np.tanh(u)),
+            length**2 / (8.0 * u**2 * bending),
+        )
         middle = front * (1.0 / np.cosh(u) - 1.0) + back * length**2 / 4.0
         slope = -front * 2.0 * u / length * np.sinh(u * (1.0 - 2.0 * x / length)) / np.cosh(u)
         return middle, slope + back * (length - 2.0 * x)
@@ -70,7 +79,9 @@ def loaded(beam, load_N_m):
     """Balance under a uniform load: deflection of mid-span (m, down) and nodal values."""
     nodal = np.zeros((beam.elements + 1, 2))
     for _ in range(80):
-        change, _ = beam.step(nodal, lambda s: (np.full_like(s, -load_N_m / beam.width_m), np.zeros_like(s)))
+        change, _ = beam.step(
+            nodal, lambda s: (np.full_like(s, -load_N_m / beam.width_m), np.zeros_like(s))
+        )
         nodal = nodal + change
     return -nodal[beam.elements // 2, 0], nodal
 
@@ -82,7 +93,8 @@ TABLE = (
     (3.49, 1.803540, 10.211),
     (6.0, 5.250030, 30.382),
 )
-"""Deflection (um), load (N/m), stress by stretching (MPa) of the default beam, from another code."""
+"""Deflection (um), load (N/m), stress by stretching (MPa) of the default beam, from another code.
+"""
 
 
 @pytest.mark.parametrize(("down_um", "load", "stress_MPa"), TABLE)
@@ -91,7 +103,9 @@ def test_a_beam_that_stretches_is_von_karmans(down_um, load, stress_MPa):
     assert exact_load(1e-6 * down_um, beam)[0] == pytest.approx(load, rel=1e-5)
     middle, nodal = loaded(beam, load)
     assert 1e6 * middle == pytest.approx(down_um, rel=1e-4)
-    axial_N = beam.tension_N + beam.stretching_N_m * elongation(nodal, beam.mechanics[2], beam.rest_nodal)
+    axial_N = beam.tension_N + beam.stretching_N_m * elongation(
+        nodal, beam.mechanics[2], beam.rest_nodal
+    )
     assert 1e-6 * axial_N / (beam.width_m * 4e-6) == pytest.approx(stress_MPa, abs=6e-4)
 
 
@@ -99,7 +113,9 @@ def test_a_beam_that_stretches_is_von_karmans(down_um, load, stress_MPa):
 def test_a_tense_beam_that_stretches_is_von_karmans(stress_MPa):
     beam = beam_of(DeviceSettings(residual_stress_MPa=stress_MPa), 128)
     for down_m in (1e-6, 4e-6):
-        assert loaded(beam, exact_load(down_m, beam, beam.tension_N)[0])[0] == pytest.approx(down_m, rel=1e-4)
+        assert loaded(beam, exact_load(down_m, beam, beam.tension_N)[0])[0] == pytest.approx(
+            down_m, rel=1e-4
+        )
 
 
 @pytest.mark.parametrize("bow_nm", [-800.0, 300.0, 2000.0])
@@ -119,15 +135,23 @@ def test_anchors_that_give_way_soften_the_stretching():
     assert soft.stretching_N_m == pytest.approx(1.0 / (own + 20e-6))
 
 
-@pytest.mark.parametrize(("stress_MPa", "side"), [(-26.5, "up"), (-30.0, "down"), (-100.0, "up"), (-2000.0, "up")])
+@pytest.mark.parametrize(
+    ("stress_MPa", "side"), [(-26.5, "up"), (-30.0, "down"), (-100.0, "up"), (-2000.0, "up")]
+)
 def test_a_beam_buckles_to_the_known_height_and_force(stress_MPa, side):
-    """h = 2 L / pi sqrt((sigma - sigma_E) / E) at Euler's force, which is -18.1 MPa of the default beam."""
-    settings = DeviceSettings(bends_as="beam", residual_stress_MPa=stress_MPa, buckled=side, gap_um=60.0)
+    """h = 2 L / pi sqrt((sigma - sigma_E) / E) at Euler's force, which is -18.1 MPa of the default
+    beam.
+    """
+    settings = DeviceSettings(
+        bends_as="beam", residual_stress_MPa=stress_MPa, buckled=side, gap_um=60.0
+    )
     euler = np.pi**2 * 89.3e3 * (4.0 / 510.0) ** 2 / 3.0
     assert euler_MPa(settings) == pytest.approx(euler, rel=1e-12)
     beam = beam_of(settings, 64)
     height = 2.0 * 510.0 / np.pi * np.sqrt((-0.7 * stress_MPa - euler) / 89.3e3)
-    assert 1e6 * beam.rest_nodal[32, 0] == pytest.approx(height if side == "up" else -height, rel=1e-4)
+    assert 1e6 * beam.rest_nodal[32, 0] == pytest.approx(
+        height if side == "up" else -height, rel=1e-4
+    )
     assert 1e-6 * beam.tension_N / (123e-6 * 4e-6) == pytest.approx(-euler, rel=1e-4)
     assert not rests_as_stated(settings)
     assert rests_as_stated(settings.model_copy(update={"residual_stress_MPa": -euler / 0.7 + 1e-6}))
@@ -150,7 +174,9 @@ def test_heat_is_a_stress_and_moves_a_bow():
     stressed = DeviceSettings(residual_stress_MPa=hot.heating_MPa / 0.7)
     assert free_pull_in_V(hot) == pytest.approx(free_pull_in_V(stressed), rel=1e-6)
     bowed = beam_of(hot.model_copy(update={"bow_nm": 10.0}), 64)
-    assert 1e9 * bowed.rest_nodal[32, 0] == pytest.approx(10.0 / (1.0 + hot.heating_MPa / euler_MPa(hot)), rel=1e-3)
+    assert 1e9 * bowed.rest_nodal[32, 0] == pytest.approx(
+        10.0 / (1.0 + hot.heating_MPa / euler_MPa(hot)), rel=1e-3
+    )
     cantilever = DeviceSettings(ends="cantilever", temperature_C=200.0, residual_stress_MPa=-300.0)
     cold = cantilever.model_copy(update={"temperature_C": 20.0, "residual_stress_MPa": 0.0})
     assert free_pull_in_V(cantilever) == free_pull_in_V(cold)
@@ -164,37 +190,59 @@ PUBLISHED = (
     (250.0, 100.0, 57.6),
     (250.0, -25.0, 33.6),
 )
-"""Length (um), stress (MPa), pull-in (V) of polysilicon bridges by a three-dimensional code (Osterberg and Senturia, J.
-MEMS 6 (1997) 107), as later papers quote them."""
+"""Length (um), stress (MPa), pull-in (V) of polysilicon bridges by a three-dimensional code
+(Osterberg and Senturia, J. MEMS 6 (1997) 107), as later papers quote them."""
 
 
 @pytest.mark.parametrize(("length_um", "stress_MPa", "volts"), PUBLISHED)
 def test_published_bridges_pull_in_within_3_percent(length_um, stress_MPa, volts):
-    bridge = {"length_um": length_um, "width_um": 50.0, "thickness_um": 3.0, "gap_um": 1.0, "dielectric_nm": 0.0}
+    bridge = {
+        "length_um": length_um,
+        "width_um": 50.0,
+        "thickness_um": 3.0,
+        "gap_um": 1.0,
+        "dielectric_nm": 0.0,
+    }
     silicon = {"youngs_modulus_GPa": 169.0, "poisson_ratio": 0.06}
-    assert free_pull_in_V(DeviceSettings(**bridge, **silicon, residual_stress_MPa=stress_MPa)) == pytest.approx(
-        volts, rel=0.03
-    )
+    assert free_pull_in_V(
+        DeviceSettings(**bridge, **silicon, residual_stress_MPa=stress_MPa)
+    ) == pytest.approx(volts, rel=0.03)
 
 
 def test_a_published_cantilever_pulls_in_within_1_percent():
     """100 x 50 x 3 um over 1 um, 169 GPa: 37.84 V (Osterberg and Senturia 1997, as quoted)."""
-    beam = {"length_um": 100.0, "width_um": 50.0, "thickness_um": 3.0, "gap_um": 1.0, "dielectric_nm": 0.0}
-    settings = DeviceSettings(ends="cantilever", youngs_modulus_GPa=169.0, poisson_ratio=0.06, **beam)
+    beam = {
+        "length_um": 100.0,
+        "width_um": 50.0,
+        "thickness_um": 3.0,
+        "gap_um": 1.0,
+        "dielectric_nm": 0.0,
+    }
+    settings = DeviceSettings(
+        ends="cantilever", youngs_modulus_GPa=169.0, poisson_ratio=0.06, **beam
+    )
     assert free_pull_in_V(settings) == pytest.approx(37.84, rel=0.01)
 
 
 def test_a_short_electrode_pulls_a_cantilever_as_a_force_at_its_place():
-    """A narrow electrode at a share a of the length: w = F (aL)^2 (3 x - aL) / (6 EI), F its pull."""
-    settings = DeviceSettings(ends="cantilever", electrode=(0.499, 0.501), contact=(0.9, 1.0), fringe=0.0)
+    """A narrow electrode at a share a of the length: w = F (aL)^2 (3 x - aL) / (6 EI), F its
+    pull.
+    """
+    settings = DeviceSettings(
+        ends="cantilever", electrode=(0.499, 0.501), contact=(0.9, 1.0), fringe=0.0
+    )
     beam = beam_of(settings, 64)
-    change, _ = beam.step(np.zeros((beam.elements + 1, 2)), lambda s: (-1e3 * beam.wired, np.zeros_like(s)))
+    change, _ = beam.step(
+        np.zeros((beam.elements + 1, 2)), lambda s: (-1e3 * beam.wired, np.zeros_like(s))
+    )
     force, at = 1e3 * 0.002 * 510e-6 * 123e-6, 0.5 * 510e-6
     exact = force * at**2 * (3.0 * 510e-6 - at) / (6.0 * beam.bending_N_m2)
     assert -change[-1, 0] == pytest.approx(exact, rel=1e-4)
 
 
-@pytest.mark.parametrize("settings", [DeviceSettings(), DeviceSettings(residual_stress_MPa=-8.0, bow_nm=400.0)])
+@pytest.mark.parametrize(
+    "settings", [DeviceSettings(), DeviceSettings(residual_stress_MPa=-8.0, bow_nm=400.0)]
+)
 def test_release_from_the_snap_is_that_of_finite_differences(settings):
     """A plain twin of the whole way: pull-in, snap, landing, memory, release."""
     law = made_up_law(8.0)
@@ -215,7 +263,9 @@ def test_local_pressure_is_that_of_the_pad_with_its_memory():
     law = made_up_law(5.0)
     local = LocalPad(law)
     at = np.array([[24.0, 25.5, 30.0, 90.0]])
-    np.testing.assert_allclose(local(at, np.full(at.shape, np.inf))[0], law.closing_GPa(at), rtol=1e-12)
+    np.testing.assert_allclose(
+        local(at, np.full(at.shape, np.inf))[0], law.closing_GPa(at), rtol=1e-12
+    )
     pressure, slope = local(at, np.full(at.shape, 23.0))
     np.testing.assert_allclose(pressure[0, :3], law.opening_GPa(at[0, :3], 23.0), rtol=2e-2)
     assert slope[0, 0] < 0
@@ -227,17 +277,23 @@ def landed():
 
 
 def test_pull_in_is_the_exact_number():
-    """eps0 b V^2 L^4 / (2 EI g^3) of a beam without stretching, by shooting: 70.0950 clamped, 1.68084 cantilever."""
+    """eps0 b V^2 L^4 / (2 EI g^3) of a beam without stretching, by shooting: 70.0950 clamped,
+    1.68084 cantilever.
+    """
     for ends, exact in (("clamped", 70.095048), ("cantilever", 1.680841)):
         settings = DeviceSettings(ends=ends, anchor_um_per_N=1e9, fringe=0.0)
         beam = beam_of(settings, 64)
         gap = settings.gap_um * 1e-6 + settings.dielectric_nm / settings.permittivity * 1e-9
-        number = VACUUM_PERMITTIVITY * beam.width_m * free_pull_in_V(settings) ** 2 * beam.length_m**4
+        number = (
+            VACUUM_PERMITTIVITY * beam.width_m * free_pull_in_V(settings) ** 2 * beam.length_m**4
+        )
         assert number / (2 * beam.bending_N_m2 * gap**3) == pytest.approx(exact, rel=2e-4)
 
 
 def test_the_landed_area_is_a_result_that_grows_with_the_voltage(landed):
-    harder = solve_beam(DEFAULT.model_copy(update={"hold_voltage_V": 1.1 * landed.pull_in_V}), made_up_law(), 32)
+    harder = solve_beam(
+        DEFAULT.model_copy(update={"hold_voltage_V": 1.1 * landed.pull_in_V}), made_up_law(), 32
+    )
     assert 0.1 < landed.landed_share < harder.landed_share < 1.0
     assert 0 < landed.release_V < landed.hold_V
 
@@ -251,22 +307,46 @@ def test_a_bow_away_from_the_dielectric_raises_pull_in_and_release(landed):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"hold_voltage_V": 1.0}, "hold_voltage_V = 1: never closes this switch, which pulls in at"),
+        (
+            {"hold_voltage_V": 1.0},
+            "hold_voltage_V = 1: never closes this switch, which pulls in at",
+        ),
         ({"hold_voltage_V": 80.0}, "where its curves end"),
         ({"bow_nm": -2280.0}, "rests within reach of its pad"),
-        ({"bow_nm": -3500.0}, "at rest the electrode is -.* nm above what it lands on at its lowest"),
+        (
+            {"bow_nm": -3500.0},
+            "at rest the electrode is -.* nm above what it lands on at its lowest",
+        ),
         ({"tilt_nm": 8000.0}, "lower bow_nm, tilt_nm, dimple_nm or stopper_nm, or raise gap_um"),
         ({"contact": (0.0, 0.1)}, "the beam does not land on the pad"),
-        ({"residual_stress_MPa": -60.0, "buckled": "down"}, "the beam stands on the dielectric at rest"),
-        ({"dimple_nm": 2400.0, "contact": (0.4, 0.6)}, "at rest the electrode is -100 nm above what it lands on"),
-        ({"stopper_nm": 2400.0, "contact": (0.4, 0.6)}, "lower bow_nm, tilt_nm, dimple_nm or stopper_nm"),
-        ({"stopper_nm": 1000.0, "contact": (0.45, 0.55), "electrode": (0.2, 0.4)}, "the beam does not land on the pad"),
+        (
+            {"residual_stress_MPa": -60.0, "buckled": "down"},
+            "the beam stands on the dielectric at rest",
+        ),
+        (
+            {"dimple_nm": 2400.0, "contact": (0.4, 0.6)},
+            "at rest the electrode is -100 nm above what it lands on",
+        ),
+        (
+            {"stopper_nm": 2400.0, "contact": (0.4, 0.6)},
+            "lower bow_nm, tilt_nm, dimple_nm or stopper_nm",
+        ),
+        (
+            {"stopper_nm": 1000.0, "contact": (0.45, 0.55), "electrode": (0.2, 0.4)},
+            "the beam does not land on the pad",
+        ),
     ],
 )
 def test_a_beam_that_cannot_be_solved_is_refused_in_one_line(change, words):
     law = made_up_law()
     # closed to 24 nm only
-    law = PadLaw(law.separation_nm[180:], law.closing[:, 180:], law.depth_nm[4:], law.opening[4:, :, 180:], law.flats)
+    law = PadLaw(
+        law.separation_nm[180:],
+        law.closing[:, 180:],
+        law.depth_nm[4:],
+        law.opening[4:, :, 180:],
+        law.flats,
+    )
     with pytest.raises(InputError, match=words) as caught:
         solve_beam(DEFAULT.model_copy(update=change), law, 32)
     assert "\n" not in str(caught.value)
@@ -274,6 +354,14 @@ def test_a_beam_that_cannot_be_solved_is_refused_in_one_line(change, words):
 
 def test_a_pad_that_was_hardly_closed_is_refused_with_what_helps():
     law = made_up_law()
-    law = PadLaw(law.separation_nm, law.closing * np.array([[1e-9], [1.0]]), law.depth_nm, law.opening, law.flats)
-    with pytest.raises(NotComputed, match=r"carries 6.3e-07 MPa at 15 nm, where its curves end; raise pad\.cells"):
+    law = PadLaw(
+        law.separation_nm,
+        law.closing * np.array([[1e-9], [1.0]]),
+        law.depth_nm,
+        law.opening,
+        law.flats,
+    )
+    with pytest.raises(
+        NotComputed, match=r"carries 6.3e-07 MPa at 15 nm, where its curves end; raise pad\.cells"
+    ):
         solve_beam(DEFAULT, law)

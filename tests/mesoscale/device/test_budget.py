@@ -1,4 +1,6 @@
-"""The budget: what the central switch says where one property is another, formulas, and rows that are refused."""
+"""The budget: what the central switch says where one property is another, formulas, and rows that
+are refused.
+"""
 
 from pathlib import Path
 
@@ -15,8 +17,18 @@ from mesoscale.settings.definitions import BY_NAME
 from mesoscale.studies.answer_stability import made_up_law
 
 SHIPPED = load_mapping(Path(__file__).parents[3] / "config" / "effects.yaml", "table of effects")
-ROW = {"how": "condition", "about": "10 °C more", "held": False, "settle": "heat it", "source": "a paper", "volts": 1.0}
-SWITCH_CONTENT = {"by_attraction": [{"times": 1.0, "release_V": 7.0}, {"times": 3.0, "release_V": 0.0}], "answer": None}
+ROW = {
+    "how": "condition",
+    "about": "10 °C more",
+    "held": False,
+    "settle": "heat it",
+    "source": "a paper",
+    "volts": 1.0,
+}
+SWITCH_CONTENT = {
+    "by_attraction": [{"times": 1.0, "release_V": 7.0}, {"times": 3.0, "release_V": 0.0}],
+    "answer": None,
+}
 
 
 class KnownPad:
@@ -48,7 +60,14 @@ def test_what_the_literature_names_stands_in_the_budget_or_is_small_for_a_reason
     """Twenty effects, listed before the table was opened (evidence/data/effects_named.yaml)."""
     path = Path(__file__).parents[3] / "evidence" / "data" / "effects_named.yaml"
     named = load_mapping(path, "effects")["effects"]
-    known = {*effects_of(SHIPPED), *DeviceSettings().varied, *BY_NAME, "gap_cutoff_nm", "law of attraction", NUMERICAL}
+    known = {
+        *effects_of(SHIPPED),
+        *DeviceSettings().varied,
+        *BY_NAME,
+        "gap_cutoff_nm",
+        "law of attraction",
+        NUMERICAL,
+    }
     assert len(named) == 20
     for row in named:
         assert row["source"]
@@ -63,7 +82,9 @@ def test_every_number_is_that_of_its_own_calculation():
     release = switch.states["release_V"]
     hot = central(device.model_copy(update={"temperature_C": 30.0})).states["release_V"]
     assert rows["temperature"]["volts"] == pytest.approx(abs(hot - release))
-    assert rows["charge in the dielectric, even"]["volts"] == pytest.approx(0.458, abs=0.001)  # 10¹¹ e/cm², 200 nm, 7.9
+    assert rows["charge in the dielectric, even"]["volts"] == pytest.approx(
+        0.458, abs=0.001
+    )  # 10¹¹ e/cm², 200 nm, 7.9
     power = rows["power of the signal"]["volts"]
     assert (release - power) ** 2 == pytest.approx(release**2 - 5.0)
     assert rows["law of attraction"]["volts"] == 7.0
@@ -85,7 +106,12 @@ def test_a_plate_has_no_stress_and_a_switch_that_sticks_has_no_budget():
     assert not {"temperature", "stress by the package", "curl of the beam"} & names
     stuck = central(plate)
     assert (
-        budget({}, SWITCH_CONTENT, Solved(stuck.point, KnownPad, stuck.states | {"release_V": 0.0}, (0.0, 0.0))) == []
+        budget(
+            {},
+            SWITCH_CONTENT,
+            Solved(stuck.point, KnownPad, stuck.states | {"release_V": 0.0}, (0.0, 0.0)),
+        )
+        == []
     )
 
 
@@ -97,7 +123,10 @@ def test_the_factor_of_half_the_energies_is_that_of_the_scenes_twins():
     assert told[TWIN].about == "0.52 [0.46, 0.58] of the hardness, by twins of this scene"
     assert with_twins(effects, []) == effects
     switch = central(DeviceSettings(hold_voltage_V=80.0))
-    rows = {row["effect"]: row for row in budget(told, SWITCH_CONTENT, switch, {1.0: 7.0, 0.52: 0.0, 1.37: 7.5})}
+    rows = {
+        row["effect"]: row
+        for row in budget(told, SWITCH_CONTENT, switch, {1.0: 7.0, 0.52: 0.0, 1.37: 7.5})
+    }
     assert rows[TWIN]["volts"] == 7.0
     assert rows[TWIN]["about"].endswith("; it may stick")
     assert rows["asperities that meet asperities"]["volts"] == 0.5
@@ -108,7 +137,10 @@ def test_the_factor_of_half_the_energies_is_that_of_the_scenes_twins():
 def test_numerical_errors_of_the_scene_stand_in_quadrature():
     switch = central(DeviceSettings(hold_voltage_V=80.0))
     rows = budget(
-        {}, SWITCH_CONTENT, switch, errors_V={"sites a side": 0.3, "steps of separation, nm": 0.4, "x": np.nan}
+        {},
+        SWITCH_CONTENT,
+        switch,
+        errors_V={"sites a side": 0.3, "steps of separation, nm": 0.4, "x": np.nan},
     )
     (row,) = [row for row in rows if row["effect"] == NUMERICAL]
     assert row["volts"] == pytest.approx(0.5)
@@ -117,6 +149,11 @@ def test_numerical_errors_of_the_scene_stand_in_quadrature():
 
 def test_an_input_of_the_scene_takes_the_place_of_its_row():
     switch = central(DeviceSettings(hold_voltage_V=80.0))
-    humid = Solved(Point({"humidity": 0.4}, 0.2, switch.point.device), KnownPad, switch.states, (0.0, 0.0))
-    names = [{row["effect"] for row in budget(effects_of(SHIPPED), SWITCH_CONTENT, one)} for one in (switch, humid)]
+    humid = Solved(
+        Point({"humidity": 0.4}, 0.2, switch.point.device), KnownPad, switch.states, (0.0, 0.0)
+    )
+    names = [
+        {row["effect"] for row in budget(effects_of(SHIPPED), SWITCH_CONTENT, one)}
+        for one in (switch, humid)
+    ]
     assert names[0] - names[1] == {"humid air"}

@@ -9,10 +9,15 @@ from mesoscale.device.points import Point, press_pad, surfaces_of
 from mesoscale.settings import ContactSettings, DeviceSettings
 
 VALUES = {
-    "hamaker": 0.1, "e_star": 91.0, "h_macro": 2.0, "h_prime": 8.0, "q0": 0.1, "hurst": 0.8, "rms": 2.0,
+    "hamaker": 0.1, "e_star": 91.0, "h_macro": 2.0, "h_prime": 8.0, "q0": 0.1, "hurst": 0.8,
+    "rms": 2.0,
 }  # fmt: skip
 BODY = Point(VALUES, 0.6, DeviceSettings(hold_voltage_V=90.0))
-FILM = Point({**VALUES, "h_film": 10.0, "t_film": 5.0, "k_film": 0.3, "m_film": 1.2, "h_prime": 0.0}, 0.3, BODY.device)
+FILM = Point(
+    {**VALUES, "h_film": 10.0, "t_film": 5.0, "k_film": 0.3, "m_film": 1.2, "h_prime": 0.0},
+    0.3,
+    BODY.device,
+)
 CONTACT = ContactSettings(mechanics="coupled", attraction="offset", pixels=64, length_nm=250.0)
 
 
@@ -25,8 +30,12 @@ def test_a_body_is_harder_throughout():
 
 def test_a_film_is_harder_and_its_base_stays():
     usual, doubled = (point.contact_of(CONTACT)[0].hardness for point in (FILM, harder(FILM, 2.0)))
-    assert doubled.pressure(1e-6) == pytest.approx(2 * usual.pressure(1e-6), rel=1e-2)  # L/t of 2e-4: the film alone
-    assert doubled.pressure(1e12) == pytest.approx(usual.pressure(1e12), rel=1e-2)  # 10⁶ nm wide: the base alone
+    assert doubled.pressure(1e-6) == pytest.approx(
+        2 * usual.pressure(1e-6), rel=1e-2
+    )  # L/t of 2e-4: the film alone
+    assert doubled.pressure(1e12) == pytest.approx(
+        usual.pressure(1e12), rel=1e-2
+    )  # 10⁶ nm wide: the base alone
 
 
 def test_pads_of_all_factors_have_the_same_surfaces():

@@ -1,4 +1,6 @@
-"""Stiff and extreme beams: each is solved with numbers that can be, or refused in one line that says why."""
+"""Stiff and extreme beams: each is solved with numbers that can be, or refused in one line that
+says why.
+"""
 
 import pytest
 
@@ -8,7 +10,14 @@ from mesoscale.device.electrode import with_pad
 from mesoscale.device.spread import check_spread
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
-from mesoscale.studies.answer_stability import HIGHER, REFUSED, SOLVED, hard_beams, hard_cases, made_up_law
+from mesoscale.studies.answer_stability import (
+    HIGHER,
+    REFUSED,
+    SOLVED,
+    hard_beams,
+    hard_cases,
+    made_up_law,
+)
 
 CASES = list(hard_beams())
 
@@ -26,7 +35,9 @@ def test_no_hard_beam_is_left_out():
 
 def test_a_scene_is_tried_with_its_own_device_on_its_own_pad():
     device = DeviceSettings(gap_um=2.3)
-    own = [case for case in hard_cases(device, made_up_law(2.0)) if case.name.startswith("own device")]
+    own = [
+        case for case in hard_cases(device, made_up_law(2.0)) if case.name.startswith("own device")
+    ]
     assert len(own) == 11
     assert own[0].description == "gap_um = 1.15"
     for case in own:
@@ -37,7 +48,8 @@ def test_a_scene_is_tried_with_its_own_device_on_its_own_pad():
 def test_a_spread_that_leaves_no_device_and_a_beam_without_lumps_are_refused_in_one_line():
     wide = {"dielectric_nm": {"distribution": "normal", "values": [0, 0.5], "relative": True}}
     with pytest.raises(
-        InputError, match=r"spread\.dielectric_nm: reaches dielectric_nm = -129.1: .*equal to 0; narrow"
+        InputError,
+        match=r"spread\.dielectric_nm: reaches dielectric_nm = -129.1: .*equal to 0; narrow",
     ):
         check_spread(DeviceSettings(spread=wide))
     check_spread(DeviceSettings())
@@ -50,8 +62,14 @@ def test_a_spread_that_leaves_no_device_and_a_beam_without_lumps_are_refused_in_
     [
         ({"electrode": (0.5, 1.2)}, r"electrode = \[0\.5, 1\.2\]: accepted are two rising shares"),
         ({"contact": (0.6, 0.4)}, r"contact = \[0\.6, 0\.4\]: accepted are two rising shares"),
-        ({"spread": {"gap_um": {"values": [0, 1], "varies": ["common", "each"]}}}, r"varies.*'common' or 'each'"),
-        ({"spread": {"gap_um": {"distribution": "normal", "values": [0]}}}, "are none of distribution normal"),
+        (
+            {"spread": {"gap_um": {"values": [0, 1], "varies": ["common", "each"]}}},
+            r"varies.*'common' or 'each'",
+        ),
+        (
+            {"spread": {"gap_um": {"distribution": "normal", "values": [0]}}},
+            "are none of distribution normal",
+        ),
         ({"ends": "free"}, "'clamped' or 'cantilever'"),
     ],
 )
@@ -64,13 +82,24 @@ def test_a_device_that_is_none_is_refused_in_one_line(change, words):
 @pytest.mark.parametrize(
     ("electrode", "contact", "words"),
     [
-        ((0.0, 0.05), (0.9, 1.0), "no voltage brings the beam down by 3446 nm; place electrode nearer to contact"),
+        (
+            (0.0, 0.05),
+            (0.9, 1.0),
+            "no voltage brings the beam down by 3446 nm; place electrode nearer to contact",
+        ),
         ((0.0, 0.02), (0.0, 1.0), "place electrode nearer to contact, or take a softer beam"),
-        ((0.05, 0.2), (0.45, 0.55), r"at 390.1 V the electrode lands beside the contact part and presses .* GPa on"),
+        (
+            (0.05, 0.2),
+            (0.45, 0.55),
+            r"at 390.1 V the electrode lands beside the contact part and presses .* GPa on",
+        ),
         ((0.1, 0.3), (0.6, 0.9), r"at 202.6 V the beam does not land on the pad"),
     ],
 )
 def test_an_electrode_beside_its_contact_is_refused_for_a_true_reason(electrode, contact, words):
     """By its place, and not by voltages that nobody has or by a fault of the solver."""
     with pytest.raises(InputError, match=words):
-        with_pad(lambda law: solve_beam(DeviceSettings(electrode=electrode, contact=contact), law), made_up_law(2.0))
+        with_pad(
+            lambda law: solve_beam(DeviceSettings(electrode=electrode, contact=contact), law),
+            made_up_law(2.0),
+        )

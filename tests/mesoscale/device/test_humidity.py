@@ -19,7 +19,9 @@ from mesoscale.inputs.table import input_table
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
 from mesoscale.settings.contact import AirSettings
 
-CONTACT = ContactSettings(mechanics="coupled", pixels=64, q1_per_nm=0.15, attraction="offset", gap_cutoff_nm=0.3)
+CONTACT = ContactSettings(
+    mechanics="coupled", pixels=64, q1_per_nm=0.15, attraction="offset", gap_cutoff_nm=0.3
+)
 SWITCH = DeviceSettings(spring_N_per_m=1000.0)
 
 
@@ -44,9 +46,13 @@ def test_humid_air_sticks_what_lets_go_in_dry_air():
     table = input_table(**HARD, humidity=InputRow(values=(0.0, 0.8)))
     central = solve_point(central_point(table, CONTACT, SWITCH), CONTACT, 4, 1000)
     design = plan_points(table, CONTACT, SWITCH, 6)
-    model = PadModel(central, design, tuple(solve_points(list(enumerate(design.points, 1)), CONTACT, 2)))
+    model = PadModel(
+        central, design, tuple(solve_points(list(enumerate(design.points, 1)), CONTACT, 2))
+    )
     rows = humidity_rows(model, table, CONTACT, 2)
-    balance, volume = ([row for row in rows if row["opening"] == name] for name in ("balance", "volume"))
+    balance, volume = (
+        [row for row in rows if row["opening"] == name] for name in ("balance", "volume")
+    )
     assert balance[0]["release_V"] == volume[0]["release_V"] > 1.0  # dry: the limits are one
     assert balance[-1]["release_V"] == volume[-1]["release_V"] == 0.0
     assert balance[-1]["energy_mJ_m2"] > 3.0 * balance[0]["energy_mJ_m2"]
@@ -58,12 +64,17 @@ def test_humid_air_sticks_what_lets_go_in_dry_air():
     free, stuck = sticking_between(balance)
     coarse = levels(table, CONTACT)
     assert len(balance) == len(coarse) + HALVINGS
-    assert stuck - free < 0.2 * np.diff(coarse)[np.searchsorted(coarse, stuck) - 1]  # its step is halved
+    assert (
+        stuck - free < 0.2 * np.diff(coarse)[np.searchsorted(coarse, stuck) - 1]
+    )  # its step is halved
     assert reach_nm(AirSettings(humidity=stuck)) > 0.31
 
 
 def test_the_step_in_which_it_begins_to_stick():
-    rows = [{"humidity": h, "release_V": r} for h, r in ((0.8, 0.0), (0.0, 5.0), (0.4, None), (0.2, 3.0))]
+    rows = [
+        {"humidity": h, "release_V": r}
+        for h, r in ((0.8, 0.0), (0.0, 5.0), (0.4, None), (0.2, 3.0))
+    ]
     assert sticking_between(rows) == (0.2, 0.8)
     assert sticking_between(rows[1:]) is None
     assert sticking_between(rows[:1]) is None
@@ -78,7 +89,9 @@ def test_humidity_enters_the_rate_of_failure():
     plates = Population(table, SWITCH, (0.3, 0.3), 0.0, press, (np.empty((0, 0)), []))
     z = np.zeros((2, plates.dimension))
     z[:, plates.names.index("humidity")] = -4.0, 2.0  # 0.003 and 78 %
-    assert [point.values["humidity"] for point in plates.points(z, 70.0)] == pytest.approx([0.0, 0.782], abs=1e-3)
+    assert [point.values["humidity"] for point in plates.points(z, 70.0)] == pytest.approx(
+        [0.0, 0.782], abs=1e-3
+    )
     dry, humid = plates.reserves(z, plates.hold_V)
     assert humid < dry - 0.3  # nearer to sticking
 
@@ -91,7 +104,9 @@ def test_a_pad_is_computed_as_far_as_liquid_reaches():
         for contact in (CONTACT, CONTACT.model_copy(update={"air": air}))
     ]
     dry, humid = (pad.law for pad in pads)
-    touching = pads[1].cells.first_contact_nm.max() + 5.0  # cells stand for some that touch first farther out
+    touching = (
+        pads[1].cells.first_contact_nm.max() + 5.0
+    )  # cells stand for some that touch first farther out
     beyond = humid.separation_nm > touching + menisci_of(air).reach_nm
     assert beyond.sum() > 20
     wanted = np.interp(humid.separation_nm[beyond], dry.separation_nm, dry.closing[1])

@@ -70,7 +70,9 @@ def test_bands_and_share_are_those_of_the_function():
 
 
 @pytest.mark.parametrize(("common", "kinds"), [(True, {0.005, 1.0}), (False, None)])
-def test_where_all_is_common_all_stick_or_none_and_where_nothing_is_there_is_one_share(common, kinds):
+def test_where_all_is_common_all_stick_or_none_and_where_nothing_is_there_is_one_share(
+    common, kinds
+):
     """Shares below one in the number of switches are not told: 0.005."""
     fit = fit_additive(UNITS, np.maximum(1.0 + 2.0 * X[:, 0] + X[:, 1], 0.0))
     shares = {row["value"] for row in known(fit, np.full(3, common), 0.0)["stuck_share"].values()}

@@ -13,7 +13,9 @@ DEPTHS = (18.0, 20.0, 22.0, 24.0, 26.0, 28.0)
 
 
 def made_up_law(adhesion_kPa=0.0, hamaker=1e-6):
-    """Closing 7 MPa at 24 nm, e-fold 2 nm; opening loses contact 6 nm above the depth, with a well 1 nm wide there."""
+    """Closing 7 MPa at 24 nm, e-fold 2 nm; opening loses contact 6 nm above the depth, with a well
+    1 nm wide there.
+    """
     s = np.arange(17.0, 80.0, 0.02)
     closing = np.stack([7e-3 * np.exp((24.0 - s) / 2.0) * (s < 40.0), np.full(s.size, -1e-12)])
     opening = np.full((len(DEPTHS), 2, s.size), np.nan)
@@ -27,13 +29,17 @@ def made_up_law(adhesion_kPa=0.0, hamaker=1e-6):
 
 
 def test_pull_in_is_that_of_an_ideal_plate():
-    assert solve_on_pad(PLATE, made_up_law(), None).pull_in_V == pytest.approx(PLATE.pull_in_V, rel=1e-6)
+    assert solve_on_pad(PLATE, made_up_law(), None).pull_in_V == pytest.approx(
+        PLATE.pull_in_V, rel=1e-6
+    )
 
 
 def test_the_held_state_balances_the_forces():
     law = made_up_law()
     found = solve_on_pad(PLATE, law, 60.0)
-    electric = VACUUM_PERMITTIVITY * 60.0**2 / (2 * ((found.hold_nm + PLATE.dielectric_nm) * NM) ** 2)
+    electric = (
+        VACUUM_PERMITTIVITY * 60.0**2 / (2 * ((found.hold_nm + PLATE.dielectric_nm) * NM) ** 2)
+    )
     spring = PLATE.spring_N_per_m * (PLATE.gap_nm - found.hold_nm) * NM / PLATE.area_m2
     assert float(law.closing_GPa(found.hold_nm)) * 1e9 == pytest.approx(electric - spring, rel=1e-3)
 

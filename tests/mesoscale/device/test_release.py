@@ -1,4 +1,6 @@
-"""The answer: points of the joint distribution, shares of the variance, and the switch on known pads."""
+"""The answer: points of the joint distribution, shares of the variance, and the switch on known
+pads.
+"""
 
 from dataclasses import replace
 
@@ -13,7 +15,14 @@ from mesoscale.device.beam_switch import press_GPa
 from mesoscale.device.by_key import release_by_key
 from mesoscale.device.electrode import presser, solve_deepened
 from mesoscale.device.numerics import SWITCH
-from mesoscale.device.points import Pad, PadModel, central_point, plan_points, solve_point, solve_points
+from mesoscale.device.points import (
+    Pad,
+    PadModel,
+    central_point,
+    plan_points,
+    solve_point,
+    solve_points,
+)
 from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.device.release import _probability, answer, switch_on_pad
 from mesoscale.errors import InputError, NotComputed
@@ -27,15 +36,30 @@ PLATE = DeviceSettings(spring_N_per_m=170.0)
 RMS = 9.0
 SEPARATION = np.linspace(0.05, 12.0, 1200) * RMS
 MIDDLE = ClosedForm(
-    -4.0, 3.0 / RMS, 0.05 / RMS**2, 3.5 / RMS, 0.2 / RMS**2, 0.05 / RMS**2, 0.048, 0.95, 0.5, 0.0, 0.215, 0.165
+    -4.0,
+    3.0 / RMS,
+    0.05 / RMS**2,
+    3.5 / RMS,
+    0.2 / RMS**2,
+    0.05 / RMS**2,
+    0.048,
+    0.95,
+    0.5,
+    0.0,
+    0.215,
+    0.165,
 )
 """A pad with numbers near those of Table 1."""
 
 
 def table(**rows):
-    """Inputs of Table 1 of which three vary, as those of the study of rare failures, and what is stated."""
+    """Inputs of Table 1 of which three vary, as those of the study of rare failures, and what is
+    stated.
+    """
     fixed = {"h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75}
-    stated = {name: InputRow(distribution="fixed", values=(value,)) for name, value in fixed.items()}
+    stated = {
+        name: InputRow(distribution="fixed", values=(value,)) for name, value in fixed.items()
+    }
     stated["e_star"] = InputRow(distribution="normal", values=(90.0, 4.0))
     stated["rms"] = InputRow(distribution="normal", values=(9.0, 0.8))
     return input_table(**stated | rows)
@@ -46,7 +70,9 @@ TABLE = table()
 
 def cells_of(law, scale):
     """A pad of two cells that have the law's pressures times 1 - scale and 1 + scale."""
-    grid = PadGrid(law.separation_nm[::-1], np.flatnonzero(np.isin(law.separation_nm[::-1], law.depth_nm)))
+    grid = PadGrid(
+        law.separation_nm[::-1], np.flatnonzero(np.isin(law.separation_nm[::-1], law.depth_nm))
+    )
     closing, opening = law.closing[:, ::-1], law.opening[::-1, :, ::-1]
     both = np.array([1.0 - scale, 1.0 + scale])
     return PadCells(
@@ -177,7 +203,9 @@ def test_a_pad_that_one_cell_in_a_hundred_carries_is_undecided(monkeypatch):
     )
     monkeypatch.setattr(points, "press_pad", lambda *_, **__: Pad(cells, law.flats))
     solved = solve_point(central_point(TABLE, CONTACT, PLATE), CONTACT, 100, 0)
-    assert solved.states["release_V"] == pytest.approx(solve_deepened(PLATE, law)["release_V"], rel=1e-3)
+    assert solved.states["release_V"] == pytest.approx(
+        solve_deepened(PLATE, law)["release_V"], rel=1e-3
+    )
     assert solved.undecided
 
 
@@ -195,7 +223,9 @@ def test_the_gate_fails_where_halves_of_the_cells_disagree_on_sticking(known):
     """Pads that pull with 0.1 and 1.9 times their pressures: one half sticks."""
     central = model_of(PLATE, 1).central
     assert central.pad is not None
-    assert switch_on_pad(PadModel(central, plan_points(TABLE, CONTACT, PLATE, 0), ()), 1e6)["gate"]["passed"]
+    assert switch_on_pad(PadModel(central, plan_points(TABLE, CONTACT, PLATE, 0), ()), 1e6)["gate"][
+        "passed"
+    ]
     apart = replace(central, halves_V=(0.0, 7.0))
     gate = switch_on_pad(PadModel(apart, plan_points(TABLE, CONTACT, PLATE, 0), ()), 1e6)["gate"]
     assert not gate["passed"]
@@ -218,7 +248,8 @@ def test_a_pad_that_is_pressed_harder_than_it_was_computed_is_continued(settings
     enough, less = (MIDDLE.pressed(share * local, SEPARATION) for share in (1.5, 0.3))
     computed, continued = solve_deepened(settings, enough), solve_deepened(settings, less)
     assert (computed["deepened"], continued["deepened"]) == (0.0, 1.0)
-    # an opening from deeper is stiffer than from the deepest computed depth, and the tail of closing is Gaussian
+    # an opening from deeper is stiffer than from the deepest computed depth, and the tail of
+    # closing is Gaussian
     assert continued["release_V"] == pytest.approx(computed["release_V"], rel=0.01)
     assert continued["capacitance_fF"] == pytest.approx(computed["capacitance_fF"], rel=0.01)
 
@@ -226,10 +257,14 @@ def test_a_pad_that_is_pressed_harder_than_it_was_computed_is_continued(settings
 def test_a_pad_that_was_closed_far_too_little_stays_refused():
     smooth = replace(MIDDLE, beta=0.0, hamaker=1e-9)
     with pytest.raises(NotComputed, match="where its curves end"):
-        solve_deepened(DeviceSettings(), smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION))
+        solve_deepened(
+            DeviceSettings(), smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION)
+        )
 
 
-@pytest.mark.parametrize("change", [{}, {"bow_nm": 500.0}, {"residual_stress_MPa": 50.0}, {"hold_voltage_V": 120.0}])
+@pytest.mark.parametrize(
+    "change", [{}, {"bow_nm": 500.0}, {"residual_stress_MPa": 50.0}, {"hold_voltage_V": 120.0}]
+)
 def test_pilots_know_what_the_beam_will_press_with(change):
     """From a closing curve that ends too early, within the 15 % by which pilot cells are off."""
     settings = DeviceSettings().model_copy(update=change)
@@ -237,11 +272,16 @@ def test_pilots_know_what_the_beam_will_press_with(change):
     short, long = (MIDDLE.pressed(share * local, SEPARATION) for share in (0.6, 3.0))
     pressed = presser(settings)(short.separation_nm, short.closing.sum(axis=0))
     assert pressed == pytest.approx(press_GPa(settings, long), rel=0.15)
-    assert pressed > 1.3 * float(local[np.searchsorted(SEPARATION, short.separation_nm[0])]) / SWITCH.edge
+    assert (
+        pressed
+        > 1.3 * float(local[np.searchsorted(SEPARATION, short.separation_nm[0])]) / SWITCH.edge
+    )
 
 
 def test_a_pad_closed_nearly_to_its_mean_plane_asks_for_nothing_deeper():
-    """Its repulsion cannot double before the mean planes meet, so no plan would ever carry the switch."""
+    """Its repulsion cannot double before the mean planes meet, so no plan would ever carry the
+    switch.
+    """
     separation = np.linspace(0.5, 3.0, 20)
     assert presser(DeviceSettings())(separation, 1e-6 * np.exp(-(separation - 3.0))) == 0.0
 
@@ -250,9 +290,16 @@ def test_a_pad_closed_nearly_to_its_mean_plane_asks_for_nothing_deeper():
 def test_a_hold_voltage_that_never_closes_the_switch_is_refused_in_one_line(settings):
     law = MIDDLE.pressed(2.0 * pressure_to_compute(settings)(SEPARATION), SEPARATION)
     pull_in = solve_deepened(settings, law)["pull_in_V"]
-    assert solve_deepened(settings.model_copy(update={"hold_voltage_V": 1.01 * pull_in}), law)["release_V"] >= 0.0
+    assert (
+        solve_deepened(settings.model_copy(update={"hold_voltage_V": 1.01 * pull_in}), law)[
+            "release_V"
+        ]
+        >= 0.0
+    )
     for share in (0.8, 0.99):
-        with pytest.raises(InputError, match=f"never closes this switch, which pulls in at {pull_in:.4g} V") as caught:
+        with pytest.raises(
+            InputError, match=f"never closes this switch, which pulls in at {pull_in:.4g} V"
+        ) as caught:
             solve_deepened(settings.model_copy(update={"hold_voltage_V": share * pull_in}), law)
         assert "\n" not in str(caught.value)
 
@@ -285,7 +332,10 @@ def test_the_matrix_of_a_beam_that_stretches_is_solved_where_the_beam_alone_is_s
             assert np.linalg.cond(full) > 1e12
         right = rng.normal(size=(nodes, 3, 2))
         column = right[:, 2].ravel()
-        wanted = [np.linalg.solve(full + stretching * np.outer(column, column), right[:, k].ravel()) for k in (0, 1)]
+        wanted = [
+            np.linalg.solve(full + stretching * np.outer(column, column), right[:, k].ravel())
+            for k in (0, 1)
+        ]
         solve_beam_matrix(blocks, coupling, right, stretching)
         np.testing.assert_allclose([right[:, 0].ravel(), right[:, 1].ravel()], wanted, rtol=1e-7)
 
@@ -307,10 +357,19 @@ def test_release_by_key_is_that_of_the_changed_device_and_ends_with_a_reason(set
     (low,) = [row for row in rows if row["key"] == "hold_voltage_V" and row["reason"]]
     assert "never closes" in low["reason"]
     assert low["release_V"] is None
-    stiffer = [row["release_V"] for row in rows if row["key"] == ("gap_um" if settings.bends else "spring_N_per_m")]
+    stiffer = [
+        row["release_V"]
+        for row in rows
+        if row["key"] == ("gap_um" if settings.bends else "spring_N_per_m")
+    ]
     assert stiffer == sorted(stiffer)
 
 
 def test_release_by_key_has_no_row_where_the_device_has_no_answer():
     smooth = replace(MIDDLE, beta=0.0, hamaker=1e-9)
-    assert release_by_key(DeviceSettings(), smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION)) == []
+    assert (
+        release_by_key(
+            DeviceSettings(), smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION)
+        )
+        == []
+    )

@@ -1,4 +1,6 @@
-"""Copies of a switch with all moduli, stresses and pressures times a number; switches softer than their pads."""
+"""Copies of a switch with all moduli, stresses and pressures times a number; switches softer than
+their pads.
+"""
 
 from dataclasses import replace
 
@@ -14,7 +16,10 @@ from mesoscale.studies.answer_stability import SOLVED, made_up_law
 def softer(settings, law, times):
     """The same switch and pad with all moduli, stresses and pressures times a number."""
     stress = times * settings.residual_stress_MPa
-    update = {"youngs_modulus_GPa": times * settings.youngs_modulus_GPa, "residual_stress_MPa": stress}
+    update = {
+        "youngs_modulus_GPa": times * settings.youngs_modulus_GPa,
+        "residual_stress_MPa": stress,
+    }
     flats = replace(law.flats, hamaker=times * law.flats.hamaker)
     pad = PadLaw(law.separation_nm, times * law.closing, law.depth_nm, times * law.opening, flats)
     return settings.model_copy(update=update), pad
@@ -27,7 +32,9 @@ def softer(settings, law, times):
 def test_the_solver_knows_no_pressure_but_those_of_beam_and_pad(name, times):
     """Voltages go with the root of all pressures; a power of four scales every number exactly."""
     settings, law = DeviceSettings(**{**SOLVED[name], "temperature_C": 20.0}), made_up_law(2.0)
-    hold = {"hold_voltage_V": times**0.5 * settings.hold_voltage_V if settings.hold_voltage_V else None}
+    hold = {
+        "hold_voltage_V": times**0.5 * settings.hold_voltage_V if settings.hold_voltage_V else None
+    }
     stiff, _ = with_pad(lambda pad: solve_beam(settings, pad), law)
     soft_settings, soft_law = softer(settings, law, times)
     soft, _ = with_pad(lambda pad: solve_beam(soft_settings.model_copy(update=hold), pad), soft_law)
@@ -42,7 +49,11 @@ def test_the_solver_knows_no_pressure_but_those_of_beam_and_pad(name, times):
 def test_a_long_thin_cantilever_lands_on_an_ordinary_pad(adhesion_kPa):
     """Its spring pulls with 0.4 Pa, that of the default with 15 kPa."""
     settings = DeviceSettings(
-        ends="cantilever", length_um=766.0, width_um=180.0, thickness_um=1.04, youngs_modulus_GPa=45.0
+        ends="cantilever",
+        length_um=766.0,
+        width_um=180.0,
+        thickness_um=1.04,
+        youngs_modulus_GPa=45.0,
     )
     states, _ = with_pad(lambda law: solve_beam(settings, law), made_up_law(adhesion_kPa))
     assert 0.4 < states.pull_in_V < 0.5  # of a cantilever: sqrt(0.28 E t^3 g^3 / eps L^4) = 0.47

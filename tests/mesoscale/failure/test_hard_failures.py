@@ -1,4 +1,6 @@
-"""Rare, certain and impossible failures beside exact ones, and what the accuracy of a failure rate tells."""
+"""Rare, certain and impossible failures beside exact ones, and what the accuracy of a failure rate
+tells.
+"""
 
 import numpy as np
 import pytest

@@ -49,7 +49,9 @@ def test_the_reserve_is_the_attraction_with_which_the_switch_just_sticks(setting
         else:
             plate = solve_on_pad(plate_from_settings(settings), scaled, settings.hold_voltage_V)
             assert (plate.release_V == 0.0) == wanted
-    assert Attracted(settings, law, 2.0, 128).reserve() <= reserve  # to let go in time asks for more than to let go
+    assert (
+        Attracted(settings, law, 2.0, 128).reserve() <= reserve
+    )  # to let go in time asks for more than to let go
 
 
 def test_a_well_far_deeper_than_the_spring_and_none_at_all_reach_the_ends():
@@ -73,16 +75,20 @@ def test_the_furthest_value_is_where_the_curve_meets_what_is_allowed(allowed, wa
     volts, probability = np.array([70.0, 80.0, 90.0]), np.array([1e-5, 1e-3, 1e-2])
     found = furthest_allowed(volts, probability, allowed)
     assert found == (wanted if wanted is None else pytest.approx(wanted))
-    falling = furthest_allowed(100.0 - volts, probability, allowed)  # as heights, of which the least fail most
+    falling = furthest_allowed(
+        100.0 - volts, probability, allowed
+    )  # as heights, of which the least fail most
     assert falling == (wanted if wanted is None else pytest.approx(100.0 - wanted))
 
 
 def brute_force(plates, hold_V, times, about, known=()):
-    """Share of 600 plates that fail with `times` their attraction, solved one by one, and its standard error.
+    """Share of 600 plates that fail with `times` their attraction, solved one by one, and its
+    standard error.
 
     Parameters
     ----------
-    about : where they are drawn, for more of them to fail; each counts with its likelihood, whatever the place.
+    about : where they are drawn, for more of them to fail; each counts with its likelihood,
+        whatever the place.
     known : place of a number and its value.
     """
     z = np.random.default_rng(5).normal(size=(600, plates.dimension))
@@ -114,23 +120,30 @@ def test_the_probability_is_that_of_brute_force():
     assert least is not None
     assert smoother <= least
     known = plates.names.index("rms"), (least - 9.0) / 0.8  # deviations of the study's input
-    # all numbers are common: with a confidence of 0.9 all devices of up to a tenth of the batches may fail
+    # all numbers are common: with a confidence of 0.9 all devices of up to a tenth of the batches
+    # may fail
     assert 0.004 < brute_force(plates, plates.hold_V, 1.42, about, known)[0] < 0.1
     # so does less attraction bear weaker springs
     likely = response.sample(just_allowed(response, plates.hold_V, 0.01), plates.hold_V, 0)
-    weaker, spring = (least_spring(response, likely, times, plates.hold_V, 0.01) for times in (1.29, 1.42))
+    weaker, spring = (
+        least_spring(response, likely, times, plates.hold_V, 0.01) for times in (1.29, 1.42)
+    )
     assert weaker is not None
     assert spring is not None
     assert weaker < spring
     for times, value in ((1.29, weaker), (1.42, spring)):
-        sprung = replace(plates, settings=plates.settings.model_copy(update={"spring_N_per_m": value}))
+        sprung = replace(
+            plates, settings=plates.settings.model_copy(update={"spring_N_per_m": value})
+        )
         share, error = brute_force(sprung, plates.hold_V, times, about)
         # the spring's 32 switches know 1 % to 25 %
         assert abs(np.log(share / 0.01)) < 2.0 * np.hypot(0.25, error / share)
 
 
 def test_a_switch_whose_halves_disagree_is_decided_by_more_cells():
-    """Pads of few cells that pull ten times too hard on one half of them; those of many pull as they should."""
+    """Pads of few cells that pull ten times too hard on one half of them; those of many pull as
+    they should.
+    """
     asked = []
 
     class Uneven(KnownPad):
@@ -164,7 +177,9 @@ def test_populations_that_cannot_be_pressed_and_windows_that_none_reaches_are_on
     plates = population()
     with pytest.raises(InputError, match=r"failure: 0 of \d+ switches can be solved"):
         learn(replace(plates, press=refused, solved=(plates.solved[0][:0], [])), lambda *_: None)
-    with pytest.raises(InputError, match=r"failure\.release_V = 60: 0 of \d+ switches release above it"):
+    with pytest.raises(
+        InputError, match=r"failure\.release_V = 60: 0 of \d+ switches release above it"
+    ):
         learn(replace(population(), release_V=60.0), lambda *_: None)
 
 

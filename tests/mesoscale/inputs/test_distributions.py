@@ -13,7 +13,9 @@ from mesoscale.inputs.distributions import (
 
 
 def table(*distributions, correlation=None):
-    rows = tuple(UncertainInput(f"x{k}", "1", d, "literature", "") for k, d in enumerate(distributions))
+    rows = tuple(
+        UncertainInput(f"x{k}", "1", d, "literature", "") for k, d in enumerate(distributions)
+    )
     return InputTable(rows, np.eye(len(rows)) if correlation is None else correlation)
 
 
@@ -21,7 +23,11 @@ def table(*distributions, correlation=None):
     ("distribution", "mean", "deviation"),
     [
         (Distribution("uniform", 2, 15), 8.5, 13 / np.sqrt(12)),
-        (Distribution("log_uniform", 2, 8), 6 / np.log(4), np.sqrt(30 / np.log(4) - (6 / np.log(4)) ** 2)),
+        (
+            Distribution("log_uniform", 2, 8),
+            6 / np.log(4),
+            np.sqrt(30 / np.log(4) - (6 / np.log(4)) ** 2),
+        ),
         (Distribution("normal", 91, 3.8), 91, 3.8),
         (Distribution("truncated_normal", 0, 1, -1, 1), 0, 0.539560),  # 1 - 2 phi(1)/(2 Phi(1) - 1)
         (Distribution("fixed", 3), 3, 0),
@@ -41,7 +47,9 @@ def test_the_median_of_a_range_over_orders_is_no_midpoint():
 
 
 def test_nodes_span_the_central_share_of_a_normal_and_all_of_the_others():
-    assert Distribution("normal", 91, 3.8).span() == pytest.approx((91 - 3.290527 * 3.8, 91 + 3.290527 * 3.8))
+    assert Distribution("normal", 91, 3.8).span() == pytest.approx(
+        (91 - 3.290527 * 3.8, 91 + 3.290527 * 3.8)
+    )
     assert Distribution("uniform", 2, 15).span() == (2, 15)
 
 

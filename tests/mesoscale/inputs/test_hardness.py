@@ -20,7 +20,9 @@ def rows(**values: float | tuple[float, float]) -> dict[str, InputRow]:
     """Rows of a film on a base, fixed or uniform."""
     given = {"h_film": 10.5, "t_film": 5.0, "k_film": 0.24, "m_film": 1.2} | values
     return {
-        name: InputRow(values=value) if isinstance(value, tuple) else InputRow(distribution="fixed", values=(value,))
+        name: InputRow(values=value)
+        if isinstance(value, tuple)
+        else InputRow(distribution="fixed", values=(value,))
         for name, value in given.items()
     }
 
@@ -51,7 +53,12 @@ def test_a_scene_has_the_inputs_of_its_law_and_computes_no_other():
     assert set(film.rows()) == names - {"h_prime"} | {"h_film", "t_film", "k_film", "m_film"}
     assert set(InputsSettings(hardness="constant").rows()) == names - {"h_prime"}
     assert "hardness" not in film.origins()
-    assert "hardness" in InputsSettings(hardness="film", **rows() | {"h_film": InputRow(origin="hardness")}).origins()
+    assert (
+        "hardness"
+        in InputsSettings(
+            hardness="film", **rows() | {"h_film": InputRow(origin="hardness")}
+        ).origins()
+    )
 
 
 def test_values_of_a_table_reach_the_contact():
@@ -66,7 +73,11 @@ def test_measured_hardness_is_compared_with_the_law_of_the_scene():
     prior = input_table(hardness="film", **rows())
     columns = {"hardness": np.ones(4), "hardness_error": np.ones(4), "area": AREAS}
     data = Measurements("hardness", columns, tuple("abcd"), False, 0.0, "hardness.csv")
-    (part,) = Model(prior, Cycles(np.empty((0, 0)), np.empty((0, len(NAMES)))), {}, 7000.0).posterior([data]).parts
+    (part,) = (
+        Model(prior, Cycles(np.empty((0, 0)), np.empty((0, len(NAMES)))), {}, 7000.0)
+        .posterior([data])
+        .parts
+    )
     x = np.array([[getattr(FILM, name, prior.medians()[name]) for name in prior.names]] * 2)
     np.testing.assert_allclose(part.model(x), [FILM.pressure(AREAS)] * 2)
 
@@ -74,9 +85,15 @@ def test_measured_hardness_is_compared_with_the_law_of_the_scene():
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"hardness": "film"}, r"hardness: film needs h_film, hardness of the film \(GPa\); give its row"),
+        (
+            {"hardness": "film"},
+            r"hardness: film needs h_film, hardness of the film \(GPa\); give its row",
+        ),
         (rows(), "h_film belongs to hardness: film, but hardness is paper; set h_film to null"),
-        ({"hardness": "constant", "h_prime": InputRow(values=(2, 15))}, "h_prime belongs to hardness: paper"),
+        (
+            {"hardness": "constant", "h_prime": InputRow(values=(2, 15))},
+            "h_prime belongs to hardness: paper",
+        ),
         ({"h_prime": None}, "hardness: paper needs h_prime"),
     ],
 )
@@ -88,14 +105,23 @@ def test_a_row_that_is_missing_or_belongs_to_another_law(given, message):
 def test_a_film_without_enough_closing_runs_is_refused():
     settings = InputsSettings(hardness="film", **{**PAPER_ROWS, "h_prime": None, **rows()})
     settings = settings.model_copy(update={"h_film": InputRow(origin="hardness")})
-    failed = {"hardness": {"gate": {"passed": False, "reasons": ["2 of 12 runs gave a defended hardness"]}}}
-    with pytest.raises(InputError, match=r"fit\.json: its gate failed \(2 of 12 runs.*\), so h_film cannot be taken"):
+    failed = {
+        "hardness": {
+            "gate": {"passed": False, "reasons": ["2 of 12 runs gave a defended hardness"]}
+        }
+    }
+    with pytest.raises(
+        InputError,
+        match=r"fit\.json: its gate failed \(2 of 12 runs.*\), so h_film cannot be taken",
+    ):
         collect(settings, failed, {"hardness": "hardness/fit.json"})
 
 
 def test_a_film_softer_than_its_base_is_refused():
     table = input_table(hardness="film", **rows(h_film=0.5))
-    with pytest.raises(InputError, match=r"h_film = 0.5 GPa on h_macro = 1.95 GPa: accepted are films"):
+    with pytest.raises(
+        InputError, match=r"h_film = 0.5 GPa on h_macro = 1.95 GPa: accepted are films"
+    ):
         contact_of(table.medians(), ContactSettings())
 
 

@@ -36,7 +36,14 @@ def stages(passed=True):
     return {
         "hardness": {
             "gate": gate,
-            "inputs": {"h_prime": {"distribution": "uniform", "a": 5.8, "b": 15.0, "correlation": {"h_macro": -0.4}}},
+            "inputs": {
+                "h_prime": {
+                    "distribution": "uniform",
+                    "a": 5.8,
+                    "b": 15.0,
+                    "correlation": {"h_macro": -0.4},
+                }
+            },
         },
         "elastic": {
             "gate": {"passed": True, "reasons": []},
@@ -44,7 +51,9 @@ def stages(passed=True):
         },
         "topography": {
             "gate": {"passed": True, "reasons": []},
-            "inputs": {name: {"distribution": "uniform", "a": a, "b": b} for name, (a, b) in ranges.items()},
+            "inputs": {
+                name: {"distribution": "uniform", "a": a, "b": b} for name, (a, b) in ranges.items()
+            },
         },
     }
 
@@ -87,7 +96,9 @@ def test_a_pad_has_the_typical_place_of_its_film_and_how_much_places_differ():
     pad = film_table(cells, FILM, None)
     assert pad.names == [*cells.names, "rms_scatter"]
     middle = pad.medians()
-    assert [middle[name] for name in ("rms", "hurst", "rms_scatter")] == pytest.approx([5.75, 0.75, 0.3])
+    assert [middle[name] for name in ("rms", "hurst", "rms_scatter")] == pytest.approx(
+        [5.75, 0.75, 0.3]
+    )
     others = ("hamaker", "e_star", "h_macro", "h_prime", "q0")
     assert [middle[name] for name in others] == [cells.medians()[name] for name in others]
     assert (pad.correlation[:-1, :-1] == cells.correlation).all()
@@ -104,7 +115,8 @@ def test_a_range_of_the_literature_is_split_only_where_the_scene_says_how():
 
 
 @pytest.mark.parametrize(
-    ("given", "message"), [((0.4, 0.2), "must not exceed"), ((-0.1, 0.2), "greater than"), ((0.1, 3), "less than")]
+    ("given", "message"),
+    [((0.4, 0.2), "must not exceed"), ((-0.1, 0.2), "greater than"), ((0.1, 3), "less than")],
 )
 def test_a_scatter_of_places_that_is_no_range_is_refused_in_one_line(given, message):
     with pytest.raises(InputError, match=message):
@@ -126,7 +138,9 @@ def test_table_survives_writing_and_reading():
 
 
 def test_failed_gate_stops_with_its_reason():
-    with pytest.raises(InputError, match=r"hardness/fit.json.*fewer than 3 sizes.*h_prime.*literature"):
+    with pytest.raises(
+        InputError, match=r"hardness/fit.json.*fewer than 3 sizes.*h_prime.*literature"
+    ):
         collect(InputsSettings(), stages(passed=False), FILES)
 
 
@@ -163,16 +177,27 @@ def test_samples_of_one_file_are_joint(tmp_path):
     file, rng = tmp_path / "film.csv", np.random.default_rng(3)
     hurst = rng.uniform(0.5, 0.9, 400)
     rms = 3 + 2 * (1 - hurst) + 0.1 * rng.standard_normal(400)
-    np.savetxt(file, np.column_stack([hurst, rms, hurst]), delimiter=",", header="hurst,rms,place", comments="")
+    np.savetxt(
+        file,
+        np.column_stack([hurst, rms, hurst]),
+        delimiter=",",
+        header="hurst,rms,place",
+        comments="",
+    )
     row = InputRow(distribution="samples", values=str(file))
     table = collect(PAPER.model_copy(update={"hurst": row, "rms": row}), {}, {})
     drawn = dict(zip(table.names, table.sample(20_000, 1).T, strict=True))
-    assert np.corrcoef(drawn["hurst"], drawn["rms"])[0, 1] == pytest.approx(np.corrcoef(hurst, rms)[0, 1], abs=0.02)
+    assert np.corrcoef(drawn["hurst"], drawn["rms"])[0, 1] == pytest.approx(
+        np.corrcoef(hurst, rms)[0, 1], abs=0.02
+    )
     assert np.std(drawn["rms"] - 3 - 2 * (1 - drawn["hurst"])) == pytest.approx(0.1, rel=0.1)
 
 
 def samples_of(*names, varies="common", **files):
-    rows = {name: InputRow(distribution="samples", values=str(files[name]), varies=varies) for name in names}
+    rows = {
+        name: InputRow(distribution="samples", values=str(files[name]), varies=varies)
+        for name in names
+    }
     return PAPER.model_copy(update=rows)
 
 
@@ -180,7 +205,13 @@ def test_joint_samples_of_a_file_are_joint_however_its_path_is_written(tmp_path)
     """As are those of a link to it."""
     file, link = tmp_path / "g.csv", tmp_path / "link.csv"
     rng = np.random.default_rng(0)
-    np.savetxt(file, rng.uniform(0.6, 0.9, 200)[:, None] * [1.0, 10.0], delimiter=",", header="hurst,rms", comments="")
+    np.savetxt(
+        file,
+        rng.uniform(0.6, 0.9, 200)[:, None] * [1.0, 10.0],
+        delimiter=",",
+        header="hurst,rms",
+        comments="",
+    )
     link.symlink_to(file)
     for other in (f"{tmp_path}/./g.csv", link):
         table = collect(samples_of("hurst", "rms", hurst=file, rms=other), {}, {})
@@ -192,9 +223,13 @@ def test_joint_samples_of_what_is_common_and_what_varies_are_refused(tmp_path):
     file = tmp_path / "g.csv"
     file.write_text("hurst,rms\n0.7,4\n0.8,5\n0.75,7\n")
     settings = samples_of("hurst", "rms", hurst=file, rms=file)
-    settings = settings.model_copy(update={"rms": settings.rms.model_copy(update={"varies": "each"})})
+    settings = settings.model_copy(
+        update={"rms": settings.rms.model_copy(update={"varies": "each"})}
+    )
     for check in (lambda: collect(settings, {}, {}), lambda: check_literature(settings)):
-        with pytest.raises(InputError, match="joint samples of hurst, rms, of which some are common to all devices"):
+        with pytest.raises(
+            InputError, match="joint samples of hurst, rms, of which some are common to all devices"
+        ):
             check()
 
 
@@ -221,7 +256,9 @@ def test_a_table_is_read_once_for_all_its_columns(tmp_path, monkeypatch):
     file, opened = tmp_path / "g.csv", []
     file.write_text("hurst,rms,\n0.7,4,\n0.8,5,\n0.75,7,\n")
     read = Path.open
-    monkeypatch.setattr(Path, "open", lambda self, *args, **more: opened.append(self) or read(self, *args, **more))
+    monkeypatch.setattr(
+        Path, "open", lambda self, *args, **more: opened.append(self) or read(self, *args, **more)
+    )
     settings = samples_of("hurst", "rms", hurst=file, rms=file)
     collect(settings, {}, {})
     check_literature(settings)
@@ -237,7 +274,8 @@ def test_samples_without_their_partners_are_refused(tmp_path):
     settings = PAPER.model_copy(update={"rms": InputRow(distribution="samples", values=str(file))})
     for check in (lambda: collect(settings, {}, {}), lambda: check_literature(settings)):
         with pytest.raises(
-            InputError, match=r"inputs.rms.values = .*: holds samples of hurst beside; give inputs.hurst"
+            InputError,
+            match=r"inputs.rms.values = .*: holds samples of hurst beside; give inputs.hurst",
         ):
             check()
 
@@ -245,7 +283,10 @@ def test_samples_without_their_partners_are_refused(tmp_path):
 def test_a_measured_cutoff_beyond_the_grid_is_refused_with_what_to_do():
     table = input_table(q1=InputRow(values=(0.2, 1.0)))
     check_resolved(table, 1.0)
-    with pytest.raises(InputError, match=r"q1 reaches 1 1/nm, beyond .* \(0\.8 1/nm\); raise contact\.pixels, or set"):
+    with pytest.raises(
+        InputError,
+        match=r"q1 reaches 1 1/nm, beyond .* \(0\.8 1/nm\); raise contact\.pixels, or set",
+    ):
         check_resolved(table, 0.8)
 
 
@@ -278,9 +319,13 @@ def test_mistakes_in_a_row(row, message):
 def test_mistakes_across_rows():
     with pytest.raises(InputError, match="unknown input hardness"):
         InputsSettings(correlations={"rms": {"hardness": 0.3}})
-    with pytest.raises(InputError, match="e_star with h_macro is stated twice; leave one of them out"):
+    with pytest.raises(
+        InputError, match="e_star with h_macro is stated twice; leave one of them out"
+    ):
         InputsSettings(correlations={"e_star": {"h_macro": 0.5}, "h_macro": {"e_star": -0.5}})
-    with pytest.raises(InputError, match="rms with q0 = 1; accepted is more than -1 and less than 1"):
+    with pytest.raises(
+        InputError, match="rms with q0 = 1; accepted is more than -1 and less than 1"
+    ):
         InputsSettings(correlations={"rms": {"q0": 1.0}})
     with pytest.raises(InputError, match="q0: origin elastic"):
         InputsSettings(q0=InputRow(origin="elastic"))
@@ -293,7 +338,11 @@ def test_settings_called_from_python_give_one_line_for_all_mistakes():
     assert "\n" not in message
     assert all(
         word in message
-        for word in ("pixels = 'many'", "lenght_nm = 3: unknown key; did you mean length_nm?", "max_force_nN = -1.5")
+        for word in (
+            "pixels = 'many'",
+            "lenght_nm = 3: unknown key; did you mean length_nm?",
+            "max_force_nN = -1.5",
+        )
     )
 
 

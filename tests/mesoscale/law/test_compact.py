@@ -18,7 +18,9 @@ def curve(law=TRUE, low=23.0, high=60.0, points=80):
 
 
 def test_flat_plates_attract_as_hamaker():
-    """Eq. 10 beyond contact, A_H/(6 pi h^3): 0.215e-18 J at 10 nm over 1 um^2; the shield fades as (alpha/h)^3."""
+    """Eq. 10 beyond contact, A_H/(6 pi h^3): 0.215e-18 J at 10 nm over 1 um^2; the shield fades as
+    (alpha/h)^3.
+    """
     attractive, repulsive = force(10.0, Law(0.0, 1e-4, 1e-4, 1.0, 0.215, shield_nm=1e-3), AREA)
     assert attractive == pytest.approx(-11.406, rel=1e-3)
     assert repulsive == 0
@@ -76,7 +78,9 @@ def test_forces_scale_with_the_prefactors():
 
 
 def test_degeneracy_shifting_contact_moves_the_prefactor_by_the_exponential():
-    """Far from contact the curve only determines C_r exp(d_c / rho_r): hence d_c must come from the curve."""
+    """Far from contact the curve only determines C_r exp(d_c / rho_r): hence d_c must come from the
+    curve.
+    """
     law = Law(40.0, 0.0, 1e-6, 2.0, 0.215)
     deep = curve(law, low=18.0, high=26.0)
     here, there = (fit_branch(*deep, AREA, 0.215, d_c) for d_c in (40.0, 44.0))
@@ -96,7 +100,9 @@ def test_noise_is_covered_by_the_covariance():
     separation, repulsive, attractive = curve(points=400)
     fits = []
     for _ in range(100):
-        noisy = np.maximum(repulsive + rng.normal(0, 0.02 * repulsive.max(), 400) * (repulsive > 0), 0)
+        noisy = np.maximum(
+            repulsive + rng.normal(0, 0.02 * repulsive.max(), 400) * (repulsive > 0), 0
+        )
         fits.append(fit_branch(separation, noisy, attractive, AREA, 0.215, 32.0))
     rho = np.array([fit.rho_r_nm for fit in fits])
     claimed = np.sqrt(np.mean([fit.covariance[2, 2] for fit in fits]))

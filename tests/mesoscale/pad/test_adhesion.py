@@ -10,7 +10,9 @@ from mesoscale.pad.curves import press_cells
 from mesoscale.pad.memory import Flats, PadLaw, flats_of, law_of
 from mesoscale.settings import ContactSettings
 
-INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=4.4)
+INPUTS = ContactInputs(
+    hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=4.4
+)
 SMALL = ContactSettings(mechanics="asperity", pixels=128, q1_per_nm=0.2)
 
 
@@ -19,7 +21,9 @@ def adhesion(mechanics: str = "asperity", cells: int = 2, **changes: float):
     contact = SMALL.model_copy(update={"mechanics": mechanics, **changes})
     sampled = sample_cells(INPUTS, cells)
     grid = plan_grid(INPUTS, contact, sampled, lambda separation: 0.005 + 0.0 * separation)
-    return adhesion_of(law_of(press_cells(INPUTS, contact, grid, sampled), flats_of(INPUTS, contact)))
+    return adhesion_of(
+        law_of(press_cells(INPUTS, contact, grid, sampled), flats_of(INPUTS, contact))
+    )
 
 
 def test_flats_that_touch_nowhere_have_hamakers_energy():
@@ -32,11 +36,15 @@ def test_flats_that_touch_nowhere_have_hamakers_energy():
 
 
 def test_work_begins_where_the_force_is_zero():
-    """Without a pull beyond the table: the triangle from 30 nm, where the net pressure changes its sign."""
+    """Without a pull beyond the table: the triangle from 30 nm, where the net pressure changes its
+    sign.
+    """
     separation = np.linspace(20.0, 60.0, 401)
     net = np.interp(separation, [20.0, 30.0, 40.0, 60.0], [1e-3, 0.0, -1e-4, 0.0])
     branch = np.stack([np.maximum(net, 0.0), np.minimum(net, 0.0)])
-    (opened,) = adhesion_of(PadLaw(separation, branch, separation[:1], branch[None], Flats(0.0, 0.0)))
+    (opened,) = adhesion_of(
+        PadLaw(separation, branch, separation[:1], branch[None], Flats(0.0, 0.0))
+    )
     assert opened.zero_force_nm == pytest.approx(30.0)
     assert opened.load_MPa == pytest.approx(1.0)
     assert opened.energy_uJ_m2 == pytest.approx(1e6 * 0.5 * 30.0 * 1e-4, rel=1e-3)
@@ -46,7 +54,9 @@ def test_work_begins_where_the_force_is_zero():
 @pytest.mark.parametrize("mechanics", ["asperity", "coupled", "adhesive"])
 def test_pads_pull_more_than_flats_and_the_more_the_harder_they_were_pressed(mechanics):
     opened = adhesion(mechanics, gap_cutoff_nm=0.3)
-    assert all(row.pull_off_kPa > 0.0 and row.energy_uJ_m2 > 0.9 * row.flats_uJ_m2 for row in opened)
+    assert all(
+        row.pull_off_kPa > 0.0 and row.energy_uJ_m2 > 0.9 * row.flats_uJ_m2 for row in opened
+    )
     loads = [row.load_MPa for row in opened]
     assert loads == sorted(loads, reverse=True)
     assert opened[0].energy_uJ_m2 >= opened[-1].energy_uJ_m2

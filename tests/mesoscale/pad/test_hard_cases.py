@@ -12,19 +12,30 @@ from mesoscale.pad.curves import press_cells
 from mesoscale.settings import ContactSettings
 from mesoscale.studies.pad_stability import ATTRACTIONS, SOFT_FILM, hard_cases, violations
 
-MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
+MIDDLE = ContactInputs(
+    hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5
+)
 CASES = {
     mechanics: hard_cases(MIDDLE, ContactSettings(mechanics=mechanics, pixels=64))
     for mechanics in ("asperity", "coupled")
 }
-ALL = [(mechanics, case) for mechanics, cases in CASES.items() for case in cases if case.name != SOFT_FILM]
+ALL = [
+    (mechanics, case)
+    for mechanics, cases in CASES.items()
+    for case in cases
+    if case.name != SOFT_FILM
+]
 
 
-@pytest.mark.parametrize(("mechanics", "case"), ALL, ids=[f"{mechanics}: {case.name}" for mechanics, case in ALL])
+@pytest.mark.parametrize(
+    ("mechanics", "case"), ALL, ids=[f"{mechanics}: {case.name}" for mechanics, case in ALL]
+)
 def test_hard_pads_keep_all_invariants(mechanics, case):
     passed, detail = case.judge()
     assert passed, detail
-    assert case.name == "merging asperities" or not detail.startswith("refused")  # none of these needs to be
+    assert case.name == "merging asperities" or not detail.startswith(
+        "refused"
+    )  # none of these needs to be
 
 
 def test_every_attraction_is_tried_plastic_and_elastic():
@@ -34,7 +45,9 @@ def test_every_attraction_is_tried_plastic_and_elastic():
 
 
 def test_soft_cells_are_solved_with_the_blocks_of_their_own_sites(monkeypatch):
-    """The sets of one change in a step that has settled: the block at hand is then of other sites."""
+    """The sets of one change in a step that has settled: the block at hand is then of other
+    sites.
+    """
     close_gaps, sizes = dense.close_gaps, []
 
     def noted(block, around, stencil, gap, goal, share):
@@ -51,7 +64,9 @@ def test_soft_cells_are_solved_with_the_blocks_of_their_own_sites(monkeypatch):
 def test_a_pad_that_breaks_an_invariant_is_told():
     contact = ContactSettings(mechanics="asperity", pixels=64)
     cells = sample_cells(MIDDLE, 2)
-    grid = plan_grid(MIDDLE, contact, cells, lambda separation_nm: np.full_like(separation_nm, 5e-3))
+    grid = plan_grid(
+        MIDDLE, contact, cells, lambda separation_nm: np.full_like(separation_nm, 5e-3)
+    )
     pad = press_cells(MIDDLE, contact, grid, cells)
     assert violations(pad) == []
     harder = pad.opening.copy()

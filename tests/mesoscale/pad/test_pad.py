@@ -26,7 +26,9 @@ from mesoscale.pad.memory import Flats, PadLaw, deepened, flats_of, law_of
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings
 
-MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
+MIDDLE = ContactInputs(
+    hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5
+)
 CONTACT = ContactSettings(mechanics="asperity", pixels=128)
 CELLS, STEP_NM = 16, 0.2
 WANTED_MPa = 5.0
@@ -48,7 +50,9 @@ def pad():
 
 
 def exponential_law(depths):
-    """A pad whose opening is known: exp(-(s - D) / 1.5 nm) 5 exp((25 - D)/2 nm) MPa, and a smooth attraction."""
+    """A pad whose opening is known: exp(-(s - D) / 1.5 nm) 5 exp((25 - D)/2 nm) MPa, and a smooth
+    attraction.
+    """
     s = np.arange(20.0, 60.0, 0.1)
 
     def closing(at):
@@ -62,7 +66,9 @@ def exponential_law(depths):
         above = s >= depth - 1e-9
         opening[k, 0, above] = closing(depth) * np.exp(-(s[above] - depth) / 1.5)
         opening[k, 1, above] = attraction(s[above])
-    law = PadLaw(s, np.stack([closing(s), attraction(s)]), np.array(depths), opening, Flats(0.2, 0.165))
+    law = PadLaw(
+        s, np.stack([closing(s), attraction(s)]), np.array(depths), opening, Flats(0.2, 0.165)
+    )
     return law, lambda at, depth: (closing(depth) * np.exp(-(at - depth) / 1.5), attraction(at))
 
 
@@ -88,7 +94,9 @@ def test_a_pad_that_one_tall_grain_carries_is_opened_from_light_loads(monkeypatc
 def test_a_pressure_out_of_reach_is_refused():
     rigid = ContactSettings(mechanics="asperity", pixels=32, length_nm=1000.0)
     soft = ContactInputs(**{**vars(MIDDLE), "e_star": 1e-6, "hamaker": 0.0})
-    with pytest.raises(InputError, match=r"of the 5 MPa that the switch presses with; lower hold_voltage_V"):
+    with pytest.raises(
+        InputError, match=r"of the 5 MPa that the switch presses with; lower hold_voltage_V"
+    ):
         plan_grid(soft, rigid, sample_cells(soft, 4), wanted_GPa)
 
 
@@ -103,18 +111,22 @@ def test_memory_between_depths_is_exact_for_exponential_branches():
     law, exact = exponential_law([21.0, 23.0, 25.0, 27.0])
     at = np.linspace(24.0, 40.0, 50)
     repulsion, attraction = exact(at, 24.0)
-    # linear between separations 0.1 nm apart: (0.1 / 1.5)^2 / 8 of an exponential of 1.5 nm; and s^-3 taken as an
-    # exponential between depths 2 nm apart: (3 / s^2) 2^2 / 8
+    # linear between separations 0.1 nm apart: (0.1 / 1.5)^2 / 8 of an exponential of 1.5 nm; and
+    # s^-3 taken as an exponential between depths 2 nm apart: (3 / s^2) 2^2 / 8
     error = np.abs(law.opening_GPa(at, 24.0) - repulsion - attraction)
     assert (error <= 6e-4 * repulsion + 2.7e-3 * np.abs(attraction)).all()
 
 
 def test_a_pad_that_is_continued_below_its_deepest_closing_is_exact_for_exponential_branches():
     law, exact = exponential_law([22.0, 24.0])
-    law = PadLaw(law.separation_nm[20:], law.closing[:, 20:], law.depth_nm, law.opening[:, :, 20:], law.flats)
+    law = PadLaw(
+        law.separation_nm[20:], law.closing[:, 20:], law.depth_nm, law.opening[:, :, 20:], law.flats
+    )
     deeper = deepened(law)
     depth = float(deeper.depth_nm[0])
-    assert depth == pytest.approx(22.0 - 2.0 * np.log(2.0))  # twice the repulsion, whose e-fold is 2 nm
+    assert depth == pytest.approx(
+        22.0 - 2.0 * np.log(2.0)
+    )  # twice the repulsion, whose e-fold is 2 nm
     at = np.linspace(depth, 40.0, 50)
     repulsion, attraction = exact(at, depth)
     # s^-3 is no exponential: (3 / s^2) over 1.4 nm, and 0.1 nm between separations
@@ -141,20 +153,29 @@ def test_far_away_a_pad_is_two_flats(pad):
     assert law.closing_GPa(2 * far) == pytest.approx(flats / twice**3, rel=1e-12, abs=0)
     pressure, slope = LocalPad(law)(np.array([[2 * far]]), np.array([[np.inf]]))
     assert pressure[0, 0] == pytest.approx(flats / twice**3, rel=1e-12, abs=0)
-    assert slope[0, 0] == pytest.approx(-3 * pressure[0, 0] / (2 * far + CONTACT.gap_cutoff_nm), rel=1e-12, abs=0)
+    assert slope[0, 0] == pytest.approx(
+        -3 * pressure[0, 0] / (2 * far + CONTACT.gap_cutoff_nm), rel=1e-12, abs=0
+    )
 
 
 def test_cells_are_pieces_of_a_film():
-    """Mean planes and RMS heights scatter as those of square pieces cut out of films of four times the side."""
+    """Mean planes and RMS heights scatter as those of square pieces cut out of films of four times
+    the side.
+    """
     small = ContactSettings(mechanics="asperity", pixels=64)
     large = ContactSettings(mechanics="asperity", pixels=256, length_nm=4000.0)
     pieces = FilmPieces(MIDDLE, small)
     planes = np.random.default_rng(0).normal(size=300)
-    ours = np.array([pieces.surface(Cell(seed, 0.0, plane, 1.0)) for seed, plane in enumerate(planes)])
+    ours = np.array(
+        [pieces.surface(Cell(seed, 0.0, plane, 1.0)) for seed, plane in enumerate(planes)]
+    )
     films = [random_surface(MIDDLE, large, seed) for seed in range(40)]
-    cut = np.concatenate([film.reshape(4, 64, 4, 64).swapaxes(1, 2).reshape(16, 64, 64) for film in films])
+    cut = np.concatenate(
+        [film.reshape(4, 64, 4, 64).swapaxes(1, 2).reshape(16, 64, 64) for film in films]
+    )
     for of_surface in (lambda h: h.mean(axis=(1, 2)), lambda h: h.std(axis=(1, 2))):
-        # a deviation from 300 pieces is known to 4 %; a cut piece also holds parts of waves longer than itself
+        # a deviation from 300 pieces is known to 4 %; a cut piece also holds parts of waves longer
+        # than itself
         assert of_surface(ours).std() == pytest.approx(of_surface(cut).std(), rel=0.35)
     assert np.mean(ours**2) == pytest.approx(MIDDLE.rms**2, rel=0.02)
     assert np.mean(cut**2) == pytest.approx(MIDDLE.rms**2, rel=0.02)
@@ -167,7 +188,9 @@ def film(scatter):
 @pytest.mark.parametrize("scatter", [0.0, 0.2, 0.75])
 @pytest.mark.parametrize("count", [1, 2, 12, 64])
 def test_classes_of_places_are_all_places_of_the_film(scatter, count):
-    """Weights are the shares of their classes, whose ends lie between the cells; each half is like the whole."""
+    """Weights are the shares of their classes, whose ends lie between the cells; each half is like
+    the whole.
+    """
     cells = sample_cells(film(scatter), count, pad_cells=1e5)
     assert sum(cell.weight for cell in cells) == pytest.approx(1.0)
     rougher = np.cumsum([cell.weight for cell in cells])
@@ -207,7 +230,9 @@ def test_each_half_of_a_pad_stands_for_the_places_of_the_other():
 
 
 def cells_with_wells(first_contact_nm):
-    """Cells that pull only near where they touch first, at wells of 1 nm RMS width and 1 GPa, whatever their depth."""
+    """Cells that pull only near where they touch first, at wells of 1 nm RMS width and 1 GPa,
+    whatever their depth.
+    """
     separation, depths = np.arange(50.0, 10.0, -0.1), np.array([330, 360, 390])
     wells = -np.exp(-0.5 * (separation - first_contact_nm[:, None]) ** 2)
     closing = np.stack([np.zeros_like(wells), wells], axis=1)
@@ -216,25 +241,45 @@ def cells_with_wells(first_contact_nm):
         opening[:, number, :, depth + 1 :] = np.nan
     count = first_contact_nm.size
     ones = np.ones(count)
-    return PadCells(PadGrid(separation, depths), ones / count, ones, first_contact_nm, closing, opening, ones > 0)
+    return PadCells(
+        PadGrid(separation, depths),
+        ones / count,
+        ones,
+        first_contact_nm,
+        closing,
+        opening,
+        ones > 0,
+    )
 
 
 def test_a_dozen_cells_have_the_well_of_a_pad_of_many():
-    """Wells at normal places of 3 nm: the mean of many is a well of (1 + 3^2)^0.5 nm, 0.316 GPa deep."""
+    """Wells at normal places of 3 nm: the mean of many is a well of (1 + 3^2)^0.5 nm, 0.316 GPa
+    deep.
+    """
     exact, flats = (1.0 + 3.0**2) ** -0.5, Flats(0.215, 0.165)
-    pads = [cells_with_wells(30.0 + 3.0 * np.random.default_rng(seed).normal(size=12)) for seed in range(20)]
+    pads = [
+        cells_with_wells(30.0 + 3.0 * np.random.default_rng(seed).normal(size=12))
+        for seed in range(20)
+    ]
     plain, smoothed = (
         np.array([-pull.min() for pull in of])
-        for of in ([pad.mean(pad.closing)[1] for pad in pads], [law_of(pad, flats).closing[1] for pad in pads])
+        for of in (
+            [pad.mean(pad.closing)[1] for pad in pads],
+            [law_of(pad, flats).closing[1] for pad in pads],
+        )
     )
     assert abs(smoothed.mean() - exact) < 0.2 * (plain.mean() - exact)
     area = np.array([-0.1 * law_of(pad, flats).closing[1].sum() for pad in pads])
-    assert area == pytest.approx((2.0 * np.pi) ** 0.5, rel=1e-3)  # of a single well: nothing is lost
+    assert area == pytest.approx(
+        (2.0 * np.pi) ** 0.5, rel=1e-3
+    )  # of a single well: nothing is lost
 
 
 def test_cells_that_touch_first_at_one_separation_are_not_shifted():
     pad = cells_with_wells(np.full(3, 30.0))
-    assert law_of(pad, Flats(0.215, 0.165)).closing == pytest.approx(pad.mean(pad.closing)[:, ::-1], rel=1e-12)
+    assert law_of(pad, Flats(0.215, 0.165)).closing == pytest.approx(
+        pad.mean(pad.closing)[:, ::-1], rel=1e-12
+    )
 
 
 def test_a_film_whose_places_are_alike_is_one_without_places():
@@ -245,10 +290,15 @@ def test_a_film_whose_places_are_alike_is_one_without_places():
 
 
 def test_a_rough_place_in_its_own_steps_has_the_forces_of_short_ones(monkeypatch):
-    """Six times the median RMS, steps of 0.8 nm for 0.2: lines overrate a force by 6 %, underrate a well by 16 %."""
+    """Six times the median RMS, steps of 0.8 nm for 0.2: lines overrate a force by 6 %, underrate a
+    well by 16 %.
+    """
     place = Cell(PAD.first_seed, float(np.log(6.0)) / 0.4, 0.0, 1.0)
     touch = -float(surface_of(film(0.4), CONTACT, place).min())
-    grid = PadGrid(touch + np.concatenate([np.arange(40.0, 2.0, -1.0), np.arange(2.0, -18.1, -0.2)]), np.array([138]))
+    grid = PadGrid(
+        touch + np.concatenate([np.arange(40.0, 2.0, -1.0), np.arange(2.0, -18.1, -0.2)]),
+        np.array([138]),
+    )
     own = pressed(film(0.4), [place], grid)
     monkeypatch.setattr("mesoscale.pad.cells.PAD", replace(PAD, place_step_rms=0.0))
     short = pressed(film(0.4), [place], grid)
@@ -260,14 +310,18 @@ def test_a_rough_place_in_its_own_steps_has_the_forces_of_short_ones(monkeypatch
 
 def test_steps_grow_with_the_roughness_of_the_places_that_touch():
     unequal, alike = (
-        plan_grid(film(scatter), CONTACT, sample_cells(film(scatter), 16), wanted_GPa, step_nm=STEP_NM)
+        plan_grid(
+            film(scatter), CONTACT, sample_cells(film(scatter), 16), wanted_GPa, step_nm=STEP_NM
+        )
         for scatter in (0.15, 0.0)
     )
     steps = -np.diff(unequal.separation_nm)
     assert steps[-5:] == pytest.approx(STEP_NM)
     assert steps.max() < 0.2 * unequal.separation_nm[0]
     assert (np.diff(steps) < 1e-9).all()  # from far to near
-    assert unequal.separation_nm.size < 1.5 * alike.separation_nm.size  # though rough places touch much farther out
+    assert (
+        unequal.separation_nm.size < 1.5 * alike.separation_nm.size
+    )  # though rough places touch much farther out
 
 
 def test_where_rough_places_alone_carry_the_pad_the_grid_ends_above_the_typical_first_contact():
@@ -285,17 +339,30 @@ def test_mean_planes_and_heights_of_a_place_grow_together():
 
 
 def test_a_film_of_long_waves_is_closed_in_steps_that_fit_its_way():
-    """One wave to a cell: it carries the pressure after a fraction of a step of 0.05 RMS heights."""
-    long, contact = replace(MIDDLE, q0=0.001, rms=76.0), CONTACT.model_copy(update={"length_nm": 6000.0})
+    """One wave to a cell: it carries the pressure after a fraction of a step of 0.05 RMS
+    heights.
+    """
+    long, contact = (
+        replace(MIDDLE, q0=0.001, rms=76.0),
+        CONTACT.model_copy(update={"length_nm": 6000.0}),
+    )
     cells = sample_cells(long, 4)
     grid = plan_grid(long, contact, cells, wanted_GPa, step_nm=0.05 * long.rms)
     steps = -np.diff(grid.separation_nm)
     assert steps[-1] <= 0.05 * long.rms / 3 + 1e-9
-    assert np.sum(grid.separation_nm < max(-float(surface_of(long, contact, cell).min()) for cell in cells)) > 15
+    assert (
+        np.sum(
+            grid.separation_nm
+            < max(-float(surface_of(long, contact, cell).min()) for cell in cells)
+        )
+        > 15
+    )
 
 
 def test_a_coarse_film_opens_to_where_it_closes_without_a_step():
-    """Ten times the lengths of the known pad: opening and closing differ up to 100 nm above the deepest closing."""
+    """Ten times the lengths of the known pad: opening and closing differ up to 100 nm above the
+    deepest closing.
+    """
     law, _ = exponential_law([22.0, 25.0])
     coarse = replace(law, separation_nm=10 * law.separation_nm, depth_nm=10 * law.depth_nm)
     rises = np.arange(0.5, 150.0, 0.5)
@@ -317,6 +384,8 @@ def test_a_pad_of_one_depth_opens_from_it_without_a_warning():
 
 
 def test_a_spectrum_beside_the_waves_of_a_cell_is_refused_in_one_line():
-    longer = ContactSettings.model_validate({"pixels": 32, "surface": {"spectrum": {"q": [1e-5, 1e-4], "psd": [1, 1]}}})
+    longer = ContactSettings.model_validate(
+        {"pixels": 32, "surface": {"spectrum": {"q": [1e-5, 1e-4], "psd": [1, 1]}}}
+    )
     with pytest.raises(InputError, match=r"the spectrum has no wave from 0\.00628"):
         FilmPieces(MIDDLE, longer)

@@ -30,7 +30,9 @@ def grainy(count):
 
 def judged(scans, name):
     spectra = [trusted_scan(scan, SETTINGS) for scan in scans]
-    return list(judge(scans, spectra, name, INPUTS, SETTINGS, ContactSettings(mechanics="asperity")))
+    return list(
+        judge(scans, spectra, name, INPUTS, SETTINGS, ContactSettings(mechanics="asperity"))
+    )
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +48,9 @@ def test_scans_agree_with_the_description_that_the_others_make(by_heights):
 
 def test_a_gaussian_description_of_tall_grains_is_found_out(by_heights):
     grains, plain = (
-        np.median([row["pressed"] / row["median"] for row in rows if row["quantity"] == "first_contact"])
+        np.median(
+            [row["pressed"] / row["median"] for row in rows if row["quantity"] == "first_contact"]
+        )
         for rows in (by_heights, judged(list(grainy(4)), "measured_spectrum"))
     )
     assert abs(grains - 1) < 0.15
@@ -56,17 +60,28 @@ def test_a_gaussian_description_of_tall_grains_is_found_out(by_heights):
 def test_a_lone_scan_judges_the_description_made_from_itself():
     rows = judged(list(grainy(1)), "measured_heights")
     assert not any(row["left_out"] for row in rows)
-    assert {row["quantity"] for row in rows} == {"rms", "first_contact", "separation_1uN", "separation_7uN", "area_7uN"}
+    assert {row["quantity"] for row in rows} == {
+        "rms",
+        "first_contact",
+        "separation_1uN",
+        "separation_7uN",
+        "area_7uN",
+    }
 
 
 @pytest.mark.parametrize("measured", [False, True], ids=["eq. 9", "measured spectrum"])
 def test_the_first_surfaces_scatter_as_places_do(measured):
     """Twenty are pressed: too few to leave the scatter between places to chance."""
     factors = np.exp(0.4 * np.array([-1.3, -0.6, 0.0, 0.6, 1.3]))
-    scans = [replace(scan, heights_nm=k * scan.heights_nm) for k, scan in zip(factors, grainy(5), strict=True)]
+    scans = [
+        replace(scan, heights_nm=k * scan.heights_nm)
+        for k, scan in zip(factors, grainy(5), strict=True)
+    ]
     spectra = [trusted_scan(scan, SETTINGS) for scan in scans]
     topography, one = analyse(spectra, SETTINGS), merge(spectra) if measured else None
-    levels = [np.log(psd(np.array([0.1]))[0]) / 2 for psd in Described(topography, one, ()).spectra(20)]
+    levels = [
+        np.log(psd(np.array([0.1]))[0]) / 2 for psd in Described(topography, one, ()).spectra(20)
+    ]
     place = (one.place_sd if one else topography.likelihood.amplitude_sd) / 2
     assert np.std(levels) == pytest.approx(place, rel=0.3)
 
@@ -75,7 +90,14 @@ def test_a_scan_that_the_others_say_nothing_of_is_passed_over():
     first, second = grainy(2)
     blind = trusted_scan(second, SETTINGS)
     spectra = [trusted_scan(first, SETTINGS), replace(blind, high=blind.low, reach=blind.low)]
-    rows = judge([first, second], spectra, "power_law", INPUTS, SETTINGS, ContactSettings(mechanics="asperity"))
+    rows = judge(
+        [first, second],
+        spectra,
+        "power_law",
+        INPUTS,
+        SETTINGS,
+        ContactSettings(mechanics="asperity"),
+    )
     assert {row["scan"] for row in rows} == {"g1"}
 
 
@@ -83,7 +105,11 @@ def test_a_load_that_merges_all_contacts_is_no_judge():
     """The same heights a thousand times as far apart: 7 MPa press all of them flat."""
     (scan,) = grainy(1)
     wide = Scan(scan.heights_nm, (1e6, 1e6), "wide")
-    assert {row["quantity"] for row in judged([wide], "measured_heights")} <= {"rms", "first_contact", "separation_1uN"}
+    assert {row["quantity"] for row in judged([wide], "measured_heights")} <= {
+        "rms",
+        "first_contact",
+        "separation_1uN",
+    }
 
 
 @pytest.mark.parametrize(("count", "outside"), [(20, 1), (40, 2)])

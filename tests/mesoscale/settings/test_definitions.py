@@ -1,4 +1,6 @@
-"""The rows of the table of inputs, and how an input that replaces a setting enters the contact model."""
+"""The rows of the table of inputs, and how an input that replaces a setting enters the contact
+model.
+"""
 
 from operator import attrgetter
 
@@ -9,7 +11,15 @@ from mesoscale.inputs.contact import contact_of
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.definitions import INPUTS
 
-MIDDLE = {"hamaker": 0.2, "e_star": 90.0, "h_macro": 2.0, "h_prime": 8.0, "q0": 0.025, "hurst": 0.7, "rms": 5.0}
+MIDDLE = {
+    "hamaker": 0.2,
+    "e_star": 90.0,
+    "h_macro": 2.0,
+    "h_prime": 8.0,
+    "q0": 0.025,
+    "hurst": 0.7,
+    "rms": 5.0,
+}
 
 
 @pytest.mark.parametrize("row", [row for row in INPUTS if row.setting], ids=lambda row: row.name)

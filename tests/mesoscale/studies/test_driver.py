@@ -1,4 +1,6 @@
-"""The driver of the studies: rows of declared knobs and of hard cases, and what a key of a scene states."""
+"""The driver of the studies: rows of declared knobs and of hard cases, and what a key of a scene
+states.
+"""
 
 from functools import partial
 
@@ -6,7 +8,15 @@ import numpy as np
 import pytest
 
 from asperity.guards.settings import key
-from mesoscale.studies.driver import Choice, HardCase, Knob, Quantity, root_mean_square, rows_of, stability_rows
+from mesoscale.studies.driver import (
+    Choice,
+    HardCase,
+    Knob,
+    Quantity,
+    root_mean_square,
+    rows_of,
+    stability_rows,
+)
 
 
 def integrals(parts: int, ends: tuple[float, ...] = (1.0, 2.0, 3.0)) -> np.ndarray:
@@ -20,7 +30,9 @@ def integrals(parts: int, ends: tuple[float, ...] = (1.0, 2.0, 3.0)) -> np.ndarr
 
 def knob_of(quantities: list[Quantity], shipped: int = 8) -> Knob:
     choices = [Choice(parts, partial(integrals, parts)) for parts in (4, 8)]
-    return Knob("parts", quantities, choices, shipped, "1024 parts", partial(integrals, 1024), "3 intervals")
+    return Knob(
+        "parts", quantities, choices, shipped, "1024 parts", partial(integrals, 1024), "3 intervals"
+    )
 
 
 def test_every_quantity_of_every_value_is_a_row():
@@ -35,13 +47,24 @@ def test_every_quantity_of_every_value_is_a_row():
     expected = np.sqrt(np.mean([(end**3 / (6 * 4**2)) ** 2 for end in (1, 2, 3)]))
     assert rows[0]["error"] == pytest.approx(expected, rel=1e-3)
     assert rows[0]["error"] / rows[2]["error"] == pytest.approx(4, rel=1e-3)
-    assert all(row["knob"] == "parts" and row["wall_s"] >= 0 and row["peak_rss_MB"] > 0 for row in rows)
+    assert all(
+        row["knob"] == "parts" and row["wall_s"] >= 0 and row["peak_rss_MB"] > 0 for row in rows
+    )
     assert rows[0]["reference"] == "1024 parts; 3 intervals"
 
 
 def test_errors_in_per_cent_are_of_the_reference_or_of_a_scale_and_volts_follow():
     rows = list(
-        rows_of([knob_of([Quantity("square", "%", volts=-0.5), Quantity("fourth power", "% of 10", scale=10.0)])])
+        rows_of(
+            [
+                knob_of(
+                    [
+                        Quantity("square", "%", volts=-0.5),
+                        Quantity("fourth power", "% of 10", scale=10.0),
+                    ]
+                )
+            ]
+        )
     )
     # x^2 from 0 to b: b^3 / 3, so that the error is 100 / 2 n^2 % at every end
     assert rows[0]["error"] == pytest.approx(100 / (2 * 4**2), rel=1e-3)
@@ -51,7 +74,9 @@ def test_errors_in_per_cent_are_of_the_reference_or_of_a_scale_and_volts_follow(
 
 
 def test_the_error_of_a_root_mean_square_is_that_of_its_scatter():
-    """2,000 sets of 8 normal deviations: their own errors tell how the root mean squares scatter."""
+    """2,000 sets of 8 normal deviations: their own errors tell how the root mean squares
+    scatter.
+    """
     sets = np.random.default_rng(1).normal(size=(2000, 8, 1))
     told = np.array([root_mean_square(deviations) for deviations in sets])[:, :, 0]
     assert np.mean(told[:, 1]) == pytest.approx(told[:, 0].std(), rel=0.1)
@@ -83,5 +108,7 @@ def test_a_case_that_raises_has_failed_and_the_others_run():
 )
 def test_a_key_states_interval_and_unit(accepted, bounds, unit):
     field = key(1.0, "meaning", accepted)
-    assert {type(item).__name__: getattr(item, type(item).__name__.lower()) for item in field.metadata} == bounds
+    assert {
+        type(item).__name__: getattr(item, type(item).__name__.lower()) for item in field.metadata
+    } == bounds
     assert (field.json_schema_extra or {}).get("unit") == unit

@@ -5,7 +5,14 @@ import pytest
 from scipy.special import ndtri
 
 from mesoscale.contact.surface import random_surface, shared_wave
-from mesoscale.device.points import PadModel, central_point, plan_points, solve_point, solve_points, surfaces_of
+from mesoscale.device.points import (
+    PadModel,
+    central_point,
+    plan_points,
+    solve_point,
+    solve_points,
+    surfaces_of,
+)
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.numerics import PAD
@@ -31,7 +38,10 @@ DISTRIBUTIONS = {name: Distribution("fixed", value) for name, value in FIXED.ite
     name: Distribution("uniform", *ends) for name, ends in RANGES.items()
 }
 TABLE = InputTable(
-    tuple(UncertainInput(name, "", distribution, "literature", "") for name, distribution in DISTRIBUTIONS.items()),
+    tuple(
+        UncertainInput(name, "", distribution, "literature", "")
+        for name, distribution in DISTRIBUTIONS.items()
+    ),
     np.eye(len(DISTRIBUTIONS)),
 )
 CONTACT = ContactSettings(mechanics="asperity", pixels=64)
@@ -74,7 +84,8 @@ def test_finer_grids_show_the_same_surface():
     coarse = settings.model_copy(update={"pixels": 32})
     pad = with_waves(SamplePad(POINT, inputs, settings, []), shared_wave(coarse))
     heights = {
-        side: random_surface(inputs, pad.settings.model_copy(update={"pixels": side}), 7) for side in (32, 64, 128)
+        side: random_surface(inputs, pad.settings.model_copy(update={"pixels": side}), 7)
+        for side in (32, 64, 128)
     }
     for side in (64, 128):
         every = side // 32
@@ -93,7 +104,9 @@ def test_other_steps_keep_what_pads_are_opened_from():
 
 
 def test_errors_of_quantiles_are_those_of_a_normal_sample():
-    """Of the median sqrt(pi / 2) / sqrt(n), and of the 5 and 95 % quantiles sqrt(0.05 0.95) / density / sqrt(n)."""
+    """Of the median sqrt(pi / 2) / sqrt(n), and of the 5 and 95 % quantiles sqrt(0.05 0.95) /
+    density / sqrt(n).
+    """
     values = ndtri((np.arange(20_000) + 0.5) / 20_000)
     low, middle, high = quantile_errors(values, 400) * np.sqrt(400)
     density = np.exp(-0.5 * 1.6449**2) / np.sqrt(2.0 * np.pi)

@@ -57,7 +57,11 @@ def test_the_values_in_use_are_those_of_the_numerics(tables):
         answer_accuracy.STEPS: OPENING_NM,
         answer_accuracy.TOLERANCE: SWITCH.release_tolerance,
     }
-    (lumps,) = {row["value"] for row in tables["circuit"] if row["shipped"] and row["knob"] == circuit_accuracy.LUMPS}
+    (lumps,) = {
+        row["value"]
+        for row in tables["circuit"]
+        if row["shipped"] and row["knob"] == circuit_accuracy.LUMPS
+    }
     assert lumps in CIRCUIT.lump_counts
 
 
@@ -100,5 +104,7 @@ def test_a_failure_rate_tells_what_points_switches_and_runs_leave_open(monkeypat
 
 
 def test_a_failure_rate_of_few_points_is_refused_in_one_line():
-    with pytest.raises(InputError, match=r"pad.points: \d+ of 8 switches .* at least 32; raise pad.points"):
+    with pytest.raises(
+        InputError, match=r"pad.points: \d+ of 8 switches .* at least 32; raise pad.points"
+    ):
         list(failure_accuracy.accuracy_points(population(8), 0.01, lambda *_: None))

@@ -8,7 +8,9 @@ from mesoscale.settings.topography import SyntheticScanSettings
 from mesoscale.studies import topography_accuracy
 from mesoscale.studies.topography_accuracy import MISSED, accuracy_points
 
-SCENE = TopographySettings(synthetic=SyntheticScanSettings(pixels=128, small_scans=3, large_scans=2))
+SCENE = TopographySettings(
+    synthetic=SyntheticScanSettings(pixels=128, small_scans=3, large_scans=2)
+)
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +22,11 @@ def rows():
 
 
 def errors(rows, knob, quantity):
-    return {row["value"]: row["error"] for row in rows if row["knob"] == knob and row["case"] == quantity}
+    return {
+        row["value"]: row["error"]
+        for row in rows
+        if row["knob"] == knob and row["case"] == quantity
+    }
 
 
 def test_every_choice_has_errors_of_three_quantities_and_their_cost(rows):

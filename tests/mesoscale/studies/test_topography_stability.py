@@ -1,4 +1,6 @@
-"""Hard cases: each recovers known truth, doubts or refuses; another answer than the expected one fails."""
+"""Hard cases: each recovers known truth, doubts or refuses; another answer than the expected one
+fails.
+"""
 
 from dataclasses import replace
 
@@ -33,7 +35,11 @@ def test_there_are_thirty_hard_cases_and_another_answer_of_files_fails():
 @pytest.mark.parametrize(
     ("name", "change", "detail"),
     [
-        ("standard", {"truth": TRUTH.model_copy(update={"rms_nm": 1.2 * TRUTH.rms_nm})}, "rms -0.1"),
+        (
+            "standard",
+            {"truth": TRUTH.model_copy(update={"rms_nm": 1.2 * TRUTH.rms_nm})},
+            "rms -0.1",
+        ),
         ("standard", {"expected": "doubts"}, "no doubts: "),
         ("standard", {"expected": "refuses"}, "was not refused"),
         ("constant", {"expected": "recovers"}, "rms +inf"),

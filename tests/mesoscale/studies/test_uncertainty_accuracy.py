@@ -13,7 +13,10 @@ from mesoscale.uncertainty.collocation import nodes, to_values
 from mesoscale.uncertainty.propagation import NodeOutputs
 
 TABLE = InputTable(
-    tuple(UncertainInput(name, "1", Distribution("uniform", 0.0, 1.0), "literature", "") for name in ("a", "b")),
+    tuple(
+        UncertainInput(name, "1", Distribution("uniform", 0.0, 1.0), "literature", "")
+        for name in ("a", "b")
+    ),
     np.eye(2),
 )
 SCATTER = 0.5
@@ -37,7 +40,11 @@ def rows():
     of_nodes = NodeOutputs(list(range(SEEDS)), by_seed)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(uncertainty_accuracy, "cost_of_cycle", lambda *_: Cost(0.1, 0.1, 100.0))
-        return list(accuracy_points(direct, again, of_nodes, TABLE, ContactSettings(mechanics="asperity"), settings))
+        return list(
+            accuracy_points(
+                direct, again, of_nodes, TABLE, ContactSettings(mechanics="asperity"), settings
+            )
+        )
 
 
 DEVIATION = np.sqrt(5 / 12 + SCATTER**2)
@@ -45,7 +52,11 @@ DEVIATION = np.sqrt(5 / 12 + SCATTER**2)
 
 def test_the_error_of_the_mean_falls_with_the_root_of_the_runs(rows):
     """Of scatter 0.5 in 800 runs 0.0177 remain, 2.2 % of the deviation of cells."""
-    errors = {row["value"]: row["error"] for row in rows if row["knob"] == "direct runs" and row["case"] == "mean d_c"}
+    errors = {
+        row["value"]: row["error"]
+        for row in rows
+        if row["knob"] == "direct runs" and row["case"] == "mean d_c"
+    }
     exact = {count: 100 * SCATTER / np.sqrt(count) / DEVIATION for count in errors}
     # the root mean square of 4 splits scatters by a third
     assert all(errors[count] == pytest.approx(exact[count], rel=1.0) for count in errors)
@@ -63,7 +74,9 @@ def test_surfaces_at_the_nodes_have_the_standard_error_of_their_scatter(rows):
 
 
 def test_a_linear_law_needs_no_higher_degree(rows):
-    """What the scatter between surfaces does not explain is small, and the same for every degree."""
+    """What the scatter between surfaces does not explain is small, and the same for every
+    degree.
+    """
     told = {
         row["value"]: (row["error"], row["own_error"])
         for row in rows
@@ -80,7 +93,11 @@ def test_a_linear_law_needs_no_higher_degree(rows):
 def test_costs_are_those_of_the_cycles(rows):
     costs = {row["value"]: row["cpu_s"] for row in rows if row["knob"] == "direct runs"}
     assert costs[800] >= 800 * 0.1
-    assert {row["knob"] for row in rows} == {"direct runs", "degree of the responses", "surfaces at the nodes"}
+    assert {row["knob"] for row in rows} == {
+        "direct runs",
+        "degree of the responses",
+        "surfaces at the nodes",
+    }
     assert {row["case"] for row in rows if row["knob"] == "surfaces at the nodes"} == {
         f"mean {row.short}" for row in LAW_OUTPUTS
     }

@@ -1,7 +1,7 @@
 """Files that are cut, flipped, blown up or misnamed, and the judge of what reading them gives.
 
-A file is refused in one line, or what it gives is a surface: finite heights and spectra, of a plausible size.
-"""
+A file is refused in one line, or what it gives is a surface: finite heights and spectra, of a
+plausible size."""
 
 import random
 from collections.abc import Callable
@@ -81,7 +81,9 @@ DAMAGES: dict[str, Damage] = {
 
 
 def made_files(folder: Path) -> list[Path]:
-    """Files that this code or the reader library writes, so that a campaign needs none of an instrument."""
+    """Files that this code or the reader library writes, so that a campaign needs none of an
+    instrument.
+    """
     heights = np.cumsum(np.random.default_rng(0).standard_normal((64, 64)), axis=0)
     folder.mkdir(parents=True, exist_ok=True)
     write_gwy(folder / "made.gwy", Scan(heights, (1000.0, 1000.0), "made"))
@@ -93,7 +95,9 @@ def made_files(folder: Path) -> list[Path]:
     topography.to_netcdf(str(folder / "made.nc"))
     topography.to_matrix(str(folder / "made.asc"))
     x, y = np.meshgrid(np.arange(64.0), np.arange(64.0), indexing="ij")
-    np.savetxt(folder / "made.xyz", np.stack([x.ravel(), y.ravel(), heights.ravel()], axis=1), fmt="%.6g")
+    np.savetxt(
+        folder / "made.xyz", np.stack([x.ravel(), y.ravel(), heights.ravel()], axis=1), fmt="%.6g"
+    )
     return sorted(folder.iterdir())
 
 
@@ -106,12 +110,18 @@ def judge(path: Path, settings: TopographySettings) -> tuple[str, str]:
             heights = np.asarray(measured.data.heights_nm)
             if not all(FILE_NM[0] <= length <= FILE_NM[1] for length in lengths):
                 return "fault", f"believed a size of {lengths}"
-            if not np.isfinite(heights).mean() > 0.5 or not all(np.isfinite(part).all() for part in arrays.values()):
+            if not np.isfinite(heights).mean() > 0.5 or not all(
+                np.isfinite(part).all() for part in arrays.values()
+            ):
                 return "fault", "numbers that are not finite"
     except InputError as error:
         text = str(error)
         named = path.name in text or path.stem in text
-        return ("refused", text) if named and "\n" not in text else ("fault", f"refusal without its file: {text}")
+        return (
+            ("refused", text)
+            if named and "\n" not in text
+            else ("fault", f"refusal without its file: {text}")
+        )
     except Exception as error:  # a campaign counts whatever comes
         return "fault", f"{type(error).__name__}: {error}"
     return "used", "a surface"

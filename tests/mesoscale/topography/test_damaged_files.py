@@ -38,6 +38,7 @@ def test_the_judge_sees_an_exception_and_numbers_that_are_not_finite(files, monk
     assert judge(files[".gwy"], SETTINGS)[0] == "fault"
     monkeypatch.undo()
     monkeypatch.setattr(
-        "tests.mesoscale.topography.damaged_files.record", lambda *given: ({"c2": np.array([np.nan])}, {})
+        "tests.mesoscale.topography.damaged_files.record",
+        lambda *given: ({"c2": np.array([np.nan])}, {}),
     )
     assert judge(files[".gwy"], SETTINGS) == ("fault", "numbers that are not finite")

@@ -7,7 +7,12 @@ from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
-from mesoscale.topography.description.heights import common_heights, compare_heights, height_quantiles, not_gaussian
+from mesoscale.topography.description.heights import (
+    common_heights,
+    compare_heights,
+    height_quantiles,
+    not_gaussian,
+)
 from mesoscale.topography.height_synthesis import Z, synthesize_heights
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import log_bins, radial_spectrum
@@ -30,10 +35,14 @@ def test_rms_is_exact_and_spectrum_and_heights_are_the_wanted_ones():
     surfaces = [made(SKEWED, seed) for seed in range(6)]
     for surface in surfaces:
         assert np.std(surface) == pytest.approx(5.0, rel=1e-12)
-    # skewness of the log-normal distribution of shape s: (e^(s^2) + 2) sqrt(e^(s^2) - 1), 1.32 at 0.4
+    # skewness of the log-normal distribution of shape s: (e^(s^2) + 2) sqrt(e^(s^2) - 1), 1.32 at
+    # 0.4
     standard = np.array(surfaces) / 5.0
     assert np.mean(standard**3) == pytest.approx(1.32, abs=0.15)
-    result = [log_bins(radial_spectrum(surface, (1000.0, 1000.0), 9, 0.75, 0.0), 5) for surface in surfaces]
+    result = [
+        log_bins(radial_spectrum(surface, (1000.0, 1000.0), 9, 0.75, 0.0), 5)
+        for surface in surfaces
+    ]
     ratio = np.mean([np.log(item.psd / SPECTRUM.psd(item.q)) for item in result], axis=0)
     inside = (result[0].q > 0.02) & (result[0].q < 0.5)
     assert np.abs(ratio[inside]).max() < 0.25
@@ -42,7 +51,9 @@ def test_rms_is_exact_and_spectrum_and_heights_are_the_wanted_ones():
 def test_the_summit_is_as_random_as_summits_are_and_grows_with_the_area():
     highest = [made(SKEWED, seed, 128).max() for seed in range(8)]
     assert np.std(highest) > 0.3
-    larger = [synthesize_heights(256, 2000.0, SPECTRUM.psd, SKEWED, 5.0, seed).max() for seed in range(8)]
+    larger = [
+        synthesize_heights(256, 2000.0, SPECTRUM.psd, SKEWED, 5.0, seed).max() for seed in range(8)
+    ]
     assert np.mean(larger) > np.mean(highest)
 
 
@@ -57,13 +68,18 @@ def test_measured_heights_come_back_from_their_own_surface():
 def test_only_heights_that_no_gaussian_surface_has_stand_out():
     gaussian = [synthesize_spectrum(256, 1000.0, SPECTRUM.psd, 5.0, seed) for seed in range(3)]
     grainy = [made(SKEWED, seed) for seed in range(3)]
-    tests = [[compare_heights("a", surface, (1000.0, 1000.0)) for surface in set_] for set_ in (gaussian, grainy)]
+    tests = [
+        [compare_heights("a", surface, (1000.0, 1000.0)) for surface in set_]
+        for set_ in (gaussian, grainy)
+    ]
     assert not_gaussian(tests[0]) == ""
     assert "skewness" in not_gaussian(tests[1])
     assert not_gaussian([]) == ""
 
 
-@pytest.mark.parametrize("heights", [SKEWED[:-1], SKEWED[::-1], [0.0] * len(Z), [*SKEWED[:-1], float("nan")]])
+@pytest.mark.parametrize(
+    "heights", [SKEWED[:-1], SKEWED[::-1], [0.0] * len(Z), [*SKEWED[:-1], float("nan")]]
+)
 def test_what_is_no_map_of_heights_is_refused(heights):
     with pytest.raises(InputError, match="heights: accepted are"):
         made(heights)

@@ -1,4 +1,6 @@
-"""Measurements as people have them: numbers of the right order, true reasons, and what was done to the heights."""
+"""Measurements as people have them: numbers of the right order, true reasons, and what was done to
+the heights.
+"""
 
 from pathlib import Path
 
@@ -32,17 +34,26 @@ def rms(film):
 @needs_cases
 @pytest.mark.parametrize(
     ("name", "rms_nm"),
-    [("line_1um.txt", 4.0), ("curved_map.gwy", 0.5), ("complete.gwy", 4.0), ("profile_um_and_A.txt", 3.0)],
+    [
+        ("line_1um.txt", 4.0),
+        ("curved_map.gwy", 0.5),
+        ("complete.gwy", 4.0),
+        ("profile_um_and_A.txt", 3.0),
+    ],
 )
 def test_cells_get_the_rms_height_that_was_measured_to_a_factor_of_two(name, rms_nm):
     film = asp.Film(CASES / name)
     assert 0.5 * rms_nm < rms(film) < 2.0 * rms_nm
-    assert film.description["cell_nm"] == 1000.0  # no longer than the longest measurement, or the usual
+    assert (
+        film.description["cell_nm"] == 1000.0
+    )  # no longer than the longest measurement, or the usual
     assert film.description["gate"]["passed"]
     assert ("form" in codes(film)) == (name == "curved_map.gwy")
     assert ("unseen_waves" in codes(film)) == (name == "complete.gwy")
     (knee,) = (doubt for doubt in film.description["doubts"] if doubt["code"] == "no_power_law")
-    assert knee["text"].startswith("the knee q0 of eq. 9 cannot be told")  # not: does not describe this surface
+    assert knee["text"].startswith(
+        "the knee q0 of eq. 9 cannot be told"
+    )  # not: does not describe this surface
     low, high = film.description["estimates"]["rms"]["interval"]
     assert high < 10 * low
     assert film.description["estimates_of"].startswith("eq. 9, for comparison")
@@ -91,7 +102,9 @@ def test_a_text_with_decimal_commas_is_read():
 def test_latin_1_semicolons_and_commas_of_a_profile(tmp_path):
     x, z = 0.002 * np.arange(512), np.random.default_rng(0).standard_normal(512)
     rows = (f"{a:.4f};{b:.4f}\n".replace(".", ",") for a, b in zip(x, z, strict=True))
-    (tmp_path / "profil.csv").write_text("L\u00e4nge (\u00b5m);H\u00f6he (nm)\n" + "".join(rows), encoding="latin-1")
+    (tmp_path / "profil.csv").write_text(
+        "L\u00e4nge (\u00b5m);H\u00f6he (nm)\n" + "".join(rows), encoding="latin-1"
+    )
     (measured,) = load_measurements(tmp_path / "profil.csv")
     assert measured.data.length_nm == pytest.approx(1024.0)
     assert measured.data.heights_nm == pytest.approx(z, abs=1e-4)
@@ -111,12 +124,16 @@ def test_size_and_units_of_a_bare_map_are_stated_beside_it(tmp_path):
     heights = np.random.default_rng(0).standard_normal((64, 64))
     np.savetxt(tmp_path / "bare.txt", heights)
     stated = InstrumentSettings(files="*", unit="um", height_unit="nm", size=(2.0, 1.0))
-    (measured,) = load_measurements(tmp_path / "bare.txt", settings=TopographySettings(instruments=(stated,)))
+    (measured,) = load_measurements(
+        tmp_path / "bare.txt", settings=TopographySettings(instruments=(stated,))
+    )
     assert measured.data.lengths_nm == pytest.approx((2000.0, 1000.0))
     assert measured.data.heights_nm.std() == pytest.approx(heights.std())
     write_gwy(tmp_path / "sized.gwy", Scan(heights, (1000.0, 1000.0), "a"))
     with pytest.raises(InputError, match="states a unit itself"):
-        load_measurements(tmp_path / "sized.gwy", settings=TopographySettings(instruments=(stated,)))
+        load_measurements(
+            tmp_path / "sized.gwy", settings=TopographySettings(instruments=(stated,))
+        )
 
 
 def test_lines_that_repeat_inside_a_scan_are_missing():
@@ -145,7 +162,9 @@ def test_pixels_that_are_not_square_do_not_make_a_surface_anisotropic():
 
 
 def test_a_tip_that_nobody_states_is_doubted_where_it_matters():
-    heights = surface_patch(RoughSpectrum.from_rms(4.0, 0.02, 3.6, 2.0), 256, 1000.0, np.random.default_rng(1))
+    heights = surface_patch(
+        RoughSpectrum.from_rms(4.0, 0.02, 3.6, 2.0), 256, 1000.0, np.random.default_rng(1)
+    )
     fine, coarse = (Scan(heights, (side, side), "a") for side in (1000.0, 50_000.0))
     assert "tip_not_stated" in codes(asp.Film(fine))
     assert "tip_not_stated" not in codes(asp.Film(fine, tip_nm=5.0))
@@ -158,19 +177,28 @@ def test_maps_with_few_waves_of_the_knee_keep_their_rms_height():
     found = []
     for seed in range(4):
         rng = np.random.default_rng(seed)
-        maps = [surface_patch(truth, 256, 2000.0, rng) * np.exp(0.06 * rng.standard_normal()) for _ in range(6)]
-        scans = [Scan(dilate(z, 8.0, 2000.0 / 256), (2000.0, 2000.0), f"m{k}") for k, z in enumerate(maps)]
+        maps = [
+            surface_patch(truth, 256, 2000.0, rng) * np.exp(0.06 * rng.standard_normal())
+            for _ in range(6)
+        ]
+        scans = [
+            Scan(dilate(z, 8.0, 2000.0 / 256), (2000.0, 2000.0), f"m{k}")
+            for k, z in enumerate(maps)
+        ]
         film = asp.Film(scans, tip_nm=8.0)
         assert film.description["description"]["name"] == "measured_spectrum"
         assert film.description["gate"]["passed"]
         assert "several_surfaces" not in codes(film)
         found.append(middle(film.description["film"]["rms"]))
-    # mean of 24 maps whose RMS heights scatter by 6 % between places and 4 % by chance: 1.5 %; of the bias 2 %
+    # mean of 24 maps whose RMS heights scatter by 6 % between places and 4 % by chance: 1.5 %; of
+    # the bias 2 %
     assert np.mean(found) == pytest.approx(4.0, rel=0.035)
 
 
 def test_all_that_a_file_leaves_open_is_asked_at_once(tmp_path):
-    """An .h5 of two data sets, without size and unit: one line with the keys and options for all of it."""
+    """An .h5 of two data sets, without size and unit: one line with the keys and options for all of
+    it.
+    """
     import h5py
 
     heights = np.random.default_rng(0).standard_normal((2, 64, 64))
@@ -178,16 +206,27 @@ def test_all_that_a_file_leaves_open_is_asked_at_once(tmp_path):
         file["first"], file["second"] = heights
     with pytest.raises(InputError) as asked:
         load_measurements(tmp_path / "two.h5")
-    for word in ("first, second", "topography.channel", "--channel", "size: [1, 1], unit: um", "--size 1x1 --unit um"):
+    for word in (
+        "first, second",
+        "topography.channel",
+        "--channel",
+        "size: [1, 1], unit: um",
+        "--size 1x1 --unit um",
+    ):
         assert word in str(asked.value)
     stated = InstrumentSettings(files="*.h5", channel="second", unit="nm", size=(200.0, 200.0))
-    (measured,) = load_measurements(tmp_path / "two.h5", settings=TopographySettings(instruments=(stated,)))
+    (measured,) = load_measurements(
+        tmp_path / "two.h5", settings=TopographySettings(instruments=(stated,))
+    )
     assert measured.data.lengths_nm == pytest.approx((200.0, 200.0))
     assert measured.data.heights_nm.std() == pytest.approx(heights[1].std())
 
 
 def test_a_size_that_the_file_states_is_not_stated_again(tmp_path):
-    write_gwy(tmp_path / "sized.gwy", Scan(np.random.default_rng(0).standard_normal((64, 64)), (100.0, 100.0), "a"))
+    write_gwy(
+        tmp_path / "sized.gwy",
+        Scan(np.random.default_rng(0).standard_normal((64, 64)), (100.0, 100.0), "a"),
+    )
     twice = InstrumentSettings(files="*", size=(1.0, 1.0))
     with pytest.raises(InputError, match="states a size itself; leave out"):
         load_measurements(tmp_path / "sized.gwy", settings=TopographySettings(instruments=(twice,)))

@@ -9,7 +9,13 @@ from mesoscale.topography.description.one_spectrum import merge
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile
-from mesoscale.topography.profile_conversion import binned_line, isotropic_spectrum, line_spectrum, projected, spread
+from mesoscale.topography.profile_conversion import (
+    binned_line,
+    isotropic_spectrum,
+    line_spectrum,
+    projected,
+    spread,
+)
 from mesoscale.topography.records import record, trusted_record
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.synthetic_scans import surface_patch
@@ -33,14 +39,21 @@ def test_the_spectrum_along_a_line_holds_the_mean_square_height():
 
 
 def test_tapers_leave_the_plateau_and_spread_the_knee_as_stated():
-    """Mean of 2048 lines, three waves below the knee: within 4 standard errors of a bin, and 1 % over the bins."""
+    """Mean of 2048 lines, three waves below the knee: within 4 standard errors of a bin, and 1 %
+    over the bins.
+    """
     truth = RoughSpectrum.from_rms(6.0, 0.012, 2.84, 3.2)
     surface = surface_patch(truth, POINTS, LENGTH, np.random.default_rng(5))
     k, first = line_spectrum(Profile(surface[:, 0], LENGTH, "line"))
-    c1 = np.mean([first, *(line_spectrum(Profile(line, LENGTH, "line"))[1] for line in surface[:, 1:].T)], axis=0)
+    c1 = np.mean(
+        [first, *(line_spectrum(Profile(line, LENGTH, "line"))[1] for line in surface[:, 1:].T)],
+        axis=0,
+    )
     found = binned_line(k, c1, 2.5 * k[0], 0.2)
     q = np.geomspace(1e-4, 3.2, 4000)
-    expected = np.mean([projected(q, truth.psd(q), part) for part in spread(found.q, found.spacing)], axis=0)
+    expected = np.mean(
+        [projected(q, truth.psd(q), part) for part in spread(found.q, found.spacing)], axis=0
+    )
     # neighbouring lines are alike within about a third of a wave of the knee
     lines = LENGTH * truth.q0 / 2
     assert (np.abs(found.psd / expected - 1) < 4 / np.sqrt(found.modes * lines)).all()
@@ -64,7 +77,9 @@ def test_lines_across_an_isotropic_surface_give_back_its_spectrum(slope):
             away.append((np.log(result.psd) - np.log(truth.psd(result.q))) * np.sqrt(result.modes))
     falling = (result.q > 0.06) & (result.q < 0.5)
     mean = np.mean(logs, axis=0)
-    assert -np.polyfit(np.log(result.q[falling]), mean[falling], 1)[0] == pytest.approx(slope, abs=0.1)
+    assert -np.polyfit(np.log(result.q[falling]), mean[falling], 1)[0] == pytest.approx(
+        slope, abs=0.1
+    )
     assert np.mean(rms) == pytest.approx(6.0, rel=0.1)
     assert np.mean(np.abs(away) < 1.645) > 0.85  # stated 90 % bands
 

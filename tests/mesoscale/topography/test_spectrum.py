@@ -37,14 +37,17 @@ def test_sections_and_window_keep_the_level_of_white_noise(flat):
     heights = np.random.default_rng(1).standard_normal((256, 256))
     spectrum = radial_spectrum(heights, (256.0, 256.0), 25, 0.75, flat)
     level = np.average(spectrum.psd, weights=spectrum.modes)
-    assert level == pytest.approx(1 / (2 * np.pi) ** 2, rel=0.02)  # 1 nm^2 over the band (2 pi / 1 nm)^2
+    assert level == pytest.approx(
+        1 / (2 * np.pi) ** 2, rel=0.02
+    )  # 1 nm^2 over the band (2 pi / 1 nm)^2
 
 
 def test_modes_tell_the_scatter_of_the_spectrum():
     """The variance of a shell's mean over many surfaces is C^2 over its number of modes."""
     rng = np.random.default_rng(2)
     shells = [
-        radial_spectrum(rng.standard_normal((96, 96)), (96.0, 96.0), 9, 0.75, 0.0, skip_lines=True) for _ in range(150)
+        radial_spectrum(rng.standard_normal((96, 96)), (96.0, 96.0), 9, 0.75, 0.0, skip_lines=True)
+        for _ in range(150)
     ]
     # broad bands, because a window makes neighbouring shells move together
     modes = shells[0].modes
@@ -52,7 +55,9 @@ def test_modes_tell_the_scatter_of_the_spectrum():
     for low, high in bands:
         means = [np.average(s.psd[low:high], weights=modes[low:high]) for s in shells]
         measured = np.var(means) / np.mean(means) ** 2
-        assert measured == pytest.approx(1 / modes[low:high].sum(), rel=0.35)  # chi-square of 150: 12 %
+        assert measured == pytest.approx(
+            1 / modes[low:high].sum(), rel=0.35
+        )  # chi-square of 150: 12 %
 
 
 def test_the_paper_cuts_768_of_1024():
@@ -66,5 +71,7 @@ def test_hann_window_returns_steep_slopes(slope):
     heights = surface_patch(truth, 512, 1000.0, np.random.default_rng(3))
     spectrum = radial_spectrum(heights, (1000.0, 1000.0), 25, 0.75, 0.0, skip_lines=True)
     used = (spectrum.q > 0.08) & (spectrum.q < 1.2)
-    measured = -np.polyfit(np.log(spectrum.q[used]), np.log(spectrum.psd[used]), 1, w=np.sqrt(spectrum.modes[used]))[0]
+    measured = -np.polyfit(
+        np.log(spectrum.q[used]), np.log(spectrum.psd[used]), 1, w=np.sqrt(spectrum.modes[used])
+    )[0]
     assert measured == pytest.approx(slope, abs=0.03)

@@ -1,4 +1,6 @@
-"""What stands in people's files, in the made cases and example files beside this project; skipped where they lack."""
+"""What stands in people's files, in the made cases and example files beside this project; skipped
+where they lack.
+"""
 
 from pathlib import Path
 
@@ -42,7 +44,9 @@ def levelled_rms(scan):
     ],
 )
 def test_all_dresses_are_the_same_surface(name):
-    """256 x 256 pixels of 500 nm; 1 % of the pixels filled from their neighbours change its RMS height by 0.5 %."""
+    """256 x 256 pixels of 500 nm; 1 % of the pixels filled from their neighbours change its RMS
+    height by 0.5 %.
+    """
     sound, scan = load(MADE / "to_pack.gwy"), load(MADE / name)
     assert isinstance(scan, Scan)
     assert scan.heights_nm.shape == (256, 256)
@@ -160,7 +164,8 @@ def test_the_round_example_is_described_once_it_is_cut():
 
 @examples
 @pytest.mark.parametrize(
-    ("name", "channel"), [("di-3.di", "ZSensor"), ("di-3.di", "Height"), ("nid-1.nid", "Scan forward (Z-Axis)")]
+    ("name", "channel"),
+    [("di-3.di", "ZSensor"), ("di-3.di", "Height"), ("nid-1.nid", "Scan forward (Z-Axis)")],
 )
 def test_a_channel_that_is_named_is_taken(name, channel):
     assert f"read channel {channel}" in load(FORMATS / name, channel=channel).steps

@@ -30,12 +30,16 @@ def test_the_same_seed_gives_the_same_noise_whatever_the_parameters():
     other = np.fft.rfft2(synthesize(128, 1000.0, 0.03, 1.0, 9.0, 3))[1:3, 1:3]
     ratio = other / one
     np.testing.assert_allclose(ratio, ratio[0, 0], rtol=1e-9)
-    assert not np.allclose(synthesize(64, 1e3, 0.03, 0.5, 1, 3), synthesize(64, 1e3, 0.03, 0.5, 1, 4))
+    assert not np.allclose(
+        synthesize(64, 1e3, 0.03, 0.5, 1, 3), synthesize(64, 1e3, 0.03, 0.5, 1, 4)
+    )
 
 
 @pytest.mark.parametrize("pixels", [32, 33])
 def test_every_wave_gets_its_own_noise(pixels):
-    """With a white filter the power is that of all random numbers: none is skipped or used twice."""
+    """With a white filter the power is that of all random numbers: none is skipped or used
+    twice.
+    """
     highest = (pixels - 1) // 2
     normals = np.random.default_rng(1).standard_normal(4 * highest * (highest + 1))
     spectrum = np.zeros((pixels, pixels // 2 + 1), complex)
@@ -60,7 +64,9 @@ def test_the_spectrum_is_flat_to_the_roll_off_and_falls_with_the_stated_slope(co
     centre = np.array([q[(q >= a) & (q < b)].mean() for a, b in pairwise(bands)])
     assert mean[0] == pytest.approx(mean[1], rel=0.15)
     slope = np.polyfit(np.log(centre[3:]), np.log(mean[3:]), 1)[0]
-    assert slope == pytest.approx(-slope_from_hurst(hurst, convention), abs=0.15)  # band means, 20 surfaces
+    assert slope == pytest.approx(
+        -slope_from_hurst(hurst, convention), abs=0.15
+    )  # band means, 20 surfaces
     assert power[q > np.pi * pixels / length].max() < 1e-15 * power.max()
 
 
@@ -78,6 +84,7 @@ def test_one_surface_returns_its_slope_within_two_hundredths(hurst, convention):
     k = np.fft.fftfreq(pixels, length / pixels) * 2 * np.pi
     q = np.hypot(k[:, None], k[None, :])
     inside = (q > 2 * q0) & (q < np.pi * pixels / length)
-    # the mean of ln C of single waves lies below ln of its mean by a constant, which leaves the slope alone
+    # the mean of ln C of single waves lies below ln of its mean by a constant, which leaves the
+    # slope alone
     slope = np.polyfit(np.log(q[inside]), np.log(psd[inside]), 1)[0]
     assert slope == pytest.approx(-slope_from_hurst(hurst, convention), abs=0.02)

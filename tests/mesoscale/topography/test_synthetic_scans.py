@@ -14,14 +14,18 @@ def test_model_spectrum_integrates_to_its_rms():
     q = np.geomspace(1e-5, 3.0, 200_001)
     assert truth.rms_nm == pytest.approx(7.0)
     assert np.trapezoid(2 * np.pi * q * truth.psd(q), q) == pytest.approx(49.0, rel=1e-4)
-    assert np.trapezoid(2 * np.pi * q**3 * truth.psd(q), q) == pytest.approx(truth.rms_slope**2, rel=1e-4)
+    assert np.trapezoid(2 * np.pi * q**3 * truth.psd(q), q) == pytest.approx(
+        truth.rms_slope**2, rel=1e-4
+    )
     assert mean_square(1.0, 0.02, 1.0, 3.0) > 0  # a slope whose integral is elementary on its own
 
 
 def test_point_sampling_keeps_the_whole_mean_square():
     """Coarse pixels fold short waves back; they do not lose them."""
     truth = RoughSpectrum.from_rms(5.0, 0.05, 2.5, 3.0)
-    squares = [np.var(surface_patch(truth, 128, 4000.0, np.random.default_rng(k))) for k in range(12)]
+    squares = [
+        np.var(surface_patch(truth, 128, 4000.0, np.random.default_rng(k))) for k in range(12)
+    ]
     assert np.mean(squares) == pytest.approx(25.0, rel=0.04)
 
 

@@ -21,4 +21,7 @@ def from_json(content: Mapping[str, Any]) -> dict[str, Response]:
         for output in content["outputs"]
     }
     below = {output["name"]: output["below"] for output in content["outputs"] if "below" in output}
-    return {name: Below(below[name], sums[below[name]], drop) if name in below else drop for name, drop in sums.items()}
+    return {
+        name: Below(below[name], sums[below[name]], drop) if name in below else drop
+        for name, drop in sums.items()
+    }

@@ -35,7 +35,9 @@ def test_one_mean_and_scatter_are_those_of_another_code():
 
 @pytest.mark.parametrize("scatter", [0.0, 1.0, 3.0])
 def test_the_line_and_the_scatter_are_unbiased(scatter):
-    """Means over 20 made-up sets differ from the truth by less than four of their standard errors."""
+    """Means over 20 made-up sets differ from the truth by less than four of their standard
+    errors.
+    """
     values, scatters = [], []
     for seed in range(20):
         fit, missed = censored_chaos(*made_up(200, scatter, seed), RANGES)
@@ -55,7 +57,9 @@ def test_what_is_known_below_zero_is_not_read():
 
 
 def test_errors_are_those_of_repeated_sets():
-    """The stated error of the slope is its scatter over 100 made-up sets, within 4 / sqrt(200) of itself."""
+    """The stated error of the slope is its scatter over 100 made-up sets, within 4 / sqrt(200) of
+    itself.
+    """
     slopes, stated = [], []
     for seed in range(100):
         x, y, below = made_up(60, 2.0, seed)
@@ -76,5 +80,7 @@ def test_expected_values_give_the_same_line_by_least_squares():
 
 def test_a_fit_that_does_not_settle_is_not_used(monkeypatch):
     monkeypatch.setattr(censored, "MOST_STEPS", 1)
-    with pytest.raises(InputError, match=r"pad\.points: the fit of \d+ voltages .* did not settle in 1 steps"):
+    with pytest.raises(
+        InputError, match=r"pad\.points: the fit of \d+ voltages .* did not settle in 1 steps"
+    ):
         censored_chaos(*made_up(100, 1.0, 1), RANGES)

@@ -1,4 +1,6 @@
-"""From inputs through the engine to sensitivities: correlated hardness, and D0 as the eighth input."""
+"""From inputs through the engine to sensitivities: correlated hardness, and D0 as the eighth
+input.
+"""
 
 import numpy as np
 import pytest
@@ -25,7 +27,14 @@ def law_of(runs, names):
 def test_the_correlation_of_the_hardness_fit_reaches_the_engines_inputs():
     fit = {
         "gate": {"passed": True, "reasons": []},
-        "inputs": {"h_prime": {"distribution": "uniform", "a": 2.0, "b": 15.0, "correlation": {"h_macro": -0.7}}},
+        "inputs": {
+            "h_prime": {
+                "distribution": "uniform",
+                "a": 2.0,
+                "b": 15.0,
+                "correlation": {"h_macro": -0.7},
+            }
+        },
     }
     settings = PAPER.model_copy(update={"h_prime": InputRow(origin="hardness")})
     table = collect(settings, {"hardness": fit}, {"hardness": "hardness/fit.json"})

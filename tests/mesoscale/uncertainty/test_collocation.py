@@ -16,7 +16,9 @@ from mesoscale.uncertainty.collocation import (
 from mesoscale.uncertainty.surrogate import legendre, to_json
 from tests.mesoscale.uncertainty.surrogate_reader import from_json
 
-RANGES = np.array([[0.18, 0.25], [78.5, 103.5], [0.7, 3.2], [1.95, 14.8], [0.015, 0.035], [0.5, 1.0], [2, 15]])
+RANGES = np.array(
+    [[0.18, 0.25], [78.5, 103.5], [0.7, 3.2], [1.95, 14.8], [0.015, 0.035], [0.5, 1.0], [2, 15]]
+)
 
 
 def uniform_moments(response):
@@ -80,7 +82,9 @@ def test_missing_node_gives_no_response_value():
 
 def test_legendre():
     u = np.linspace(-1, 1, 11)
-    assert legendre(u, 3)[2:] == pytest.approx(np.stack([(3 * u**2 - 1) / 2, (5 * u**3 - 3 * u) / 2]))
+    assert legendre(u, 3)[2:] == pytest.approx(
+        np.stack([(3 * u**2 - 1) / 2, (5 * u**3 - 3 * u) / 2])
+    )
 
 
 def test_response_survives_json():

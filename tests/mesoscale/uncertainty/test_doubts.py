@@ -1,4 +1,6 @@
-"""What makes an output doubtful: a response that explains too little, or that contradicts physics."""
+"""What makes an output doubtful: a response that explains too little, or that contradicts
+physics.
+"""
 
 import numpy as np
 import pytest
@@ -12,7 +14,9 @@ MOST_GPA = 0.007
 
 
 def _pairs(count, inputs, surfaces, error):
-    """An output on two surfaces at equal inputs, and a prediction, with these standard deviations."""
+    """An output on two surfaces at equal inputs, and a prediction, with these standard
+    deviations.
+    """
     rng = np.random.default_rng(4)
     truth = inputs * rng.normal(size=count)
     first, second = (truth + surfaces * rng.normal(size=count) for _ in range(2))
@@ -46,10 +50,15 @@ def test_nothing_but_scatter_is_no_success():
 
 
 def _responses(**slopes):
-    """d_c, C_a, C_r and ρ_r of closing and opening; `slopes` are of a logarithm along an input's scaled range."""
+    """d_c, C_a, C_r and ρ_r of closing and opening; `slopes` are of a logarithm along an input's
+    scaled range.
+    """
     inputs = len(TABLE.names)
     responses = []
-    for branch, values in (("closing", (30.0, 1.5e-4, 6e-4, 3.3)), ("opening", (29.0, 2e-4, 6e-4, 3.0))):
+    for branch, values in (
+        ("closing", (30.0, 1.5e-4, 6e-4, 3.3)),
+        ("opening", (29.0, 2e-4, 6e-4, 3.0)),
+    ):
         for name, value in zip(("d_c", "C_a", "C_r", "rho_r"), values, strict=True):
             coefficients = np.zeros(inputs + 1)
             coefficients[0] = np.log(value) if name != "d_c" else value
@@ -68,10 +77,17 @@ def _responses(**slopes):
 
 def test_a_law_that_obeys_physics_raises_no_doubt():
     assert against_physics(_responses(), TABLE, MOST_GPA) == {}
-    assert against_physics(_responses(closing_C_r__e_star=0.1, closing_C_r__h_macro=0.1), TABLE, MOST_GPA) == {}
+    assert (
+        against_physics(
+            _responses(closing_C_r__e_star=0.1, closing_C_r__h_macro=0.1), TABLE, MOST_GPA
+        )
+        == {}
+    )
 
 
-@pytest.mark.parametrize(("moved", "symbol"), [("e_star", "E*"), ("h_macro", "H_macro"), ("h_prime", "H′")])
+@pytest.mark.parametrize(
+    ("moved", "symbol"), [("e_star", "E*"), ("h_macro", "H_macro"), ("h_prime", "H′")]
+)
 def test_a_pressure_that_falls_where_the_material_stiffens_is_doubted(moved, symbol):
     found = against_physics(_responses(**{f"closing_C_r__{moved}": -0.1}), TABLE, MOST_GPA)
     assert set(found) == {"C_r_GPa", "rho_r_nm"}

@@ -39,13 +39,16 @@ NO_RUNS = np.empty((0, 3)), np.empty((0, 8))
 
 def uniform_table(inputs=3, correlation=None):
     rows = tuple(
-        UncertainInput(f"x{k}", "1", Distribution("uniform", 0.0, 1.0), "literature", "") for k in range(inputs)
+        UncertainInput(f"x{k}", "1", Distribution("uniform", 0.0, 1.0), "literature", "")
+        for k in range(inputs)
     )
     return InputTable(rows, np.eye(inputs) if correlation is None else correlation)
 
 
 def linear_nodes(table, slopes, seeds=6, scatter=0.0):
-    """Node outputs y_k = 10 + x . slopes (closing), opening twice that; a seed shifts all nodes alike."""
+    """Node outputs y_k = 10 + x . slopes (closing), opening twice that; a seed shifts all nodes
+    alike.
+    """
     x = to_values(nodes(len(table.rows)), table.ranges())
     base = 10 + x @ np.asarray(slopes, float)
     shifts = scatter * np.linspace(-1, 1, seeds)
@@ -119,13 +122,17 @@ def test_all_equal_outputs_have_no_spread_and_no_indices():
 def test_sobol_indices_of_a_linear_function():
     table = uniform_table()
     direct = linear_runs(table, [1, 2, 3])
-    rows = sensitivity_rows(linear_nodes(table, [1, 2, 3]), table, SETTINGS, np.zeros(8), {}, {}, direct)
+    rows = sensitivity_rows(
+        linear_nodes(table, [1, 2, 3]), table, SETTINGS, np.zeros(8), {}, {}, direct
+    )
     for row in rows[:3]:
         exact = {"x0": 1 / 14, "x1": 4 / 14, "x2": 9 / 14}[row["input"]]
         assert row["sobol_first"] == pytest.approx(exact, abs=0.02)
         assert row["sobol_total"] == pytest.approx(exact, abs=0.02)
         assert row["sobol_total_low"] <= row["sobol_total"] <= row["sobol_total_high"]
-    assert sum(row["sobol_first"] for row in rows[:3]) == pytest.approx(1.0, abs=0.02)  # docs/uncertainty.md
+    assert sum(row["sobol_first"] for row in rows[:3]) == pytest.approx(
+        1.0, abs=0.02
+    )  # docs/uncertainty.md
 
 
 def test_sobol_estimators_on_ishigami():
@@ -143,7 +150,10 @@ def test_correlation_widens_the_sum_and_narrows_the_difference():
     free, bound = uniform_table(2), uniform_table(2, correlation)
     for slopes, wider in (([1, 1], True), ([1, -1], False)):
         none = np.empty((0, 2)), np.empty((0, 8))
-        deviations = [propagate(linear_nodes(t, slopes), t, SETTINGS, none).by_seed[0, 1, 0] for t in (free, bound)]
+        deviations = [
+            propagate(linear_nodes(t, slopes), t, SETTINGS, none).by_seed[0, 1, 0]
+            for t in (free, bound)
+        ]
         assert (deviations[1] > 1.2 * deviations[0]) == wider
         assert (deviations[1] < 0.6 * deviations[0]) == (not wider)
 
@@ -166,7 +176,9 @@ def test_surrogate_json_reproduces_the_propagated_values():
     content = surrogate_json(result, table, {"rho_a_nm": 2.0, "alpha_nm": 2.0})
     assert [o["name"] for o in content["outputs"]][:2] == ["closing_d_c_nm", "closing_C_a_GPa_nm"]
     for k, output in enumerate(content["outputs"]):
-        assert from_json(content)[output["name"]](result.samples[:5]) == pytest.approx(result.outputs[:5, k])
+        assert from_json(content)[output["name"]](result.samples[:5]) == pytest.approx(
+            result.outputs[:5, k]
+        )
 
 
 def test_validation_of_a_perfect_response():
@@ -186,7 +198,9 @@ def test_validation_without_runs_reports_none():
     table = uniform_table()
     given = linear_nodes(table, [1, 2, 3])
     result = propagate(given, table, SETTINGS, NO_RUNS)
-    rows = validation_rows((np.empty((0, 3)), np.empty((0, 8))), table, result, SETTINGS, NONE_AGAIN, MOST_GPA)
+    rows = validation_rows(
+        (np.empty((0, 3)), np.empty((0, 8))), table, result, SETTINGS, NONE_AGAIN, MOST_GPA
+    )
     assert [row["runs"] for row in rows] == [0] * 8
     assert set(rows[0]) == {"output", "unit", "runs", "missing"}
 
@@ -247,7 +261,8 @@ def test_positive_outputs_stay_positive_where_the_linear_response_does_not():
     result = propagate(NodeOutputs([0, 1], np.stack([values, values])), table, SETTINGS, direct)
     assert (result.outputs[:, 1] > 0).all()
     assert result.outputs[:, 1] == pytest.approx(np.exp(4 * result.samples[:, 0]), rel=1e-6)
-    # exact in the logarithm; the mean of the linear response is that of Simpson's rule (here 14 % too high)
+    # exact in the logarithm; the mean of the linear response is that of Simpson's rule (here 14 %
+    # too high)
     exact = (np.exp(4) - 1) / 4
     assert result.outputs[:, 1].mean() == pytest.approx(exact, rel=0.1)
 
@@ -271,14 +286,18 @@ def test_regression_recovers_the_mean_over_noise_and_reports_intervals():
 
 
 def test_a_small_change_of_a_large_output_has_the_indices_of_the_change():
-    """Closing falls over two decades with x0 and scatters by 30 %; the change on opening depends on x1 and x2 alone."""
+    """Closing falls over two decades with x0 and scatters by 30 %; the change on opening depends on
+    x1 and x2 alone.
+    """
     table = uniform_table()
     x = table.sample(800, 7)
     scatter = np.random.default_rng(3).lognormal(0, 0.3, 800)
     closing = 10 * np.exp(-5 * x[:, 0]) * scatter
     opening = closing + 1 + x @ [0.0, 1.0, 2.0]
     direct = (x, np.stack([closing] * 4 + [opening] * 4, axis=1))
-    rows = sensitivity_rows(linear_nodes(table, [1, 2, 3]), table, SETTINGS, np.zeros(8), {}, {}, direct)
+    rows = sensitivity_rows(
+        linear_nodes(table, [1, 2, 3]), table, SETTINGS, np.zeros(8), {}, {}, direct
+    )
     found = [row["sobol_first"] for row in rows if row["output"] == "delta_C_a_GPa_nm"]
     assert found == pytest.approx([0.0, 0.2, 0.8], abs=0.02)
 
@@ -287,11 +306,14 @@ def test_an_input_without_effect_has_an_index_near_zero_with_an_interval():
     table = uniform_table()
     x = table.sample(400, 8)
     noisy = (x @ [1.0, 2.0, 0.0])[:, None] + np.random.default_rng(4).normal(5, 0.5, (400, 8))
-    rows = sensitivity_rows(linear_nodes(table, [1, 2, 0]), table, SETTINGS, np.zeros(8), {}, {}, (x, noisy))
+    rows = sensitivity_rows(
+        linear_nodes(table, [1, 2, 0]), table, SETTINGS, np.zeros(8), {}, {}, (x, noisy)
+    )
     for row in rows[:12]:  # the four closing parameters; here nothing changes on opening
         assert row["sobol_total_high"] > row["sobol_total_low"]
         if row["input"] == "x2":
-            # the slope's variance by chance is 12 * 0.25 / 400, squares to 0.0015 of the others' 1 + 4; tail of chi^2
+            # the slope's variance by chance is 12 * 0.25 / 400, squares to 0.0015 of the others' 1
+            # + 4; tail of chi^2
             assert 0 < row["sobol_total"] < 0.03
 
 
@@ -304,7 +326,9 @@ def test_too_few_runs_give_no_regression_response():
 
 
 def falling_contacts(inputs: int, runs: int = 300):
-    """Runs whose last contact is a little below the first where the inputs are small, and far below where large."""
+    """Runs whose last contact is a little below the first where the inputs are small, and far below
+    where large.
+    """
     rng = np.random.default_rng(5)
     x = rng.random((runs, inputs))
     scatter = np.exp(0.3 * rng.standard_normal((runs, 2)))
@@ -341,7 +365,9 @@ def test_opening_never_starts_above_closing():
 
 
 def test_a_contact_that_keeps_its_shape_opens_where_it_closed():
-    """Elastic: the drop is 0 in every run; the response is at most a hundredth of a nanometre below."""
+    """Elastic: the drop is 0 in every run; the response is at most a hundredth of a nanometre
+    below.
+    """
     table = uniform_table(3)
     x, y = falling_contacts(3, 100)
     y[:, 4] = y[:, 0]

@@ -36,14 +36,18 @@ def test_runs_state_their_own_scatter():
     """One in a million, ten times: the 90 % interval holds it at least seven times (p = 0.01)."""
     beta, held, shares, stated = 4.753, 0, [], []
     for seed in range(10):
-        found = sample_event(lambda z: (reserve(z, beta), np.full(len(z), SURE)), DIMENSION, 0.0, seed)
+        found = sample_event(
+            lambda z: (reserve(z, beta), np.full(len(z), SURE)), DIMENSION, 0.0, seed
+        )
         low, high = found.interval(0.9)
         held += low <= ndtr(-beta) <= high
         shares.append(found.probability)
         stated.append(found.variation)
     assert held >= 7
     # a deviation of ten is known to 24 %
-    assert np.std(shares, ddof=1) / np.mean(shares) == pytest.approx(np.sqrt(np.mean(np.square(stated))), rel=0.6)
+    assert np.std(shares, ddof=1) / np.mean(shares) == pytest.approx(
+        np.sqrt(np.mean(np.square(stated))), rel=0.6
+    )
 
 
 def test_an_event_that_always_happens_and_one_that_never_does():
@@ -57,10 +61,14 @@ def test_an_event_that_always_happens_and_one_that_never_does():
 
 @pytest.mark.parametrize("shift", [-0.3, 0.3])
 def test_runs_correct_a_response_that_is_wrong(shift):
-    """A response that is off by its own deviation alone is wrong by a factor of 4; the interval holds the truth."""
+    """A response that is off by its own deviation alone is wrong by a factor of 4; the interval
+    holds the truth.
+    """
     held = 0
     for seed in range(10):
-        found = sample_event(lambda z: (reserve(z, 4.0) + shift, np.full(len(z), 0.3)), DIMENSION, 0.0, seed)
+        found = sample_event(
+            lambda z: (reserve(z, 4.0) + shift, np.full(len(z), 0.3)), DIMENSION, 0.0, seed
+        )
         chosen = np.random.default_rng(seed).permutation(len(found.points))[:256]
         corrected = correct(found, reserve(found.points[chosen], 4.0) <= 0.0, found.chance[chosen])
         held += corrected.low <= ndtr(-4.0) <= corrected.high
@@ -82,7 +90,9 @@ def test_a_process_foretells_a_smooth_function_and_leaves_out_what_does_not_vary
     y = x[:, 0] + np.exp(0.5 * x[:, 1]) + 0.2 * x[:, 1] * x[:, 2]
     process = Process(x[:60], y[:60])
     mean, deviation = process(x[60:])
-    error = mean - y[60:]  # largest in a corner, where the fit of the lengths decides and processors differ
+    error = (
+        mean - y[60:]
+    )  # largest in a corner, where the fit of the lengths decides and processors differ
     assert np.sqrt((error**2).mean()) < 0.01
     assert (np.abs(error) < 4 * deviation).all()
     assert (deviation < 0.05).all()
@@ -96,24 +106,31 @@ def _plane(distance, deviation=1e-9):
 
 
 def test_the_rate_by_what_is_common_is_that_of_a_plane():
-    """Given the first two numbers, the reserve is normal: brute force is a formula, over five decades."""
+    """Given the first two numbers, the reserve is normal: brute force is a formula, over five
+    decades.
+    """
     common = np.array([True, True, False, False])
     rates = rates_given(_plane(2.0), common, 0.0, 3)
     z = np.random.default_rng(1).normal(size=(200_000, 2))
     truth = ndtr(-(2.0 + z @ SLOPES[:2]) / np.linalg.norm(SLOPES[2:]))
     held = [
-        row["low"] * 0.9 <= np.quantile(truth, float(q)) <= row["high"] * 1.1 for q, row in quantiles_of(rates).items()
+        row["low"] * 0.9 <= np.quantile(truth, float(q)) <= row["high"] * 1.1
+        for q, row in quantiles_of(rates).items()
     ]
     assert all(held)
     assert rates.mean() == pytest.approx(truth.mean(), rel=0.3)
     for allowed in (1e-6, 1e-4, 1e-2):
-        assert (rates < allowed).mean() == pytest.approx((truth < allowed).mean(), abs=2.5 * 0.5 / np.sqrt(400))
+        assert (rates < allowed).mean() == pytest.approx(
+            (truth < allowed).mean(), abs=2.5 * 0.5 / np.sqrt(400)
+        )
 
 
 def test_quantiles_of_the_rate_hold_the_truth_in_18_of_20():
     common = np.array([True, True, False, False])
     z = np.random.default_rng(1).normal(size=(200_000, 2))
-    truth = np.quantile(ndtr(-(2.0 + z @ SLOPES[:2]) / np.linalg.norm(SLOPES[2:])), [0.05, 0.5, 0.95])
+    truth = np.quantile(
+        ndtr(-(2.0 + z @ SLOPES[:2]) / np.linalg.norm(SLOPES[2:])), [0.05, 0.5, 0.95]
+    )
     held = np.zeros(3, int)
     for seed in range(20):
         rows = quantiles_of(rates_given(_plane(2.0), common, 0.0, seed)).values()
@@ -135,7 +152,9 @@ def test_the_error_of_the_response_is_common_too():
     """A reserve of 1 +- 1 by an unknown that all devices share."""
     rates = rates_given(_plane(1.0, 1.0), np.zeros(4, bool), 0.0, 0)
     for q, shift in ((0.5, 0.0), (0.95, 1.645)):
-        assert np.quantile(rates, q) == pytest.approx(ndtr((shift - 1.0) / np.linalg.norm(SLOPES)), rel=0.15)
+        assert np.quantile(rates, q) == pytest.approx(
+            ndtr((shift - 1.0) / np.linalg.norm(SLOPES)), rel=0.15
+        )
 
 
 @pytest.mark.parametrize("seed", [4, 11])

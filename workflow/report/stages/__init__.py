@@ -1,7 +1,7 @@
 """What the page says about each stage: its text, figures, tables and files.
 
-Every module offers `describe(results) -> Section | None`; None where the scene has no results of the stage.
-"""
+Every module offers `describe(results) -> Section | None`; None where the scene has no results of
+the stage."""
 
 from workflow.report.stages import (
     budget,

@@ -21,13 +21,18 @@ LITTLE_V = 0.1
 """Effects that move the release by less are folded away."""
 
 
-@stage("What the budget leaves small, and its sources", "device/budget.csv", "device/pad_switch.json")
+@stage(
+    "What the budget leaves small, and its sources", "device/budget.csv", "device/pad_switch.json"
+)
 def describe(results: Results) -> Iterator[Block]:
-    """The effects, the largest first: what the interval holds, then what it leaves out; what is not known is last."""
+    """The effects, the largest first: what the interval holds, then what it leaves out; what is not
+    known is last.
+    """
     rows = _rows(results)
     yield (
-        "Effects below 0.1 V, then the sources of all. Each effect moves the release at central inputs, so that a sum "
-        "in quadrature of what the interval holds is near its width, but not equal to it."
+        "Effects below 0.1 V, then the sources of all. Each effect moves the release at central"
+        " inputs, so that a sum in quadrature of what the interval holds is near its width, but not"
+        " equal to it."
     )
     if not rows:
         yield "The switch at central inputs has no release, so there is nothing to move."
@@ -38,7 +43,9 @@ def describe(results: Results) -> Iterator[Block]:
         yield table(_caption(results, rows), held, HELD, front=True)
     left_out = "What the interval leaves out, by the volts that the release moves"
     yield table(left_out, [row for row in large if row["held"] != "True"], LEFT_OUT, front=True)
-    yield table("Effects below 0.1 V", [row for row in rows if number(row["volts"]) < LITTLE_V], LEFT_OUT)
+    yield table(
+        "Effects below 0.1 V", [row for row in rows if number(row["volts"]) < LITTLE_V], LEFT_OUT
+    )
     yield table("Sources", rows, {"effect": _effect, "source": "source"})
 
 
@@ -55,14 +62,26 @@ def _by_humidity(results: Results) -> CsvRow:
     if len(solved := [row for row in rows if row["release_V"]]) < 2:
         return {}
     release, humidity = column(solved, "release_V"), column(solved, "humidity")
-    about = f"{humidity.min():.0%} to {humidity.max():.0%}, menisci either way{'; it may stick' * (0.0 in release)}"
-    return {"volts": str(np.ptp(release)), "about": about, "how": "computed", "source": "device/humidity.csv"}
+    about = (
+        f"{humidity.min():.0%} to {humidity.max():.0%}, menisci either"
+        f" way{'; it may stick' * (0.0 in release)}"
+    )
+    return {
+        "volts": str(np.ptp(release)),
+        "about": about,
+        "how": "computed",
+        "source": "device/humidity.csv",
+    }
 
 
 def _effect(row: dict[str, Any]) -> str:
     """A property of the device in full: "stress" and "thickness" alone may be of anything."""
     name = row["effect"]
-    return NAMES[name][1].removeprefix("the ") if name in DeviceSettings.model_fields else in_words(name)
+    return (
+        NAMES[name][1].removeprefix("the ")
+        if name in DeviceSettings.model_fields
+        else in_words(name)
+    )
 
 
 def _volts(row: CsvRow) -> str:
@@ -84,8 +103,9 @@ def _caption(results: Results, rows: list[CsvRow]) -> str:
     """What the interval holds, in quadrature, beside its width."""
     held = [number(row["volts"]) for row in rows if row["held"] == "True"]
     said = (
-        "What the interval holds: volts by which each, from its 5 to its 95 %, moves the release at central inputs. "
-        f"Together they are {show(float(np.sqrt(np.nansum(np.square(held)))))} V, added in quadrature"
+        "What the interval holds: volts by which each, from its 5 to its 95 %, moves the release"
+        f" at central inputs. Together they are {show(float(np.sqrt(np.nansum(np.square(held)))))}"
+        " V, added in quadrature"
     )
     if answer := results.json("device/pad_switch.json").get("answer"):
         ends = [answer["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]

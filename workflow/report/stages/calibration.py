@@ -16,8 +16,8 @@ def describe(results: Results) -> Iterator[Block]:
     """Measurements in, posterior out."""
     posterior = results.json("calibration/posterior.json")
     yield (
-        "What the tables of measurements say about the inputs, by Bayes' rule: the scatter of single surfaces is that "
-        "of the model, and its responses count with their own error."
+        "What the tables of measurements say about the inputs, by Bayes' rule: the scatter of"
+        " single surfaces is that of the model, and its responses count with their own error."
     )
     if not posterior["gate"]["passed"]:
         yield "The chain has not converged, so there is no posterior."
@@ -26,7 +26,12 @@ def describe(results: Results) -> Iterator[Block]:
     yield table(
         "Inputs before and after the measurements",
         results.csv("calibration/summary.csv"),
-        {"input": lambda row: f"{SYMBOLS.get(row['parameter'], row['parameter'])} ({row['unit']})", **states},
+        {
+            "input": lambda row: (
+                f"{SYMBOLS.get(row['parameter'], row['parameter'])} ({row['unit']})"
+            ),
+            **states,
+        },
     )
     yield table(
         "Each table beside what the others predict",
@@ -46,13 +51,16 @@ def describe(results: Results) -> Iterator[Block]:
     )
     chain = posterior["chain"]
     yield (
-        f"Chain ({chain['sampler']}): R-hat {chain['r_hat']:.4f}, {chain['independent_draws']:.0f} independent draws. "
-        f"Behind the responses are {posterior['cycles']} contact cycles; their error, which is part of the posterior's "
-        f"width, is at most {show(posterior['response_error_share'], 2)} of it. The answer is that of the inputs after "
-        "the measurements."
+        f"Chain ({chain['sampler']}): R-hat {chain['r_hat']:.4f}, {chain['independent_draws']:.0f}"
+        f" independent draws. Behind the responses are {posterior['cycles']} contact cycles; their"
+        " error, which is part of the posterior's width, is at most"
+        f" {show(posterior['response_error_share'], 2)} of it. The answer is that of the inputs"
+        " after the measurements."
     )
     if left_out := posterior["points_left_out"]:
-        yield f"{left_out} points of curves lie outside the forces of the responses and are left out."
+        yield (
+            f"{left_out} points of curves lie outside the forces of the responses and are left out."
+        )
 
 
 def _quantity(row: CsvRow) -> str:

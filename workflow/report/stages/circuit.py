@@ -11,21 +11,25 @@ from workflow.report.page import Block, Figure, stage, table
 from workflow.report.verdict import volts
 
 
-@stage("In a circuit", *(f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "failure.csv")))
+@stage(
+    "In a circuit",
+    *(f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "failure.csv")),
+)
 def describe(results: Results) -> Iterator[Block]:
     """C-V loop with its band, and failure rate; pull-in and release of the corners."""
     circuit, rows = results.json("device/circuit.json"), results.csv("device/circuit.csv")
     errors = circuit["lumps"]
     corners = [row for row in rows if float(row["deviations"]) > 0]
     yield (
-        "The folder device/circuit has the switch as SPICE netlists: central, four corners and "
-        f"{len(rows) - len(corners)} draws. {errors['lumps']} pairs of lumps stand for the electrode. Beside finite "
-        f"elements pull-in differs by {errors['pull_in']:.1%}, release by {errors['release']:.1%}; these themselves "
-        f"err by {errors['reference']:.1%}."
+        "The folder device/circuit has the switch as SPICE netlists: central, four corners and"
+        f" {len(rows) - len(corners)} draws. {errors['lumps']} pairs of lumps stand for the"
+        f" electrode. Beside finite elements pull-in differs by {errors['pull_in']:.1%}, release by"
+        f" {errors['release']:.1%}; these themselves err by {errors['reference']:.1%}."
     )
     yield Figure(
         _figure(results),
-        "Left: slow loop; the bands hold 90 % of the draws. Right: share that fails against hold voltage.",
+        "Left: slow loop; the bands hold 90 % of the draws. Right: share that fails against hold"
+        " voltage.",
         wide=True,
     )
     yield table(
@@ -54,6 +58,8 @@ def _figure(results: Results) -> str:
         usual = [row for row in failing if np.isclose(float(row["attraction"]), 1.0)]
         share = column(usual, "failing")
         rare.plot(column(usual, "hold_V"), np.where(share > 0, share, np.nan), "o-", color=BLUE)
-        rare.set(yscale="log", xlabel="hold voltage (V)", ylabel="share of switches", title="failures")
+        rare.set(
+            yscale="log", xlabel="hold voltage (V)", ylabel="share of switches", title="failures"
+        )
 
     return draw("circuit", "Capacitance and failures of the switch", plot, (9.4, 3.3), columns=2)

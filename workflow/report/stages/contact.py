@@ -24,23 +24,27 @@ MODELS = {
 def describe(results: Results) -> Iterator[Block]:
     """The picture of the contact, and figures 4 and 11."""
     contact, coupled = results.contact, results.coupled
-    yield f"Closing and opening of one surface of {contact['length_nm']:g} nm with {contact['pixels']}² grid points."
+    yield (
+        f"Closing and opening of one surface of {contact['length_nm']:g} nm with"
+        f" {contact['pixels']}² grid points."
+    )
     yield Figure(
         spots(results),
-        "One cell, a square of rough surface, seen from the flat: high is light. Coloured is where the flat has "
-        "reached it, by the load at which it did.",
+        "One cell, a square of rough surface, seen from the flat: high is light. Coloured is where"
+        " the flat has reached it, by the load at which it did.",
         front=True,
     )
     yield Figure(
         nominal_models(results),
-        f"Three models of {'coupled asperities' if coupled else 'the single asperity'}. Elastic contacts reopen along "
-        "their closing line; plastic ones do not.",
+        f"Three models of {'coupled asperities' if coupled else 'the single asperity'}. Elastic"
+        " contacts reopen along their closing line; plastic ones do not.",
         "Figure 4",
         front=True,
     )
     yield Figure(
         nominal_loads(results),
-        "Closing (solid) and opening (dashed) up to several largest loads; thin lines: the fitted law.",
+        "Closing (solid) and opening (dashed) up to several largest loads; thin lines: the fitted"
+        " law.",
         "Figure 11",
         wide=True,
     )
@@ -58,15 +62,29 @@ def spots(results: Results) -> str | None:
     shades[step >= 0] = colors[step[step >= 0]]
 
     def plot(axis):
-        axis.imshow(shades.transpose(1, 0, 2), origin="lower", extent=(0, side, 0, side), interpolation="none")
+        axis.imshow(
+            shades.transpose(1, 0, 2),
+            origin="lower",
+            extent=(0, side, 0, side),
+            interpolation="none",
+        )
         for k in sorted({0, load.size // 2, load.size - 1}):
-            words = f"{show(load[k])} µN: {steps['asperities'][k]}; {show(100 * steps['cut_share'][k], 2)} %"
+            words = (
+                f"{show(load[k])} µN: {steps['asperities'][k]};"
+                f" {show(100 * steps['cut_share'][k], 2)} %"
+            )
             axis.plot([], [], "s", color=colors[k], label=words)
         axis.set(xlabel="nm")
         axis.grid(False)
-        axis.legend(title="load: asperities in contact; area reached", loc="upper center", bbox_to_anchor=(0.5, -0.12))
+        axis.legend(
+            title="load: asperities in contact; area reached",
+            loc="upper center",
+            bbox_to_anchor=(0.5, -0.12),
+        )
 
-    return draw("spots", "Heights of the surface and where the flat has reached it", plot, (5.0, 5.2))
+    return draw(
+        "spots", "Heights of the surface and where the flat has reached it", plot, (5.0, 5.2)
+    )
 
 
 def nominal_models(results: Results) -> str | None:
@@ -131,7 +149,13 @@ def nominal_loads(results: Results) -> str | None:
         axis.set_title("full range")
         axis.legend(title="largest load")
 
-    return draw("fig11", "Closing and opening curves up to several largest loads", plot, (9.4, 4.0), columns=2)
+    return draw(
+        "fig11",
+        "Closing and opening curves up to several largest loads",
+        plot,
+        (9.4, 4.0),
+        columns=2,
+    )
 
 
 def _force_on(attributes: Mapping[str, Any]) -> str:
@@ -157,4 +181,11 @@ def _pressure(h: np.ndarray, row: CsvRow, hamaker: float) -> np.ndarray:
 
 def _fit_of(rows: list[CsvRow], curve: str, branch: str) -> CsvRow | None:
     """The fit of a curve; None where it gave no law."""
-    return next((row for row in rows if row["curve"] == curve and row["branch"] == branch and row["C_r_GPa"]), None)
+    return next(
+        (
+            row
+            for row in rows
+            if row["curve"] == curve and row["branch"] == branch and row["C_r_GPa"]
+        ),
+        None,
+    )

@@ -23,9 +23,10 @@ def describe(results: Results) -> Iterator[Block]:
     """Release against one key of the device at a time."""
     rows = results.json("device/pad_switch.json").get("by_key", [])
     yield (
-        "Each row is solved on the pad at central inputs with one property changed; surface and materials stay as they "
-        "are. A switch without a stated hold voltage is held at its own pull-in voltage. The beam has half as many "
-        "elements as for the answer, so that releases differ from it by a few percent."
+        "Each row is solved on the pad at central inputs with one property changed; surface and"
+        " materials stay as they are. A switch without a stated hold voltage is held at its own"
+        " pull-in voltage. The beam has half as many elements as for the answer, so that releases"
+        " differ from it by a few percent."
     )
     if not rows:
         yield "The switch at central inputs has no answer, so there is nothing to compare with."
@@ -35,9 +36,10 @@ def describe(results: Results) -> Iterator[Block]:
         return
     yield Figure(
         by_key(rows),
-        "Release at central inputs if one property of the device were another; the grey line is this scene. At zero "
-        "the switch sticks. Open circles: the pad is pressed harder than it was computed, so its curves are continued. "
-        "Curves end where the switch has no answer; the table below has pull-in and the reasons.",
+        "Release at central inputs if one property of the device were another; the grey line is"
+        " this scene. At zero the switch sticks. Open circles: the pad is pressed harder than it"
+        " was computed, so its curves are continued. Curves end where the switch has no answer; the"
+        " table below has pull-in and the reasons.",
         wide=True,
         front=True,
     )
@@ -48,8 +50,12 @@ def describe(results: Results) -> Iterator[Block]:
             "property": lambda row: _label(row["key"]).replace(" ", "\u00a0"),
             "value": lambda row: show(row["value"]),
             "pull-in (V)": cell("pull_in_V"),
-            "release (V)": lambda row: "sticks" if row["release_V"] == 0 else show(row["release_V"]),
-            "remark": lambda row: row["reason"].partition(";")[0] or ("curves continued" if row["continued"] else ""),
+            "release (V)": lambda row: (
+                "sticks" if row["release_V"] == 0 else show(row["release_V"])
+            ),
+            "remark": lambda row: (
+                row["reason"].partition(";")[0] or ("curves continued" if row["continued"] else "")
+            ),
         },
         heads=2,
     )
@@ -67,13 +73,29 @@ def by_key(rows: list[dict[str, Any]]) -> str:
             axis.plot(column(solved, "value"), column(solved, "release_V"), color=BLUE)
             for row in solved:
                 face = "none" if row["continued"] else BLUE
-                axis.plot(row["value"], row["release_V"], "o", color=BLUE, markerfacecolor=face, markersize=5)
-            axis.axvline(next(row["value"] for row in solved if row["own"]), color=SOFT, linewidth=0.8)
+                axis.plot(
+                    row["value"],
+                    row["release_V"],
+                    "o",
+                    color=BLUE,
+                    markerfacecolor=face,
+                    markersize=5,
+                )
+            axis.axvline(
+                next(row["value"] for row in solved if row["own"]), color=SOFT, linewidth=0.8
+            )
             axis.set(ylim=(-0.03 * top, top), xlabel=_label(key), ylabel="release (V)")
         for axis in axes[len(keys) :]:
             axis.set_visible(False)
 
-    return draw("by-key", "Release against one property of the device at a time", plot, (8.0, 4.4), columns=3, rows=2)
+    return draw(
+        "by-key",
+        "Release against one property of the device at a time",
+        plot,
+        (8.0, 4.4),
+        columns=3,
+        rows=2,
+    )
 
 
 def _label(key: str) -> str:

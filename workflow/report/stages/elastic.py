@@ -10,7 +10,11 @@ from workflow.report.numbers import cell, column, number, show
 from workflow.report.page import Block, Figure, stage, table
 
 
-@stage("Effective elastic modulus", *("elastic/bulk_moduli.csv", "elastic/e_star.json"), also=("elastic/points.csv",))
+@stage(
+    "Effective elastic modulus",
+    *("elastic/bulk_moduli.csv", "elastic/e_star.json"),
+    also=("elastic/points.csv",),
+)
 def describe(results: Results) -> Iterator[Block]:
     """Figure 5, and every structure."""
     summary = results.json("elastic/e_star.json")
@@ -20,8 +24,8 @@ def describe(results: Results) -> Iterator[Block]:
     )
     yield Figure(
         elastic_distribution(results),
-        "Left: bulk moduli of the glasses by E(V); dashed: a crystal. Right: the modulus E* of the contact, "
-        "variability and model-form error included.",
+        "Left: bulk moduli of the glasses by E(V); dashed: a crystal. Right: the modulus E* of the"
+        " contact, variability and model-form error included.",
         "Figure 5",
         wide=True,
     )
@@ -44,18 +48,38 @@ def elastic_distribution(results: Results) -> str | None:
     """Figure 5: bulk moduli of the ensemble and the resulting E*."""
     rows = results.csv("elastic/bulk_moduli.csv")
     summary = results.json("elastic/e_star.json")
-    samples = results.h5("elastic/e_star.h5")[0].get("samples", {}) if results.has("elastic/e_star.h5") else {}
-    glasses = {*summary.get("structures_used", []), *(kept["structure"] for kept in summary.get("kept_out", []))}
-    trusted = [row for row in rows if not row.get("flags") and np.isfinite(number(row.get("B_GPa")))]
+    samples = (
+        results.h5("elastic/e_star.h5")[0].get("samples", {})
+        if results.has("elastic/e_star.h5")
+        else {}
+    )
+    glasses = {
+        *summary.get("structures_used", []),
+        *(kept["structure"] for kept in summary.get("kept_out", [])),
+    }
+    trusted = [
+        row for row in rows if not row.get("flags") and np.isfinite(number(row.get("B_GPa")))
+    ]
 
     def plot(axis, other):
         every = column(trusted, "B_GPa")
-        bins = np.linspace(every.min() - 5, every.max() + 5, 12) if every.size else np.linspace(0, 1, 2)
+        bins = (
+            np.linspace(every.min() - 5, every.max() + 5, 12)
+            if every.size
+            else np.linspace(0, 1, 2)
+        )
         for xc, color in zip(sorted({row["xc"] for row in rows}), SERIES, strict=False):
             kind = [row for row in trusted if row["xc"] == xc]
             part = column([row for row in kind if row["structure"] in glasses], "B_GPa")
             if part.size:
-                axis.hist(part, bins=bins, color=color, alpha=0.5, label=f"{xc.upper()}, clamped ions", linewidth=0)
+                axis.hist(
+                    part,
+                    bins=bins,
+                    color=color,
+                    alpha=0.5,
+                    label=f"{xc.upper()}, clamped ions",
+                    linewidth=0,
+                )
             for row in kind:
                 if row["structure"] not in glasses:
                     crystal = f"{row['structure']} crystal, {xc.upper()}"
@@ -65,7 +89,15 @@ def elastic_distribution(results: Results) -> str | None:
         axis.yaxis.get_major_locator().set_params(integer=True)
         axis.legend()
         if "e_star_GPa" in samples:
-            other.hist(samples["e_star_GPa"], bins=50, density=True, color=BLUE, alpha=0.5, linewidth=0)
+            other.hist(
+                samples["e_star_GPa"], bins=50, density=True, color=BLUE, alpha=0.5, linewidth=0
+            )
         other.set(xlabel="E* (GPa)", ylabel="density (1/GPa)", ylim=(0, None))
 
-    return draw("fig5", "Bulk moduli of the structures and the effective modulus", plot, (9.4, 3.7), columns=2)
+    return draw(
+        "fig5",
+        "Bulk moduli of the structures and the effective modulus",
+        plot,
+        (9.4, 3.7),
+        columns=2,
+    )

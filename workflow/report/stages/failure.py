@@ -18,16 +18,19 @@ def describe(results: Results) -> Iterator[Block]:
     rate = results.json("device/failure.json")
     event = f"is still closed at {volts(rate['release_V'])}" if rate["release_V"] else "sticks"
     yield (
-        f"A switch fails where it {event}. Allowed is a share of {rate['allowed']:g}. Nothing here decides the law of "
-        "attraction, so each row has its own. Inputs, geometry and pads are drawn together."
+        f"A switch fails where it {event}. Allowed is a share of {rate['allowed']:g}. Nothing here"
+        " decides the law of attraction, so each row has its own. Inputs, geometry and pads are"
+        " drawn together."
     )
     yield Figure(
         _curve(results),
-        "Share that fails against hold voltage, by the response. Points: over all that varies. Dashed: the most of one "
-        "batch with 95 % confidence, as what is common to its devices is not known.",
+        "Share that fails against hold voltage, by the response. Points: over all that varies."
+        " Dashed: the most of one batch with 95 % confidence, as what is common to its devices is"
+        " not known.",
     )
     yield table(
-        "Share of the devices that fail; it is uncertain, because what is common to all devices is not known",
+        "Share of the devices that fail; it is uncertain, because what is common to all devices is"
+        " not known",
         rate["laws"],
         {
             "attraction": lambda law: f"{show(law['attraction'], 2)} times",
@@ -39,9 +42,12 @@ def describe(results: Results) -> Iterator[Block]:
         },
         front=True,
     )
-    spring, unit = ("thickness of the beam", "µm") if rate["spring"] == "thickness_um" else ("spring", "N/m")
+    spring, unit = (
+        ("thickness of the beam", "µm") if rate["spring"] == "thickness_um" else ("spring", "N/m")
+    )
     yield table(
-        f"Share that fails, and what is allowed; hold voltage and roughness with {rate['confidence']:.0%} confidence",
+        "Share that fails, and what is allowed; hold voltage and roughness with"
+        f" {rate['confidence']:.0%} confidence",
         rate["laws"],
         {
             "attraction": lambda law: f"{show(law['attraction'], 2)} times",
@@ -78,9 +84,25 @@ def _curve(results: Results) -> str:
         for color, times in zip(SERIES, laws, strict=False):
             curve = [row for row in rows if row["attraction"] == times]
             seen = np.where(column(curve, "failing") > 0, column(curve, "failing"), np.nan)
-            axis.plot(column(curve, "hold_V"), seen, "o-", color=color, label=f"{show(times, 2)} times the attraction")
-            axis.plot(column(curve, "hold_V"), np.maximum(column(curve, "failing_q95"), LEAST), "--", color=color)
-        axis.axhline(results.json("device/failure.json")["allowed"], linewidth=0.8, color=INK, label="allowed")
+            axis.plot(
+                column(curve, "hold_V"),
+                seen,
+                "o-",
+                color=color,
+                label=f"{show(times, 2)} times the attraction",
+            )
+            axis.plot(
+                column(curve, "hold_V"),
+                np.maximum(column(curve, "failing_q95"), LEAST),
+                "--",
+                color=color,
+            )
+        axis.axhline(
+            results.json("device/failure.json")["allowed"],
+            linewidth=0.8,
+            color=INK,
+            label="allowed",
+        )
         axis.set(yscale="log", xlabel="hold voltage (V)", ylabel="share that fails")
         axis.legend(frameon=False)
 

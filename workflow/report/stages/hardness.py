@@ -23,20 +23,24 @@ def describe(results: Results) -> Iterator[Block]:
     points = results.csv("hardness/points.csv")
     fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
     yield (
-        "Molecular dynamics of one asperity pressed against a flat; hardness is the contact stress beyond the onset of "
-        "plastic flow."
+        "Molecular dynamics of one asperity pressed against a flat; hardness is the contact stress"
+        " beyond the onset of plastic flow."
     )
     yield Figure(
         contact_stress(results),
-        "Contact stress against contact length of every closing run. Circles: where plastic flow was first witnessed "
-        "by exchanged bonds; diamonds: the hardness of runs that yielded.",
+        "Contact stress against contact length of every closing run. Circles: where plastic flow"
+        " was first witnessed by exchanged bonds; diamonds: the hardness of runs that yielded.",
         "Figure 7",
     )
     yield Figure(
         hardness_size(results),
         "Hardness against contact length, with full and with halved energies where both were run."
         + " Grey: Table 1 of the paper; crosses: the values in its text." * _as_paper(results)
-        + (f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval." if fit.get("curve") else ""),
+        + (
+            f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval."
+            if fit.get("curve")
+            else ""
+        ),
         "Figure 8",
     )
     columns: dict[str, CellText] = {
@@ -52,30 +56,40 @@ def describe(results: Results) -> Iterator[Block]:
         "p of the onset": cell("onset_p_value"),
         "status": "status",
     }
-    if len({row.get("film_nm") for row in points}) == 1:  # no film, or one thickness: the column says nothing
+    if (
+        len({row.get("film_nm") for row in points}) == 1
+    ):  # no film, or one thickness: the column says nothing
         del columns["film (nm)"]
     yield table("Every run and what became of it", points, columns)
     yield from _fit_notes(fit)
 
 
 def _as_paper(results: Results) -> bool:
-    """Whether the figure has the paper's values: in scene `paper`, and where energies enter as in the paper."""
+    """Whether the figure has the paper's values: in scene `paper`, and where energies enter as in
+    the paper.
+    """
     fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
     return results.beside_paper or fit.get("energies_from") == "scales"
 
 
 def _twin_notes(fit: dict[str, Any]) -> Iterator[str]:
-    """What scaled energies do to the hardness, and the hardness by both ways to bound the energies."""
+    """What scaled energies do to the hardness, and the hardness by both ways to bound the
+    energies.
+    """
     for row in fit.get("twins", ()):
         ratio = row["ratio"]
         yield (
-            f"With energies × {show(row['energy_scale'])} the hardness is {show(ratio['median'])} "
-            f"[{show(ratio['low'])}, {show(ratio['high'])}] of that with full ones. The pairs of runs are "
-            f"{row['pairs']}; the 68 % interval is from the 11 % by which runs of one kind scatter."
+            f"With energies × {show(row['energy_scale'])} the hardness is {show(ratio['median'])}"
+            f" [{show(ratio['low'])}, {show(ratio['high'])}] of that with full ones. The pairs of"
+            f" runs are {row['pairs']}; the 68 % interval is from the 11 % by which runs of one"
+            " kind scatter."
         )
     for way, words in (("measured", "bounded by indentation"), ("scales", "as run, both alike")):
         if quantiles := fit.get("hardness_GPa", {}).get(way):
-            span = f"{show(quantiles['median'])} [{show(quantiles['low'])}, {show(quantiles['high'])}] GPa"
+            span = (
+                f"{show(quantiles['median'])} [{show(quantiles['low'])},"
+                f" {show(quantiles['high'])}] GPa"
+            )
             yield f"Hardness with the energies {words}: {span} (median and 68 % interval)."
 
 
@@ -114,14 +128,22 @@ def contact_stress(results: Results) -> str | None:
                 if np.isfinite(onset):
                     then = np.argmin(np.abs(length[use] - onset))
                     axis.plot(
-                        length[use][then], stress[use][then], "o", color=color, markerfacecolor="none", markersize=6
+                        length[use][then],
+                        stress[use][then],
+                        "o",
+                        color=color,
+                        markerfacecolor="none",
+                        markersize=6,
                     )
         for label, color, _ in dict.fromkeys(map(_scale, points.values())):
             axis.plot([], [], color=color, label=label)
         axis.plot([], [], "o", color=SOFT, markerfacecolor="none", label="onset of plastic flow")
         axis.plot([], [], "D", color=SOFT, label="hardness of the run")
         axis.set(
-            xlabel="contact length √A (nm)", ylabel="contact stress (GPa)", ylim=(0, 1.1 * highest), xlim=(0.8, None)
+            xlabel="contact length √A (nm)",
+            ylabel="contact stress (GPa)",
+            ylim=(0, 1.1 * highest),
+            xlim=(0.8, None),
         )
         axis.legend()
 
@@ -133,7 +155,9 @@ def hardness_size(results: Results) -> str | None:
     points = results.csv("hardness/points.csv")
     fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
 
-    longest = max(float(np.nanmax(column(points, "contact_length_nm"), initial=0.0)), 18.0)  # nm, where H levels off
+    longest = max(
+        float(np.nanmax(column(points, "contact_length_nm"), initial=0.0)), 18.0
+    )  # nm, where H levels off
 
     def plot(axis):
         for key, (label, color, marker) in SCALES.items():
@@ -144,7 +168,14 @@ def hardness_size(results: Results) -> str | None:
                 bars = np.nan_to_num(np.clip([hardness - low, high - hardness], 0, None))
                 face = color if key == "1.0" else "none"
                 axis.errorbar(
-                    length, hardness, yerr=bars, fmt=marker, color=color, markerfacecolor=face, label=label, capsize=3
+                    length,
+                    hardness,
+                    yerr=bars,
+                    fmt=marker,
+                    color=color,
+                    markerfacecolor=face,
+                    label=label,
+                    capsize=3,
                 )
         if fit.get("curve"):
             length, low, high, middle = (
@@ -152,16 +183,27 @@ def hardness_size(results: Results) -> str | None:
                 for key in ("contact_length_nm", "low_GPa", "high_GPa", "median_GPa")
             )
             axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L (eq. 4)")
-            axis.fill_between(length, low, high, color=GREEN, alpha=0.18, linewidth=0, label="its 68 % interval")
+            axis.fill_between(
+                length, low, high, color=GREEN, alpha=0.18, linewidth=0, label="its 68 % interval"
+            )
         if _as_paper(results):
             lengths = np.geomspace(1.0, longest, 60)
             least, most = (
                 macro + prime / np.sqrt(lengths)
-                for macro, prime in zip(TABLE_1["H_macro_GPa"], TABLE_1["H_prime_GPa_nm0.5"], strict=True)
+                for macro, prime in zip(
+                    TABLE_1["H_macro_GPa"], TABLE_1["H_prime_GPa_nm0.5"], strict=True
+                )
             )
-            axis.fill_between(lengths, least, most, color=SOFT, alpha=0.15, linewidth=0, label="Table 1")
+            axis.fill_between(
+                lengths, least, most, color=SOFT, alpha=0.15, linewidth=0, label="Table 1"
+            )
             axis.plot(*zip(*PAPER_VALUES, strict=True), "x", color=INK, label="paper, in its text")
-        axis.set(xlabel="contact length √A (nm)", ylabel="hardness (GPa)", ylim=(0, None), xlim=(1, 1.1 * longest))
+        axis.set(
+            xlabel="contact length √A (nm)",
+            ylabel="hardness (GPa)",
+            ylim=(0, None),
+            xlim=(1, 1.1 * longest),
+        )
         axis.legend()
 
     return draw("fig8", "Hardness of single asperities against contact length", plot)
@@ -188,28 +230,31 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
             notes.append(f"{label} in use, {origin}: {span} (median and 68 % interval).")
     if free := fit.get("free_fit"):
         macro, prime = (
-            f"{show(free[key]['mean'])} [{show(free[key]['low'])}, {show(free[key]['high'])}]" for key in TABLE_1
+            f"{show(free[key]['mean'])} [{show(free[key]['low'])}, {show(free[key]['high'])}]"
+            for key in TABLE_1
         )
         notes.append(
-            f"Both constants fitted freely: H_macro {macro} GPa, H′ {prime} GPa nm½ (mean and 68 % interval). "
-            f"{free['verdict'][0].upper()}{free['verdict'][1:]}."
+            f"Both constants fitted freely: H_macro {macro} GPa, H′ {prime} GPa nm½ (mean and 68 %"
+            f" interval). {free['verdict'][0].upper()}{free['verdict'][1:]}."
         )
     if film := fit.get("film"):
         base, (low, high) = film["base_GPa"], film["length_over_thickness"]
         errors = {name: f"{100 * error:.0f} %" for name, error in film["left_out"].items()}
         notes.append(
-            f"At a film thickness that its fit had not, the law film errs by {errors['film']}, eq. 4 by "
-            f"{errors['paper']}, a constant by {errors['constant']}."
+            f"At a film thickness that its fit had not, the law film errs by {errors['film']}, eq."
+            f" 4 by {errors['paper']}, a constant by {errors['constant']}."
         )
         notes.append(
-            f"The body below as pressed has {show(base['median'])} [{show(base['low'])}, {show(base['high'])}] GPa. "
-            f"Runs have L/t from {show(low)} to {show(high)}; wider contacts extrapolate the law."
+            f"The body below as pressed has {show(base['median'])} [{show(base['low'])},"
+            f" {show(base['high'])}] GPa. Runs have L/t from {show(low)} to {show(high)}; wider"
+            " contacts extrapolate the law."
         )
     if cutoff := fit.get("inputs", {}).get("gap_cutoff"):
         low, high = np.quantile(cutoff["values"], [0.05, 0.95]).tolist()
         notes.append(
-            f"The tops of {len(fit['tops'])} runs attract a smooth body with the work of a flat of cut-off D₀, "
-            f"{show(low)} to {show(high)} nm (90 % interval). Their largest force is that of "
-            f"{show(float(np.mean(column(fit['tops'], 'by_force_nm'))))} nm, which no contact of several tops feels."
+            f"The tops of {len(fit['tops'])} runs attract a smooth body with the work of a flat of"
+            f" cut-off D₀, {show(low)} to {show(high)} nm (90 % interval). Their largest force is"
+            f" that of {show(float(np.mean(column(fit['tops'], 'by_force_nm'))))} nm, which no"
+            " contact of several tops feels."
         )
     return notes

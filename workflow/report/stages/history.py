@@ -19,7 +19,8 @@ def describe(results: Results) -> Iterator[Block]:
     yield (
         f"{last} cycles of the same surfaces, each from what the last one left"
         + (
-            f", {show(held)} s under load in all: the hardness falls with time by the creep law of the scene. "
+            f", {show(held)} s under load in all: the hardness falls with time by the creep law of"
+            " the scene. "
             if held
             else ". "
         )
@@ -27,7 +28,8 @@ def describe(results: Results) -> Iterator[Block]:
     )
     yield Figure(
         history_drift(results),
-        "Left: energy lost by each cycle, one line per surface. Right: how far the closed contact sinks.",
+        "Left: energy lost by each cycle, one line per surface. Right: how far the closed contact"
+        " sinks.",
         wide=True,
     )
     if not all(row["converged"] == "True" for row in rows):
@@ -37,7 +39,9 @@ def describe(results: Results) -> Iterator[Block]:
 
 
 def history_drift(results: Results) -> str:
-    """Energy lost by each cycle, and how far the closed contact sinks and grows with the time under load."""
+    """Energy lost by each cycle, and how far the closed contact sinks and grows with the time under
+    load.
+    """
     cycles = results.csv("history/cycles.csv")
     dwell = results.csv("history/dwell.csv")
     seeds = sorted({row["seed"] for row in cycles}, key=int)
@@ -50,14 +54,26 @@ def history_drift(results: Results) -> str:
             some = lost > 0  # an elastic cycle loses nothing but rounding
             energy.plot(column(part, "cycle")[some], lost[some], "o-", color=color, markersize=3)
             held = [row for row in dwell if row["seed"] == seed]
-            x, depth = (column(held, "held_s"), "separation_nm") if held else (column(part, "cycle"), "closed_nm")
+            x, depth = (
+                (column(held, "held_s"), "separation_nm")
+                if held
+                else (column(part, "cycle"), "closed_nm")
+            )
             closed = column(held or part, depth)
             sunk.plot(x, closed[0] - closed, "-", color=color)
         energy.set(xscale="log", yscale="log", xlabel="cycle", ylabel="energy lost (nN nm)")
-        sunk.set(xscale="symlog" if dwell else "log", xlabel="time under load (s)" if dwell else "cycle")
+        sunk.set(
+            xscale="symlog" if dwell else "log", xlabel="time under load (s)" if dwell else "cycle"
+        )
         sunk.set(ylabel="sunk since first closed (nm)")
 
-    return draw("drift", "Energy lost by each cycle and sinking of the closed contact", plot, (9.4, 3.6), columns=2)
+    return draw(
+        "drift",
+        "Energy lost by each cycle and sinking of the closed contact",
+        plot,
+        (9.4, 3.6),
+        columns=2,
+    )
 
 
 def _shakedown(rows: list[CsvRow]) -> str:
@@ -70,4 +86,7 @@ def _shakedown(rows: list[CsvRow]) -> str:
     first, last = by_cycle[min(by_cycle)], by_cycle[max(by_cycle)]
     if len(by_cycle) < 2 or not np.isfinite(first) or first <= 0:
         return ""
-    return f"The last cycle loses {show(100 * max(last, 0.0) / first, 2)} % of the energy that the first one lost."
+    return (
+        f"The last cycle loses {show(100 * max(last, 0.0) / first, 2)} % of the energy that the"
+        " first one lost."
+    )

@@ -7,7 +7,10 @@ from workflow.report.drawing import BLUE, ORANGE, draw
 from workflow.report.numbers import cell, column, show
 from workflow.report.page import Block, Figure, stage, table
 
-OPENINGS = {"balance": (BLUE, "menisci in balance with the vapour"), "volume": (ORANGE, "their volume stays")}
+OPENINGS = {
+    "balance": (BLUE, "menisci in balance with the vapour"),
+    "volume": (ORANGE, "their volume stays"),
+}
 
 
 @stage("Humid air", "device/humidity.csv")
@@ -15,16 +18,18 @@ def describe(results: Results) -> Iterator[Block]:
     """Release and sticking against humidity."""
     rows = results.csv("device/humidity.csv")
     yield (
-        "Water condenses in narrow gaps and pulls. While the switch opens it stays in balance with the vapour, or its "
-        "volume stays, where opening is too fast to evaporate it: both limits are shown. The air must have stood "
-        "around the closed switch for some seconds, in which it condenses. How much it pulls depends on the contact "
-        "angles of the walls (contact.air.contact_angles_deg): clean walls, 0°, are pulled most. Where liquid would be "
-        "thinner than a molecule there is none; air this dry counts as dry."
+        "Water condenses in narrow gaps and pulls. While the switch opens it stays in balance with"
+        " the vapour, or its volume stays, where opening is too fast to evaporate it: both limits"
+        " are shown. The air must have stood around the closed switch for some seconds, in which it"
+        " condenses. How much it pulls depends on the contact angles of the walls"
+        " (contact.air.contact_angles_deg): clean walls, 0°, are pulled most. Where liquid would be"
+        " thinner than a molecule there is none; air this dry counts as dry."
     )
     yield Figure(
         against_humidity(rows),
-        f"{begins_to_stick(rows)} Left: release at central inputs; at zero the switch sticks. Right: share that sticks "
-        "of the points with about this humidity, over all that is uncertain, with its 95 % interval.",
+        f"{begins_to_stick(rows)} Left: release at central inputs; at zero the switch sticks."
+        " Right: share that sticks of the points with about this humidity, over all that is"
+        " uncertain, with its 95 % interval.",
         wide=True,
         front=True,
     )
@@ -38,7 +43,9 @@ def describe(results: Results) -> Iterator[Block]:
             "release (V)": _release,
             "work of opening (mJ/m²)": cell("energy_mJ_m2"),
             "pull-off (kPa)": cell("pull_off_kPa"),
-            "sticks": lambda row: f"{float(row['stuck']):.0%} of {row['points']}" if row["stuck"] else "–",
+            "sticks": lambda row: (
+                f"{float(row['stuck']):.0%} of {row['points']}" if row["stuck"] else "–"
+            ),
         },
         heads=2,
     )
@@ -50,7 +57,11 @@ def begins_to_stick(rows: list[CsvRow]) -> str:
     for opening, (_, label) in OPENINGS.items():
         known = [row for row in rows if row["opening"] == opening and row["release_V"]]
         stuck = [float(row["humidity"]) for row in known if float(row["release_V"]) == 0.0]
-        free = [float(row["humidity"]) for row in known if not stuck or float(row["humidity"]) < stuck[0]]
+        free = [
+            float(row["humidity"])
+            for row in known
+            if not stuck or float(row["humidity"]) < stuck[0]
+        ]
         if stuck and free:
             parts.append(f"from between {free[-1]:.1%} and {stuck[0]:.1%} humidity on ({label})")
         elif known:

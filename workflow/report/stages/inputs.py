@@ -25,7 +25,9 @@ def describe(results: Results) -> Iterator[Block]:
         "input": lambda row: in_words(row["parameter"]),
         "unit": lambda row: shown_unit(row["unit"]),
         "distribution": _distribution,
-        "varies": lambda row: {"common": "one unknown value", "each": "device to device"}[row["varies"]],
+        "varies": lambda row: {"common": "one unknown value", "each": "device to device"}[
+            row["varies"]
+        ],
         "origin": lambda row: row["origin"] + ", whose gate failed" * (row["origin"] in failed),
         "source": "file",
     }
@@ -46,10 +48,16 @@ def describe(results: Results) -> Iterator[Block]:
 
 
 def stated_beside_computed(results: Results) -> Iterator[tuple[str, str, str, str]]:
-    """Inputs that the scene states and one of its stages computes, with what the choice does to the answer."""
-    for row, given in zip(results.csv("inputs.csv"), from_rows(results.csv("inputs.csv")).rows, strict=True):
+    """Inputs that the scene states and one of its stages computes, with what the choice does to the
+    answer.
+    """
+    for row, given in zip(
+        results.csv("inputs.csv"), from_rows(results.csv("inputs.csv")).rows, strict=True
+    ):
         for file in ("hardness/fit.json", "elastic/e_star.json", "topography/parameters.json"):
-            entry = results.json(file).get("inputs", {}).get(given.name) if results.has(file) else None
+            entry = (
+                results.json(file).get("inputs", {}).get(given.name) if results.has(file) else None
+            )
             if given.origin == "literature" and BY_NAME[given.name].stage != "literature" and entry:
                 computed = distribution_of(entry, file)
                 effect = _effect_V(results, given.name, given.distribution, computed)
@@ -62,10 +70,14 @@ def _span(given: Distribution) -> str:
 
 
 def _effect_V(results: Results, name: str, stated: Distribution, computed: Distribution) -> str:
-    """By how much the release moves, to first order, from the part of its variance that the stated spread makes."""
+    """By how much the release moves, to first order, from the part of its variance that the stated
+    spread makes.
+    """
     switch = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
     answer: dict[str, Any] = switch.get("answer") or {"sensitivity": []}
-    share = next((row["share_of_variance"] for row in answer["sensitivity"] if row["name"] == name), None)
+    share = next(
+        (row["share_of_variance"] for row in answer["sensitivity"] if row["name"] == name), None
+    )
     low, median, high = stated.quantile([0.16, 0.5, 0.84])
     if share is None or low == high:
         return "not known: the scene has no spread of it"

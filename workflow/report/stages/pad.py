@@ -27,14 +27,15 @@ def describe(results: Results) -> Iterator[Block]:
     """The pad's curves, and what the answer is made of."""
     switch = results.json("device/pad_switch.json")
     yield (
-        f"{switch['cells_computed']} cells, squares of rough surface of their own, stand for the "
-        f"{show(switch['cells_of_pad'])} of the pad, the whole area that lands. They are brought to one separation and "
-        "opened together."
+        f"{switch['cells_computed']} cells, squares of rough surface of their own, stand for the"
+        f" {show(switch['cells_of_pad'])} of the pad, the whole area that lands. They are brought"
+        " to one separation and opened together."
     )
     yield Figure(
         pad_curves(results),
-        "Pressure of the pad, all that lands, at central inputs. Left: closing, and opening from several depths. "
-        "Right: net pressure near the last contact; the band is one standard error of the mean of the cells.",
+        "Pressure of the pad, all that lands, at central inputs. Left: closing, and opening from"
+        " several depths. Right: net pressure near the last contact; the band is one standard error"
+        " of the mean of the cells.",
         wide=True,
         front=True,
     )
@@ -51,7 +52,10 @@ def describe(results: Results) -> Iterator[Block]:
                 "pull-off (kPa)": cell("pull_off_kPa"),
             },
         )
-    yield "Where the scene does not state how its devices vary (device.spread), their spread is an assumption."
+    yield (
+        "Where the scene does not state how its devices vary (device.spread), their spread is an"
+        " assumption."
+    )
 
 
 def _answer(answer: dict[str, Any]) -> Iterator[Block]:
@@ -60,16 +64,24 @@ def _answer(answer: dict[str, Any]) -> Iterator[Block]:
     solved, refused = answer["points"], len(answer["refused"])
     rows = [
         ("pull-in (V)", spread(answer["pull_in_V"]["quantiles"], "0.5", "0.05", "0.95")),
-        ("capacitance closed (fF)", spread(answer["capacitance_fF"]["quantiles"], "0.5", "0.05", "0.95")),
+        (
+            "capacitance closed (fF)",
+            spread(answer["capacitance_fF"]["quantiles"], "0.5", "0.05", "0.95"),
+        ),
         ("switches computed; of them without an answer", f"{solved + refused}; {refused}"),
         (
             "standard error of the median and of 5 and 95 %, by their number (V)",
             spread(errors, "0.5", "0.05", "0.95", digits=2),
         ),
         ("error of one of them by the number of its cells (V)", show(answer["cells_error_V"], 2)),
-        *((f"share of {CAUSES[cause]}", f"{share:.1%}") for cause, share in answer["causes"].items()),
+        *(
+            (f"share of {CAUSES[cause]}", f"{share:.1%}")
+            for cause, share in answer["causes"].items()
+        ),
     ]
-    yield PageTable("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows)
+    yield PageTable(
+        "Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows
+    )
     if no_cause := causes_of(answer)[1]:
         yield DoubtNote(f"The shares of the variance name no cause: {no_cause}.")
     for kind, caption in KINDS.items():
@@ -79,7 +91,9 @@ def _answer(answer: dict[str, Any]) -> Iterator[Block]:
             {
                 "uncertain": lambda row: in_words(row["name"]),
                 "share of the variance": lambda row: f"{row['share_of_variance']:.1%}",
-                "known exactly, the interval shrinks by": lambda row: f"{row['interval_shrinks_by']:.1%}",
+                "known exactly, the interval shrinks by": lambda row: (
+                    f"{row['interval_shrinks_by']:.1%}"
+                ),
             },
         )
 
@@ -88,7 +102,10 @@ def pad_curves(results: Results) -> str:
     """Closing and opening of the pad, and the well on opening."""
     rows = results.csv("pad/curves.csv")
     depths = sorted({float(row["depth_nm"]) for row in rows if row["branch"] == "opening"})
-    opened = {depth: [row for row in rows if row["depth_nm"] and float(row["depth_nm"]) == depth] for depth in depths}
+    opened = {
+        depth: [row for row in rows if row["depth_nm"] and float(row["depth_nm"]) == depth]
+        for depth in depths
+    }
     deepest = opened[depths[0]]
     shown = depths[:: max(1, len(depths) // 4)]
 
@@ -96,30 +113,56 @@ def pad_curves(results: Results) -> str:
         closing = [row for row in rows if row["branch"] == "closing"]
         _line(whole, closing, 1e-3, BLUE, "closing")
         for depth in shown:
-            _line(whole, opened[depth], 1e-3, ORANGE, "opening" if depth == shown[0] else None, "--")
+            _line(
+                whole, opened[depth], 1e-3, ORANGE, "opening" if depth == shown[0] else None, "--"
+            )
         top = max(column(closing, "net_kPa")) * 1e-3
-        whole.set(yscale="log", ylim=(1e-4 * top, 2 * top), xlim=(depths[0] - 1, _last_contact(deepest) + 12))
-        whole.set(xlabel="separation (nm)", ylabel="net pressure (MPa)", title="closing, and opening from each depth")
+        whole.set(
+            yscale="log",
+            ylim=(1e-4 * top, 2 * top),
+            xlim=(depths[0] - 1, _last_contact(deepest) + 12),
+        )
+        whole.set(
+            xlabel="separation (nm)",
+            ylabel="net pressure (MPa)",
+            title="closing, and opening from each depth",
+        )
         whole.legend()
         lowest = 0.0
         for place, depth in enumerate(shown):
             line = opened[depth]
-            s, net, error = (column(line, name) for name in ("separation_nm", "net_kPa", "standard_error_kPa"))
+            s, net, error = (
+                column(line, name) for name in ("separation_nm", "net_kPa", "standard_error_kPa")
+            )
             color = SERIES[place % len(SERIES)]
             well.plot(s, net, color=color, label=f"closed to {depth:.1f} nm")
             well.fill_between(s, net - error, net + error, color=color, alpha=0.15, linewidth=0)
             lowest = min(lowest, float(net.min()))
         well.axhline(0, color=SOFT, linewidth=0.8)
         well.set(xlim=(depths[0], _last_contact(deepest) + 12), ylim=(2.5 * lowest, -2.5 * lowest))
-        well.set(xlabel="separation (nm)", ylabel="net pressure (kPa)", title="near the last contact, on opening")
+        well.set(
+            xlabel="separation (nm)",
+            ylabel="net pressure (kPa)",
+            title="near the last contact, on opening",
+        )
         well.legend()
 
-    return draw("pad-curves", "Mean pressure of a pad against separation", plot, (9.4, 3.4), columns=2)
+    return draw(
+        "pad-curves", "Mean pressure of a pad against separation", plot, (9.4, 3.4), columns=2
+    )
 
 
-def _line(axis, rows: list[CsvRow], scale: float, color: str, label: str | None, style: str = "-") -> None:
+def _line(
+    axis, rows: list[CsvRow], scale: float, color: str, label: str | None, style: str = "-"
+) -> None:
     net = column(rows, "net_kPa") * scale
-    axis.plot(column(rows, "separation_nm"), np.where(net > 0, net, np.nan), style, color=color, label=label)
+    axis.plot(
+        column(rows, "separation_nm"),
+        np.where(net > 0, net, np.nan),
+        style,
+        color=color,
+        label=label,
+    )
 
 
 def _last_contact(rows: list[CsvRow]) -> float:

@@ -22,20 +22,25 @@ def describe(results: Results) -> Iterator[Block]:
         cells = [f"{symbol} ({unit})"]
         for name in names:
             row = part.get((output, name), {})
-            ours, theirs = number(row.get("mu_star")) * factor, number(row.get("paper_mu_star")) * factor
+            ours, theirs = (
+                number(row.get("mu_star")) * factor,
+                number(row.get("paper_mu_star")) * factor,
+            )
             cells.append(f"{show(ours, 2)} ({show(theirs, 2)})" if paper else show(ours, 2))
         lines.append(cells)
         grey += [cells[0]] if output in faint else []
     yield (
-        "Mean elementary effect µ*: by how much an output changes when one input moves over its full range, averaged "
-        "over the others, by runs at the nodes"
+        "Mean elementary effect µ*: by how much an output changes when one input moves over its"
+        " full range, averaged over the others, by runs at the nodes"
         + (", beside the paper's Table 3." if paper else ".")
         + " Grey rows are not to be trusted."
     )
     caption = "Elementary effects µ*" + " here (and in the paper's Table 3)" * paper
-    yield PageTable(caption, ("output", *(SYMBOLS.get(name, name) for name in names)), lines, faint=grey)
+    yield PageTable(
+        caption, ("output", *(SYMBOLS.get(name, name) for name in names)), lines, faint=grey
+    )
     if paper:
         yield (
-            "For the closing rows C_a and C_r the paper's Table 3 is read with its two labels exchanged, "
-            "the only reading consistent with its Table 2."
+            "For the closing rows C_a and C_r the paper's Table 3 is read with its two labels"
+            " exchanged, the only reading consistent with its Table 2."
         )

@@ -7,20 +7,29 @@ import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SKY, SOFT, draw
-from workflow.report.measured_surface import chosen_description, described_surface, doubts, short_names
+from workflow.report.measured_surface import (
+    chosen_description,
+    described_surface,
+    doubts,
+    short_names,
+)
 from workflow.report.numbers import SYMBOLS, cell, show, shown_unit
 from workflow.report.page import Block, Figure, PageTable, stage, table
 
 
-@stage("Surface topography", *("topography/spectra.h5", "topography/parameters.json"), also=("topography/judged.csv",))
+@stage(
+    "Surface topography",
+    *("topography/spectra.h5", "topography/parameters.json"),
+    also=("topography/judged.csv",),
+)
 def describe(results: Results) -> Iterator[Block]:
     """Figures 9 and 10, and the roughness parameters."""
     parameters = results.json("topography/parameters.json")
     yield (
         (
-            "The scans are synthetic: made by the workflow with known parameters, passed through a simulated "
-            "microscope and read back from a real file format. They check the method; they are no "
-            "measurement. "
+            "The scans are synthetic: made by the workflow with known parameters, passed through a"
+            " simulated microscope and read back from a real file format. They check the method;"
+            " they are no measurement. "
             if parameters.get("synthetic")
             else "Spectra of the measured scans. "
         )
@@ -31,8 +40,8 @@ def describe(results: Results) -> Iterator[Block]:
     yield Figure(maps(results), caption, "Figure 9", wide=True)
     yield Figure(
         spectra(results),
-        "Power spectra of all scans, pooled, with the fits behind q₀, Hurst exponent and RMS. The fits use the trusted "
-        "part; grey is what levelling, tip, noise or pixels disturb.",
+        "Power spectra of all scans, pooled, with the fits behind q₀, Hurst exponent and RMS. The"
+        " fits use the trusted part; grey is what levelling, tip, noise or pixels disturb.",
         "Figure 10",
     )
     if parameters.get("estimates"):
@@ -42,11 +51,20 @@ def describe(results: Results) -> Iterator[Block]:
 
 
 def _estimates(parameters: Mapping[str, Any], beside_paper: bool) -> PageTable:
-    paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20) by 2H + 1", "rms": "1.82 to 14.17", "slope": "2.84"}
+    paper = {
+        "q0": "≈ 0.02",
+        "hurst": "≈ 0.92 (0.46 to 1.20) by 2H + 1",
+        "rms": "1.82 to 14.17",
+        "slope": "2.84",
+    }
     truth = parameters.get("truth") or {}
     used = parameters.get("description", {}).get("name", "power_law") == "power_law"
     return table(
-        "Roughness parameters" if used else "Eq. 9 fitted for comparison; random surfaces do not follow it",
+        (
+            "Roughness parameters"
+            if used
+            else "Eq. 9 fitted for comparison; random surfaces do not follow it"
+        ),
         [{"name": name, **estimate} for name, estimate in parameters["estimates"].items()],
         {
             "parameter": lambda row: SYMBOLS.get(row["name"], row["name"]),
@@ -54,7 +72,11 @@ def _estimates(parameters: Mapping[str, Any], beside_paper: bool) -> PageTable:
             "estimate": cell("value"),
             "interval": lambda row: _pair(row.get("interval")),
             "scatter of scans": lambda row: _pair(row.get("scatter")),
-            **({"truth": lambda row: show(truth.get(row["name"], truth.get(f"{row['name']}_nm")))} if truth else {}),
+            **(
+                {"truth": lambda row: show(truth.get(row["name"], truth.get(f"{row['name']}_nm")))}
+                if truth
+                else {}
+            ),
             **({"paper": lambda row: paper.get(row["name"], "")} if beside_paper else {}),
         },
     )
@@ -63,7 +85,11 @@ def _estimates(parameters: Mapping[str, Any], beside_paper: bool) -> PageTable:
 def maps(results: Results) -> str | None:
     """Figure 9: height maps of the scans, and heights along line profiles."""
     groups, _, scan_attributes = results.h5("topography/spectra.h5")
-    names = [name for name in sorted(groups) if name.startswith("scans/") and {"heights", "line"} & set(groups[name])]
+    names = [
+        name
+        for name in sorted(groups)
+        if name.startswith("scans/") and {"heights", "line"} & set(groups[name])
+    ]
     if not names:
         return None
     short = short_names([name.removeprefix("scans/") for name in names])
@@ -94,13 +120,22 @@ def maps(results: Results) -> str | None:
             limit = float(np.quantile(np.abs(heights), 0.995))
             shades = {"cmap": "cividis", "vmin": -limit, "vmax": limit, "interpolation": "none"}
             image = axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), **shades)
-            bar = axis.figure.colorbar(image, ax=axis, shrink=0.7, label="height (nm)" if name == last_map else None)
+            bar = axis.figure.colorbar(
+                image, ax=axis, shrink=0.7, label="height (nm)" if name == last_map else None
+            )
             bar.outline.set_visible(False)
             axis.grid(False)
         for axis in axes[len(shown) :]:
             axis.set_visible(False)
 
-    return draw("fig9", "Height maps of the scans", plot, (max(3.4, 2.7 * columns), 2.7 * rows), columns, rows)
+    return draw(
+        "fig9",
+        "Height maps of the scans",
+        plot,
+        (max(3.4, 2.7 * columns), 2.7 * rows),
+        columns,
+        rows,
+    )
 
 
 def spectra(results: Results) -> str | None:
@@ -134,17 +169,28 @@ def spectra(results: Results) -> str | None:
             lowest, highest = min(lowest, psd[psd > 0].min()), max(highest, psd.max())
         kind = "synthetic " if attributes.get("synthetic") else ""
         axis.plot([], [], color=SKY, label=f"{len(names)} {kind}scans, trusted part")
-        axis.plot([], [], color=SOFT, linewidth=0.5, label="limited by levelling, tip, noise or pixels")
+        axis.plot(
+            [], [], color=SOFT, linewidth=0.5, label="limited by levelling, tip, noise or pixels"
+        )
         axis.plot([], [], "|", color=INK, label="where the instrument ends it")
         if "pooled" in groups:
             axis.loglog(
-                groups["pooled"]["q"], groups["pooled"]["psd"], color=ORANGE, label="pooled", linewidth=1.2, zorder=1.5
+                groups["pooled"]["q"],
+                groups["pooled"]["psd"],
+                color=ORANGE,
+                label="pooled",
+                linewidth=1.2,
+                zorder=1.5,
             )
         fits = groups.get("fits", {})
         for name, (label, color, style) in styles.items():
             if name in fits:
                 axis.loglog(fits["q"], fits[name], style, color=color, label=label, linewidth=1.3)
-        axis.set(xlabel="wave vector q (1/nm)", ylabel="PSD (nm⁴)", ylim=(max(lowest, highest * 1e-12), 5 * highest))
+        axis.set(
+            xlabel="wave vector q (1/nm)",
+            ylabel="PSD (nm⁴)",
+            ylim=(max(lowest, highest * 1e-12), 5 * highest),
+        )
         axis.legend()
 
     return draw("fig10", "Power spectra of the scans with fits", plot, (5.0, 4.2))
@@ -156,4 +202,6 @@ def _thin(heights: np.ndarray, most: int = 128) -> np.ndarray:
 
 
 def _pair(pair: Any) -> str:
-    return f"{show(pair[0])} to {show(pair[1])}" if isinstance(pair, list) and len(pair) == 2 else "–"
+    return (
+        f"{show(pair[0])} to {show(pair[1])}" if isinstance(pair, list) and len(pair) == 2 else "–"
+    )

@@ -23,7 +23,9 @@ TRUTH = RoughSpectrum.from_rms(80.0, 3e-4, 3.4, 0.2)
 def seen(wave_nm, name="film"):
     """A measurement that shows waves down to `wave_nm`."""
     q = np.geomspace(1e-5, 1.0, 30)
-    return TrustedSpectrum(name, Spectrum(q, q**-3, np.ones(30), 1e-5, 1.0), 1e-5, 2 * np.pi / wave_nm, "pixels", 0.0)
+    return TrustedSpectrum(
+        name, Spectrum(q, q**-3, np.ones(30), 1e-5, 1.0), 1e-5, 2 * np.pi / wave_nm, "pixels", 0.0
+    )
 
 
 def rms_of_cells(film, side_nm):
@@ -42,7 +44,9 @@ def coarse():
     return {"optical": arrays}, {"optical": attributes | {"file": "a", "sha256": "b"}}
 
 
-@pytest.mark.parametrize(("wave_nm", "side_nm"), [(20.0, 1000.0), (125.0, 1000.0), (160.0, 1300.0), (9876.0, 79000.0)])
+@pytest.mark.parametrize(
+    ("wave_nm", "side_nm"), [(20.0, 1000.0), (125.0, 1000.0), (160.0, 1300.0), (9876.0, 79000.0)]
+)
 def test_a_cell_holds_eight_of_the_shortest_measured_waves(wave_nm, side_nm):
     assert suited_cell([seen(3 * wave_nm), seen(wave_nm)]) == side_nm
 
@@ -53,14 +57,19 @@ def test_an_electrode_bounds_the_cell():
 
 
 def test_waves_all_longer_than_the_electrode_are_refused_with_the_way_out():
-    with pytest.raises(InputError, match=r"that film shows is 4e\+03 nm long.*side of 5e\+03 nm.*measure on a finer"):
+    with pytest.raises(
+        InputError,
+        match=r"that film shows is 4e\+03 nm long.*side of 5e\+03 nm.*measure on a finer",
+    ):
         suited_cell([seen(4000.0)], electrode_nm=5000.0)
 
 
 def test_a_coarse_map_ends_in_a_cell_of_its_scale(coarse):
     """Cut from the truth, cells of this side have this RMS height."""
     pooled = pool(*coarse, SETTINGS, cell_nm=None)
-    assert pooled.cell_nm == pytest.approx(8 * 2 * np.pi / max(item.high for item in pooled.spectra), rel=0.05)
+    assert pooled.cell_nm == pytest.approx(
+        8 * 2 * np.pi / max(item.high for item in pooled.spectra), rel=0.05
+    )
     rms = rms_of_cells(TRUTH, pooled.cell_nm)
     low, high = (pooled.rows["rms"][end] for end in "ab")
     assert 0.9 * low < rms < 1.1 * high  # one map: no scatter between places
@@ -78,7 +87,9 @@ def test_what_finer_waves_would_change_is_that_of_the_spectrum():
 def test_maps_without_a_common_scale_raise_a_doubt_with_the_way_out(coarse):
     fine = Scan(surface_patch(TRUTH, 256, 500.0, np.random.default_rng(2)), (500.0, 500.0), "afm")
     arrays, attributes = record(Measurement(fine, 0.0, True), SETTINGS)
-    pooled = pool({**coarse[0], "afm": arrays}, {**coarse[1], "afm": attributes}, SETTINGS, cell_nm=None)
+    pooled = pool(
+        {**coarse[0], "afm": arrays}, {**coarse[1], "afm": attributes}, SETTINGS, cell_nm=None
+    )
     assert pooled.cell_nm == ContactSettings().length_nm
     (gap,) = (doubt for doubt in pooled.doubts if doubt.code == "gap")
     assert "nothing is measured from" in gap.text
@@ -95,7 +106,10 @@ def test_maps_without_a_common_scale_raise_a_doubt_with_the_way_out(coarse):
     ],
 )
 def test_a_cell_grows_with_the_long_waves_of_a_film(pixels, room_nm, side_nm):
-    assert grown_cell(1000.0, lambda side: 1.0 - (1000.0 / side) ** 2, 40.0, pixels, room_nm) == side_nm
+    assert (
+        grown_cell(1000.0, lambda side: 1.0 - (1000.0 / side) ** 2, 40.0, pixels, room_nm)
+        == side_nm
+    )
 
 
 def test_a_cell_of_a_film_that_it_holds_does_not_grow():
@@ -103,12 +117,19 @@ def test_a_cell_of_a_film_that_it_holds_does_not_grow():
 
 
 def test_a_film_of_long_waves_gets_cells_that_hold_them():
-    """Only where its surfaces end at the measured cut-off, so that a longer cell has the same short waves."""
+    """Only where its surfaces end at the measured cut-off, so that a longer cell has the same short
+    waves.
+    """
     film = RoughSpectrum.from_rms(14.0, 2.5e-3, 3.4, 0.3)
     heights = surface_patch(film, 512, 5000.0, np.random.default_rng(3))
-    arrays, attributes = record(Measurement(Scan(heights, (5000.0, 5000.0), "afm"), 0.0, True), SETTINGS)
+    arrays, attributes = record(
+        Measurement(Scan(heights, (5000.0, 5000.0), "afm"), 0.0, True), SETTINGS
+    )
     given = {"afm": arrays}, {"afm": attributes | {"file": "a", "sha256": "b"}}, SETTINGS
-    short, grown = pool(*given, cell_nm=None, pixels=512), pool(*given, cell_nm=None, cut_off=True, pixels=512)
+    short, grown = (
+        pool(*given, cell_nm=None, pixels=512),
+        pool(*given, cell_nm=None, cut_off=True, pixels=512),
+    )
     assert short.cell_nm == 1000.0
     assert grown.cell_nm == 4000.0
     middles = [np.mean([pooled.rows["rms"][end] for end in "ab"]) for pooled in (short, grown)]

@@ -18,12 +18,17 @@ PLAIN = {"rms": 4.0, "q0": 0.02, "slope": 3.6}
 def heights(length_nm=3000.0, pixels=256, seed=0, **other):
     """A map of a plain surface, which has waves down to the pixels."""
     known = PLAIN | other
-    spectrum = RoughSpectrum.from_rms(known["rms"], known["q0"], known["slope"], np.pi * pixels / length_nm)
+    spectrum = RoughSpectrum.from_rms(
+        known["rms"], known["q0"], known["slope"], np.pi * pixels / length_nm
+    )
     return surface_patch(spectrum, pixels, length_nm, np.random.default_rng(seed))
 
 
 def film(*maps, length_nm=3000.0, **settings):
-    scans = [Scan(z, (length_nm, length_nm), f"m{k}") if isinstance(z, np.ndarray) else z for k, z in enumerate(maps)]
+    scans = [
+        Scan(z, (length_nm, length_nm), f"m{k}") if isinstance(z, np.ndarray) else z
+        for k, z in enumerate(maps)
+    ]
     return asp.Film(scans, tip_nm=5.0, **settings)
 
 
@@ -76,7 +81,12 @@ CAUSES = {
     "aborted_scan": lambda: film(aborted()),
     "alignment_took_roughness": lambda: film(along_lines(9.0)),
     "anisotropic": lambda: film(Scan(heights()[:, :64], (3000.0, 3000.0), "stretched")),
-    "gap": lambda: film(*(Scan(heights(side, q0=0.0005, rms=100.0), (side, side), f"{side}") for side in (100.0, 2e4))),
+    "gap": lambda: film(
+        *(
+            Scan(heights(side, q0=0.0005, rms=100.0), (side, side), f"{side}")
+            for side in (100.0, 2e4)
+        )
+    ),
     "one_place": lambda: film(heights()),
     "no_power_law": lambda: film(heights(1000.0), length_nm=1000.0),
     "flat_spectrum": lambda: film(heights(q0=0.1), **LAW),
@@ -100,8 +110,16 @@ def test_it_fires_where_its_cause_is(code):
 
 def test_an_overhanging_line_is_named(tmp_path):
     t = np.linspace(0.0, 40.0 * np.pi, 4001)
-    rows = np.stack([100.0 * t + 130.0 * np.sin(t), 50.0 * np.cos(t) + np.random.default_rng(0).normal(size=t.size)], 1)
-    np.savetxt(tmp_path / "fold.txt", rows, header="x (nm), height (nm)", delimiter=",", comments="")
+    rows = np.stack(
+        [
+            100.0 * t + 130.0 * np.sin(t),
+            50.0 * np.cos(t) + np.random.default_rng(0).normal(size=t.size),
+        ],
+        1,
+    )
+    np.savetxt(
+        tmp_path / "fold.txt", rows, header="x (nm), height (nm)", delimiter=",", comments=""
+    )
     assert "overhang" in codes(asp.Film(tmp_path / "fold.txt", tip_nm=0.0))
 
 
@@ -119,10 +137,14 @@ def test_a_mask_over_measured_pixels_is_named(tmp_path):
 
 
 def test_places_of_one_plain_surface_are_not_doubted():
-    """Twelve films of four places each: of a rate of 5 %, three alarms of a kind have a chance of 2 %."""
+    """Twelve films of four places each: of a rate of 5 %, three alarms of a kind have a chance of 2
+    %.
+    """
     found = Counter()
     for seed in range(12):
         rng = np.random.default_rng(seed)
-        maps = [heights(seed=10 * seed + k) * np.exp(0.06 * rng.standard_normal()) for k in range(4)]
+        maps = [
+            heights(seed=10 * seed + k) * np.exp(0.06 * rng.standard_normal()) for k in range(4)
+        ]
         found.update(codes(film(*maps)))
     assert all(count <= 2 for count in found.values()), found

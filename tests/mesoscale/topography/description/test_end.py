@@ -19,7 +19,9 @@ def test_the_cutoff_is_where_the_tip_ends_with_an_error_of_its_radius():
     limited = cutoff_row(replace(result, q1_limited=True), items)
     assert limited == {"distribution": "uniform", "a": end["interval"][0], "b": end["interval"][1]}
     assert limited["a"] <= end["value"] <= limited["b"]
-    if end["limit"] == "tip":  # the steeper the spectrum, the less the end moves with the radius: q ~ R^(-1/(3 - s/2))
+    if (
+        end["limit"] == "tip"
+    ):  # the steeper the spectrum, the less the end moves with the radius: q ~ R^(-1/(3 - s/2))
         assert 1.05 < limited["b"] / end["value"] < 1.2
 
 
@@ -44,10 +46,13 @@ def test_the_rms_height_before_the_cutoff_is_the_integral_of_the_spectrum():
 
 def test_the_rms_height_before_the_cutoff_of_a_measured_spectrum():
     result = analyse(spectra(), TopographySettings())
-    # C ~ q^-3 from 0.02 to 2: its integral up to q is 2 pi (0.02 + 1/0.02 - 1/q) with the plateau below
+    # C ~ q^-3 from 0.02 to 2: its integral up to q is 2 pi (0.02 + 1/0.02 - 1/q) with the plateau
+    # below
     q = np.geomspace(0.02, 2.0, 40)
     surface = {"spectrum": {"q": q.tolist(), "psd": (q**-3).tolist()}}
-    before = rms_before({"distribution": "fixed", "a": 0.2}, {"distribution": "fixed", "a": 5.0}, result, surface)
+    before = rms_before(
+        {"distribution": "fixed", "a": 0.2}, {"distribution": "fixed", "a": 5.0}, result, surface
+    )
     plateau = 0.5 / 0.02
     share = (plateau + 1 / 0.02 - 1 / 0.2) / (plateau + 1 / 0.02 - 1 / 2.0)
     assert before == {"distribution": "fixed", "a": pytest.approx(5.0 * np.sqrt(share), rel=1e-3)}

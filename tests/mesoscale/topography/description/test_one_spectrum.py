@@ -17,7 +17,9 @@ TRUTH = RoughSpectrum.from_rms(6.0, 0.02, 3.0, 100.0)
 
 
 def measured(name, low, high, factor=1.0, rng=None, modes=50.0):
-    """Shells of a measurement of `factor` times the true spectrum, with the scatter of `modes` independent waves."""
+    """Shells of a measurement of `factor` times the true spectrum, with the scatter of `modes`
+    independent waves.
+    """
     spacing = low / 2.5
     q = spacing * np.arange(1, int(high / spacing) + 1)
     psd = factor * TRUTH.psd(q)
@@ -28,7 +30,13 @@ def measured(name, low, high, factor=1.0, rng=None, modes=50.0):
 
 
 def test_ranges_that_overlap_give_the_spectrum_over_all_scales():
-    one = merge([measured("large", 1e-3, 0.05), measured("small", 0.01, 0.5), measured("side view", 0.2, 5.0)])
+    one = merge(
+        [
+            measured("large", 1e-3, 0.05),
+            measured("small", 0.01, 0.5),
+            measured("side view", 0.2, 5.0),
+        ]
+    )
     seen = one.count > 0
     assert one.q[seen][0] < 1.3e-3
     assert one.q[-1] > 4
@@ -52,7 +60,9 @@ def test_places_that_differ_widen_the_band_and_agree_on_the_middle():
     assert one.place_sd == pytest.approx(np.std(np.log(factors)), rel=0.15)
     middle = np.mean(np.log(one.psd / TRUTH.psd(one.q)))
     assert middle == pytest.approx(np.mean(np.log(factors)), abs=0.1)
-    typical, anywhere = (np.std(np.log(one.draws(places=places)[:, -5])) for places in (False, True))
+    typical, anywhere = (
+        np.std(np.log(one.draws(places=places)[:, -5])) for places in (False, True)
+    )
     assert anywhere > 2 * typical
 
 
@@ -61,7 +71,9 @@ def test_bands_cover_the_truth_as_often_as_they_say():
     inside = []
     for seed in range(60):
         rng = np.random.default_rng(seed)
-        places = [measured(str(k), 0.01, 0.5, np.exp(0.4 * rng.standard_normal()), rng) for k in range(10)]
+        places = [
+            measured(str(k), 0.01, 0.5, np.exp(0.4 * rng.standard_normal()), rng) for k in range(10)
+        ]
         one = merge(places)
         low, high = one.band()
         inside.append(np.mean((low < TRUTH.psd(one.q)) & (TRUTH.psd(one.q) < high)))
@@ -101,7 +113,9 @@ def test_too_little_gives_none():
 
 
 def test_the_mean_square_of_the_largest_map_bounds_waves_that_no_band_measures():
-    """A map begins beyond the knee: its bands alone leave the RMS height open, its levelled heights do not."""
+    """A map begins beyond the knee: its bands alone leave the RMS height open, its levelled heights
+    do not.
+    """
     side = 2 * np.pi / (0.05 / 2.5 * 0.75)
     low = 0.72 * 2 * np.pi / side
     q = np.geomspace(low, 1.0, 1000)
@@ -109,10 +123,13 @@ def test_the_mean_square_of_the_largest_map_bounds_waves_that_no_band_measures()
     alone = replace(measured("map", 0.05, 1.0), rms_nm=rms)
     open_ended, bounded = merge([alone]), merge([replace(alone, side_nm=side)])
     widths = [
-        np.ptp(np.quantile(np.log(one.moment(0, psd=one.draws(False))), [0.05, 0.95])) for one in (open_ended, bounded)
+        np.ptp(np.quantile(np.log(one.moment(0, psd=one.draws(False))), [0.05, 0.95]))
+        for one in (open_ended, bounded)
     ]
     assert widths[1] < 0.8 * widths[0]
-    assert np.median(np.sqrt(bounded.moment(0, low=low, psd=bounded.draws(False)))) == pytest.approx(rms, rel=0.2)
+    assert np.median(
+        np.sqrt(bounded.moment(0, low=low, psd=bounded.draws(False)))
+    ) == pytest.approx(rms, rel=0.2)
 
 
 def test_a_longer_line_knows_the_long_waves_of_a_map_better():
@@ -121,18 +138,27 @@ def test_a_longer_line_knows_the_long_waves_of_a_map_better():
 
 
 def test_bands_of_few_places_hold_the_truth_as_often_as_they_say():
-    """Three places of known scatter, 200 surfaces: the band of the typical place, and one more place, at 90 %."""
+    """Three places of known scatter, 200 surfaces: the band of the typical place, and one more
+    place, at 90 %.
+    """
     typical, another = [], []
     for seed in range(200):
         rng = np.random.default_rng(seed)
-        one = merge([measured(str(k), 0.01, 0.5, np.exp(0.4 * rng.standard_normal()), rng) for k in range(3)])
+        one = merge(
+            [
+                measured(str(k), 0.01, 0.5, np.exp(0.4 * rng.standard_normal()), rng)
+                for k in range(3)
+            ]
+        )
         middle = int(np.argmin(np.abs(one.q - 0.1)))
         true = np.log(TRUTH.psd(one.q[middle]))
         typical.append(abs(true - one.log_psd[middle]) < REACH * one.log_sd[middle])
         drawn = np.log(one.draws(places=True)[:, middle])
         low, high = np.quantile(drawn, [0.05, 0.95])
         another.append(low < true + 0.4 * rng.standard_normal() < high)
-    assert 0.84 < np.mean(typical) < 0.96  # three standard deviations of 200 counts at 90 % are 0.064
+    assert (
+        0.84 < np.mean(typical) < 0.96
+    )  # three standard deviations of 200 counts at 90 % are 0.064
     assert 0.84 < np.mean(another) < 0.96
 
 

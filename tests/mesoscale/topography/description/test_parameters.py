@@ -14,7 +14,12 @@ from mesoscale.topography.description.inputs import rms_scatter_row, rows_of
 from mesoscale.topography.description.parameters import MAX_MISFIT, analyse
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur
 from mesoscale.topography.measurements.cleaning import Scan
-from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, mean_square, slope_from_hurst
+from mesoscale.topography.roughness_spectrum import (
+    RoughSpectrum,
+    hurst_from_slope,
+    mean_square,
+    slope_from_hurst,
+)
 from mesoscale.topography.spectrum import Spectrum
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
 
@@ -54,7 +59,10 @@ def test_the_line_fits_of_the_paper_recover_truth():
 
 
 def test_places_of_different_roughness_widen_the_range_of_rms_only():
-    varied = analyse(spectra(TRUTH.model_copy(update={"rms_variation": 0.5, "small_scans": 5})), TopographySettings())
+    varied = analyse(
+        spectra(TRUTH.model_copy(update={"rms_variation": 0.5, "small_scans": 5})),
+        TopographySettings(),
+    )
     low, high = varied.estimates["rms"].scatter
     assert high / low > 1.5
     assert varied.likelihood is not None
@@ -63,7 +71,8 @@ def test_places_of_different_roughness_widen_the_range_of_rms_only():
 
 
 def drawn_set(rng, sd):
-    """Trusted spectra of eight small and three large scans, drawn from Whittle's distribution about eq. 9.
+    """Trusted spectra of eight small and three large scans, drawn from Whittle's distribution about
+    eq. 9.
 
     The plateaus of the places are log-normal with standard deviation `sd` of ln RMS about 6 nm.
     """
@@ -76,26 +85,37 @@ def drawn_set(rng, sd):
         lift = np.where(spacing * shell > 0.025, np.exp(blur(2.84, shell)), 1.0)
         psd = truth.psd(spacing * shell) * lift * rng.gamma(modes) / modes
         spectrum = Spectrum(spacing * shell, psd, modes, spacing, 3.2)
-        items.append(TrustedSpectrum(str(number), spectrum, 2.5 * spacing, end, "noise", 0.0, truth.rms_nm))
+        items.append(
+            TrustedSpectrum(str(number), spectrum, 2.5 * spacing, end, "noise", 0.0, truth.rms_nm)
+        )
     return items
 
 
 def test_the_interval_of_the_typical_rms_covers_it_though_places_differ():
     """Eleven places say little about the typical one; the 90 % interval says how little."""
     rng = np.random.default_rng(5)
-    estimates = [analyse(drawn_set(rng, 0.4), TopographySettings()).estimates["rms"] for _ in range(20)]
+    estimates = [
+        analyse(drawn_set(rng, 0.4), TopographySettings()).estimates["rms"] for _ in range(20)
+    ]
     covered = [estimate.interval[0] <= 6.0 <= estimate.interval[1] for estimate in estimates]
     assert sum(covered) >= 15  # fewer of 20 happen once in 400 times at 90 %
     assert not all(high / low > 2 for low, high in (estimate.interval for estimate in estimates))
     errors = [np.log(estimate.value / 6.0) for estimate in estimates]
-    assert np.std(errors) == pytest.approx(0.4 / np.sqrt(11), rel=0.4)  # the scatter of the mean of eleven places
+    assert np.std(errors) == pytest.approx(
+        0.4 / np.sqrt(11), rel=0.4
+    )  # the scatter of the mean of eleven places
 
 
 def test_the_range_of_the_scatter_between_places_covers_it():
     rng = np.random.default_rng(6)
-    rows = [rms_scatter_row(analyse(drawn_set(rng, 0.4), TopographySettings()), None) for _ in range(20)]
-    assert sum(row["a"] <= 0.4 <= row["b"] for row in rows) >= 15  # fewer of 20 happen once in 400 times at 90 %
-    # eleven places: 2.16 by chi-squared of ten degrees of freedom, besides what is known of each level
+    rows = [
+        rms_scatter_row(analyse(drawn_set(rng, 0.4), TopographySettings()), None) for _ in range(20)
+    ]
+    assert (
+        sum(row["a"] <= 0.4 <= row["b"] for row in rows) >= 15
+    )  # fewer of 20 happen once in 400 times at 90 %
+    # eleven places: 2.16 by chi-squared of ten degrees of freedom, besides what is known of each
+    # level
     assert max(row["b"] / row["a"] for row in rows) < 2.3
 
 
@@ -105,18 +125,27 @@ def test_one_scan_says_nothing_of_other_places():
 
 
 def test_two_places_leave_their_scatter_open_up_to_where_measurements_share_no_level():
-    row = rms_scatter_row(analyse(drawn_set(np.random.default_rng(8), 0.4)[:2], TopographySettings()), None)
+    row = rms_scatter_row(
+        analyse(drawn_set(np.random.default_rng(8), 0.4)[:2], TopographySettings()), None
+    )
     assert 0 < row["a"] < row["b"] == 0.75
 
 
 def test_instruments_without_a_common_level_are_no_power_law():
-    """Half of the scans a hundred times as high in C: each has the shape of eq. 9, together they have no RMS height."""
+    """Half of the scans a hundred times as high in C: each has the shape of eq. 9, together they
+    have no RMS height.
+    """
     items = drawn_set(np.random.default_rng(5), 0.0)
     lifted = [
-        replace(item, spectrum=replace(item.spectrum, psd=item.spectrum.psd * (100.0 if k % 2 else 1.0)))
+        replace(
+            item, spectrum=replace(item.spectrum, psd=item.spectrum.psd * (100.0 if k % 2 else 1.0))
+        )
         for k, item in enumerate(items)
     ]
-    codes = [{doubt.code for doubt in analyse(set_, TopographySettings()).doubts} for set_ in (items, lifted)]
+    codes = [
+        {doubt.code for doubt in analyse(set_, TopographySettings()).doubts}
+        for set_ in (items, lifted)
+    ]
     assert "levels_differ" not in codes[0]
     assert "levels_differ" in codes[1]
 
@@ -175,7 +204,12 @@ def test_the_spectrum_along_a_line_is_compared_with_the_one_of_eq_9_along_a_line
     k = np.geomspace(1e-3, 0.5, 60)
     plateau = np.where(k < q0, 2 * np.sqrt(np.maximum(q0**2 - k**2, 0)), 0.0)
     half = (slope - 1) / 2
-    fall = q0**slope * k ** (1 - slope) * beta(half, 0.5) * betainc(half, 0.5, np.minimum(k / q0, 1.0) ** 2)
+    fall = (
+        q0**slope
+        * k ** (1 - slope)
+        * beta(half, 0.5)
+        * betainc(half, 0.5, np.minimum(k / q0, 1.0) ** 2)
+    )
     measured = Spectrum(k, 40.0 * (plateau + fall), np.full(60, 50.0), 1e-3, 1.0, sharp=True)
     item = TrustedSpectrum("line", measured, 1e-3, 0.5, "pixels", 0.0, line=measured)
     fitted = likelihood.fit([item])
@@ -209,7 +243,9 @@ def test_the_ends_of_q0_are_where_the_deviance_has_risen_enough():
 
     def lowest(q0):
         slopes = np.linspace(fitted.slope - 0.3, fitted.slope + 0.3, 241)
-        return min(likelihood._deviance(data, np.log(q0), s, fitted.amplitude_sd, level)[0] for s in slopes)
+        return min(
+            likelihood._deviance(data, np.log(q0), s, fitted.amplitude_sd, level)[0] for s in slopes
+        )
 
     risen = 1.645**2 * max(fitted.dispersion, 1.0)
     best = min(lowest(fitted.q0 * np.exp(shift)) for shift in (-0.005, 0.0, 0.005))

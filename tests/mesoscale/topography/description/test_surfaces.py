@@ -21,15 +21,21 @@ def doubts_of(spectra, files=None):
 
 def maps(seed, **truth):
     """Maps of 1 and 5 um of one surface."""
-    made = synthetic_scans(ScanSet(pixels=256, small_scans=2, large_scans=2, large_length_nm=5000, seed=seed, **truth))
+    made = synthetic_scans(
+        ScanSet(pixels=256, small_scans=2, large_scans=2, large_length_nm=5000, seed=seed, **truth)
+    )
     settings = TopographySettings(tip_radius_nm=5.0)
-    return [replace(trusted_scan(item.scan, settings), name=f"{item.scan.name}_{seed}") for item in made]
+    return [
+        replace(trusted_scan(item.scan, settings), name=f"{item.scan.name}_{seed}") for item in made
+    ]
 
 
 @pytest.mark.parametrize("n", [4, 6])
 @pytest.mark.parametrize("alike", [True, False])
 def test_the_best_cut_is_the_best_by_brute_force(n, alike):
-    """Over all partitions where all places have like errors, else over those that a cut can make."""
+    """Over all partitions where all places have like errors, else over those that a cut can
+    make.
+    """
     rng = np.random.default_rng(n)
     values, mixed = rng.standard_normal(n), 0.2 * rng.standard_normal((n, n))
     covariance = 0.04 * np.eye(n) + 0.01 if alike else mixed @ mixed.T
@@ -50,17 +56,23 @@ def test_the_best_cut_is_the_best_by_brute_force(n, alike):
 
 
 def test_places_of_one_film_are_parted_no_more_often_than_stated(monkeypatch):
-    """400 films of six places: 20 false alarms are expected at 5 %, at most 32 in 99 % of such counts."""
+    """400 films of six places: 20 false alarms are expected at 5 %, at most 32 in 99 % of such
+    counts.
+    """
     monkeypatch.setattr(surfaces, "SIMULATED", 199)
     rng, errors = np.random.default_rng(1), np.eye(6) * 0.05**2
     for scatter in (0.0, 0.4):
         films = np.hypot(0.05, scatter) * rng.standard_normal((200, 6))
-        alarms = [by_chance(values, errors, best_cut(values, errors).score) <= 0.05 for values in films]
+        alarms = [
+            by_chance(values, errors, best_cut(values, errors).score) <= 0.05 for values in films
+        ]
         assert sum(alarms) <= 18  # of 200, by the same measure
 
 
 def test_maps_of_one_surface_are_not_doubted():
-    """Sizes, steepness and places that differ by 40 % in RMS height, seen through tip, noise and levelling."""
+    """Sizes, steepness and places that differ by 40 % in RMS height, seen through tip, noise and
+    levelling.
+    """
     for seed, slope in enumerate((2.4, 3.2, 4.0)):
         assert doubts_of(maps(seed, slope=slope)) == []
 
@@ -75,15 +87,23 @@ def test_maps_of_two_surfaces_are_named_by_group_and_the_remedy_by_file():
     names = [", ".join(item.name for item in part) for part in (first, second)]
     assert doubt.text.startswith(f"{names[0]} and {names[1]} look like two surfaces")
     scans = [", ".join(files[item.name] for item in part) for part in (first, second)]
-    assert f"topography: {{scans: [{scans[0]}]}} and topography: {{scans: [{scans[1]}]}}" in doubt.remedy
+    assert (
+        f"topography: {{scans: [{scans[0]}]}} and topography: {{scans: [{scans[1]}]}}"
+        in doubt.remedy
+    )
 
 
 def test_two_maps_of_unlike_spectra_are_doubted():
     rng = np.random.default_rng(1)
     place = measured("place", 0.01, 0.5, 1.0, rng)
     steeper = measured("steeper", 0.02, 0.8, 1.0, rng)
-    steeper = replace(steeper, spectrum=replace(steeper.spectrum, psd=steeper.spectrum.psd * steeper.spectrum.q))
-    for other, words in ((steeper, "differ in shape"), (measured("rough", 0.02, 0.8, 60.0, rng), "by a factor of")):
+    steeper = replace(
+        steeper, spectrum=replace(steeper.spectrum, psd=steeper.spectrum.psd * steeper.spectrum.q)
+    )
+    for other, words in (
+        (steeper, "differ in shape"),
+        (measured("rough", 0.02, 0.8, 60.0, rng), "by a factor of"),
+    ):
         (doubt,) = doubts_of([place, other])
         assert doubt.code == "several_surfaces"
         assert f"place and {other.name} look like two surfaces" in doubt.text

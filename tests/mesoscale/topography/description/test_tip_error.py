@@ -11,7 +11,9 @@ from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
 
 
 def test_a_radius_told_too_large_leaves_the_truth_inside():
-    """A tip of 5 nm told as 6: the slope alone is biased, its interval holds the error of the radius."""
+    """A tip of 5 nm told as 6: the slope alone is biased, its interval holds the error of the
+    radius.
+    """
     truth = ScanSet(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
     settings = TopographySettings(tip_radius_nm=6.0)
     spectra = [trusted_scan(item.scan, settings) for item in synthetic_scans(truth)]
@@ -21,7 +23,9 @@ def test_a_radius_told_too_large_leaves_the_truth_inside():
         low, high = wider.estimates[name].interval
         assert low < true < high
         assert low <= plain.estimates[name].interval[0] < plain.estimates[name].interval[1] <= high
-    lengths = [ends[1] - ends[0] for ends in (item.estimates["slope"].interval for item in (plain, wider))]
+    lengths = [
+        ends[1] - ends[0] for ends in (item.estimates["slope"].interval for item in (plain, wider))
+    ]
     assert lengths[1] > lengths[0]
 
 
@@ -36,7 +40,10 @@ def test_without_a_tip_nothing_changes():
 def test_the_band_of_the_spectrum_holds_what_the_radius_changes():
     """Of a tip told too large the short waves are corrected by too much: the wider band says so."""
     truth = ScanSet(pixels=256, small_scans=4, large_scans=0, rms_variation=0.0)
-    spectra = [trusted_scan(item.scan, TopographySettings(tip_radius_nm=6.0)) for item in synthetic_scans(truth)]
+    spectra = [
+        trusted_scan(item.scan, TopographySettings(tip_radius_nm=6.0))
+        for item in synthetic_scans(truth)
+    ]
     plain = merge(spectra)
     wider = spectrum_with_radius_error(plain, spectra)
     assert np.array_equal(wider.log_psd, plain.log_psd)

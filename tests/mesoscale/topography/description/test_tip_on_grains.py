@@ -20,7 +20,9 @@ from mesoscale.topography.synthetic_scans import dilate
 SIDE, SITES, RADIUS = 1000.0, 512, 6.0
 SPECTRUM = RoughSpectrum.from_rms(4.0, 0.03, 2.8, 1.6)
 GRAINS, GROOVES, GAUSS = (common_heights([z]) for z in (np.exp(0.25 * Z), -np.exp(-0.25 * Z), Z))
-SETTINGS = TopographySettings(scans=("a",), tip_radius_nm=RADIUS, line_alignment="none", detrend="none")
+SETTINGS = TopographySettings(
+    scans=("a",), tip_radius_nm=RADIUS, line_alignment="none", detrend="none"
+)
 
 
 def images(heights, count=3):
@@ -28,9 +30,14 @@ def images(heights, count=3):
     for seed in range(count):
         surface = synthesize_heights(SITES, SIDE, SPECTRUM.psd, heights, 4.0, seed)
         image = dilate(surface, RADIUS, SIDE / SITES)
-        before, after = (radial_spectrum(z, (SIDE, SIDE), 9, 0.75, flat=0.0) for z in (surface, image))
+        before, after = (
+            radial_spectrum(z, (SIDE, SIDE), 9, 0.75, flat=0.0) for z in (surface, image)
+        )
         long = (before.q > 0.02) & (before.q < 0.08)
-        yield Scan(image, (SIDE, SIDE), f"s{seed}"), float(np.log(after.psd / before.psd)[long].mean())
+        yield (
+            Scan(image, (SIDE, SIDE), f"s{seed}"),
+            float(np.log(after.psd / before.psd)[long].mean()),
+        )
 
 
 def analysed(heights):
@@ -48,7 +55,11 @@ def test_what_a_tip_changes_is_found_within_its_error(heights, sign):
     topography = analyse(spectra, SETTINGS)
     seen = max(item.high for item in spectra)
     gain, error = tip_lift(
-        RADIUS, topography.likelihood, seen, topography.cutoff, np.mean(list(quantiles.values()), axis=0)
+        RADIUS,
+        topography.likelihood,
+        seen,
+        topography.cutoff,
+        np.mean(list(quantiles.values()), axis=0),
     )
     assert sign * true > 0.15  # a fifth of the power: dilation, not the analysis, says so
     assert abs(gain - true) < 1.645 * error

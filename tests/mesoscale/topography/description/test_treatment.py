@@ -1,4 +1,6 @@
-"""Maps that a program smoothed, filtered or interpolated are told from measured ones, and trusted to what is left."""
+"""Maps that a program smoothed, filtered or interpolated are told from measured ones, and trusted
+to what is left.
+"""
 
 from pathlib import Path
 
@@ -52,7 +54,8 @@ def enlarged(order, factor):
     return enlarge
 
 
-FILTERS = {  # what is done, and from which share of the Nyquist wave vector on a quarter of C or less is left
+# what is done, and from which share of the Nyquist wave vector on a quarter of C or less is left
+FILTERS = {
     "gaussian 1": (lambda z: ndimage.gaussian_filter(z, 1.0), 0.4),
     "gaussian 2": (lambda z: ndimage.gaussian_filter(z, 2.0), 0.2),
     "gaussian 4": (lambda z: ndimage.gaussian_filter(z, 4.0), 0.1),
@@ -88,7 +91,9 @@ def test_a_treated_map_is_trusted_to_what_is_left_of_it(honest, name):
 
 @pytest.mark.parametrize("kind", HONEST)
 def test_no_honest_map_is_called_treated(kind):
-    """Steep, grainy and stretched surfaces, blunt tips, 8 bits, 1/f noise, a slow feedback: 0.4 % of 240 are."""
+    """Steep, grainy and stretched surfaces, blunt tips, 8 bits, 1/f noise, a slow feedback: 0.4 %
+    of 240 are.
+    """
     assert [row_of(kind, "", number)["found"] for number in range(4)].count("") >= 3
 
 
@@ -96,7 +101,8 @@ def test_what_a_gaussian_took_is_put_back_where_the_map_is_trusted(honest):
     """C within a third of that before, the mean square height within a tenth."""
     sigma = 2.0
     before, after = (
-        clean(Scan(z, (SIDE, SIDE), "map"), SETTINGS) for z in (honest, ndimage.gaussian_filter(honest, sigma))
+        clean(Scan(z, (SIDE, SIDE), "map"), SETTINGS)
+        for z in (honest, ndimage.gaussian_filter(honest, sigma))
     )
     treated = found(ndimage.gaussian_filter(honest, sigma))
     assert treated is not None
@@ -140,7 +146,8 @@ def test_a_grating_has_no_rhythm_of_interpolation(honest):
 
 def test_a_film_of_a_smoothed_map_has_the_doubt_and_its_range(honest):
     scans = [
-        Scan(z, (SIDE, SIDE), name) for z, name in ((honest, "as_is"), (ndimage.gaussian_filter(honest, 2.0), "smooth"))
+        Scan(z, (SIDE, SIDE), name)
+        for z, name in ((honest, "as_is"), (ndimage.gaussian_filter(honest, 2.0), "smooth"))
     ]
     plain, smooth = (asp.Film([scan], tip_nm=0.0) for scan in scans)
     assert "treated" not in [doubt["code"] for doubt in plain.description["doubts"]]

@@ -14,7 +14,9 @@ def trusted(rms=3.0, noise=0.0, tip=0.0, slope=2.5):
     """Trusted range of the exact spectrum of a surface plus white noise (nm^4)."""
     q = SPACING * np.arange(1, int(NYQUIST / SPACING))
     psd = RoughSpectrum.from_rms(rms, 0.03, slope, 10.0).psd(q) + noise
-    return trusted_range("a", Spectrum(q, psd, 5 * np.arange(1.0, len(q) + 1), SPACING, NYQUIST), tip)
+    return trusted_range(
+        "a", Spectrum(q, psd, 5 * np.arange(1.0, len(q) + 1), SPACING, NYQUIST), tip
+    )
 
 
 def test_pixels_end_the_range_of_a_perfect_scan():
@@ -28,7 +30,9 @@ def test_noise_ends_it_where_the_surface_sinks_towards_its_floor():
     assert quiet.limit == loud.limit == "noise"
     surface = RoughSpectrum.from_rms(3.0, 0.03, 4.0, 10.0)
     for found, noise in ((quiet, 1e-3), (loud, 1e-1)):
-        assert surface.psd(np.array(found.high)) == pytest.approx(19 * noise, rel=0.3)  # 20 times the floor in all
+        assert surface.psd(np.array(found.high)) == pytest.approx(
+            19 * noise, rel=0.3
+        )  # 20 times the floor in all
 
 
 def test_a_blunt_tip_ends_it_where_an_octave_is_curved_like_the_tip():

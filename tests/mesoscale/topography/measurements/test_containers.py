@@ -40,7 +40,9 @@ def test_the_diamond_film_is_read_with_each_instrument():
         InstrumentSettings(files="*stylus*", tip_radius_nm=5000),
         InstrumentSettings(files="80_*", tip_radius_nm=0),
     )
-    tem, afm, stylus = load_measurements(DIAMOND, settings=TopographySettings(instruments=instruments))
+    tem, afm, stylus = load_measurements(
+        DIAMOND, settings=TopographySettings(instruments=instruments)
+    )
     assert isinstance(afm.data, Scan)
     assert afm.data.lengths_nm == pytest.approx((100.0, 100.0))
     assert isinstance(stylus.data, Profile)
@@ -63,7 +65,14 @@ def test_both_kinds_of_lists_are_read(tmp_path):
         "surfaces": [
             {
                 "name": "film",
-                "topographies": [{"name": "line", "unit": "um", "size": [0.6], "datafile": {"original": "line.txt"}}],
+                "topographies": [
+                    {
+                        "name": "line",
+                        "unit": "um",
+                        "size": [0.6],
+                        "datafile": {"original": "line.txt"},
+                    }
+                ],
             }
         ]
     }
@@ -73,14 +82,19 @@ def test_both_kinds_of_lists_are_read(tmp_path):
 
 
 def test_a_map_in_a_container_is_a_scan(tmp_path):
-    write_gwy(tmp_path / "a.gwy", Scan(np.random.default_rng(0).standard_normal((64, 64)), (500.0, 500.0), "a"))
+    write_gwy(
+        tmp_path / "a.gwy",
+        Scan(np.random.default_rng(0).standard_normal((64, 64)), (500.0, 500.0), "a"),
+    )
     meta = "surfaces:\n- topographies:\n  - {name: map, datafile: {original: a.gwy}}\n"
     files = {"a.gwy": (tmp_path / "a.gwy").read_bytes()}
     (result,) = load_measurements(container(tmp_path / "map.zip", meta, **files))
     assert result.data.lengths_nm == pytest.approx((500.0, 500.0))
 
 
-@pytest.mark.parametrize("tag", ["object/apply:os.system", "object/new:pathlib.Path", "name:os.system", "module:os"])
+@pytest.mark.parametrize(
+    "tag", ["object/apply:os.system", "object/new:pathlib.Path", "name:os.system", "module:os"]
+)
 def test_code_in_the_list_is_never_run(tmp_path, tag):
     trace = tmp_path / "executed"
     meta = META + f"evil: !!python/{tag} ['touch {trace}']\n"
@@ -90,7 +104,10 @@ def test_code_in_the_list_is_never_run(tmp_path, tag):
 
 def test_a_bomb_is_refused_by_the_limits_of_the_process(tmp_path, monkeypatch):
     monkeypatch.setattr(guarded, "MEMORY_MB", 300.0)
-    refused(container(tmp_path / "bomb.zip", **{"line.txt": b"0" * 400 * 2**20}), "more than|cannot be read")
+    refused(
+        container(tmp_path / "bomb.zip", **{"line.txt": b"0" * 400 * 2**20}),
+        "more than|cannot be read",
+    )
 
 
 @pytest.mark.parametrize(
@@ -113,7 +130,9 @@ def test_strange_lists_are_refused_in_one_line(tmp_path, meta, words):
 
 def test_a_name_cannot_leave_the_folder(tmp_path):
     outside = META.replace("line.txt", "../../line.txt")
-    (result,) = load_measurements(container(tmp_path / "a.zip", outside, **{"../../line.txt": LINE}))
+    (result,) = load_measurements(
+        container(tmp_path / "a.zip", outside, **{"../../line.txt": LINE})
+    )
     assert result.data.rms_nm > 0
     assert not (tmp_path.parent / "line.txt").exists()
 
@@ -128,4 +147,7 @@ def test_what_is_no_archive_is_refused(tmp_path):
     with zipfile.ZipFile(tmp_path / "c.zip", "w") as archive:
         archive.writestr("notes.txt", "hello")
         archive.writestr("more.txt", "hello")
-    refused(tmp_path / "c.zip", r"neither a container of contact\.engineering nor one file alone, it holds notes\.txt")
+    refused(
+        tmp_path / "c.zip",
+        r"neither a container of contact\.engineering nor one file alone, it holds notes\.txt",
+    )

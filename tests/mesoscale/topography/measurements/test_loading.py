@@ -53,7 +53,9 @@ def test_a_suffix_that_lies_does_not_matter(tmp_path):
     assert load_scan(path).heights_nm == pytest.approx(heights, rel=1e-12)
 
 
-@pytest.mark.parametrize("suffix", ["gwy", "ibw", "di", "spm", "000", "jpk", "mi", "mdt", "ezd", "nid", "tiff", "tif"])
+@pytest.mark.parametrize(
+    "suffix", ["gwy", "ibw", "di", "spm", "000", "jpk", "mi", "mdt", "ezd", "nid", "tiff", "tif"]
+)
 def test_an_empty_file_of_any_suffix_is_refused_in_one_line(tmp_path, suffix):
     path = tmp_path / f"empty.{suffix}"
     path.write_bytes(b"")
@@ -75,7 +77,10 @@ def test_the_page_lists_every_format_that_is_read():
 def test_truncated_file_is_refused(tmp_path):
     path = gwy(tmp_path / "a.gwy", np.zeros((64, 64)))
     path.write_bytes(path.read_bytes()[:2000])
-    with pytest.raises(InputError, match=r"a\.gwy: no reader .* \(Gwyddion: The file has 2000 bytes, but its header"):
+    with pytest.raises(
+        InputError,
+        match=r"a\.gwy: no reader .* \(Gwyddion: The file has 2000 bytes, but its header",
+    ):
         load_scan(path)
 
 
@@ -131,18 +136,26 @@ def test_several_height_channels_are_asked_for(tmp_path):
 def test_of_hundreds_of_channels_some_are_listed():
     channels = [
         SimpleNamespace(
-            is_height_channel=True, name=f"Height {k}", unit="m", dim=2, nb_grid_pts=(64, 64), physical_sizes=(1.0, 1.0)
+            is_height_channel=True,
+            name=f"Height {k}",
+            unit="m",
+            dim=2,
+            nb_grid_pts=(64, 64),
+            physical_sizes=(1.0, 1.0),
         )
         for k in range(300)
     ]
     with pytest.raises(InputError, match=r"Height 9 and 290 more; name one") as error:
         height_channel("a.gwy", channels, "gwy", None, lambda item: "")
     assert len(str(error.value)) < 250
-    assert height_channel("a.gwy", channels, "gwy", "Height 299", lambda item: "")[0] is channels[299]
+    assert (
+        height_channel("a.gwy", channels, "gwy", "Height 299", lambda item: "")[0] is channels[299]
+    )
 
 
 @pytest.mark.parametrize(
-    ("unit", "nm"), [("\u00b5m", 1e3), ("\u03bcm", 1e3), ("Angstrom", 0.1), ("\u00c5", 0.1), ("nm", 1.0)]
+    ("unit", "nm"),
+    [("\u00b5m", 1e3), ("\u03bcm", 1e3), ("Angstrom", 0.1), ("\u00c5", 0.1), ("nm", 1.0)],
 )
 def test_units_are_read_in_all_spellings(tmp_path, unit, nm):
     path = unit_gwy(tmp_path / "a.gwy", unit, 1000.0 / nm)
@@ -161,7 +174,9 @@ def unit_gwy(path, unit, side):
     content = GwyContainer()
     content["/0/data/title"] = "Height"
     heights = np.eye(40)
-    content["/0/data"] = GwyDataField(heights, xreal=side, yreal=side, si_unit_xy=unit, si_unit_z=unit)
+    content["/0/data"] = GwyDataField(
+        heights, xreal=side, yreal=side, si_unit_xy=unit, si_unit_z=unit
+    )
     content.tofile(str(path))
     return path
 
@@ -181,7 +196,10 @@ def test_cleaning_levels_aligns_fills_and_records(tmp_path):
 def test_cleaning_leaves_a_smooth_creased_scan_alone():
     """Tips leave parabolas that meet in creases; these are no spikes."""
     x = np.linspace(0, 10, 200)
-    creased = np.maximum.reduce([-((x - c) ** 2) for c in np.arange(0.5, 10, 0.7)])[:, None] + 0 * x[None, :]
+    creased = (
+        np.maximum.reduce([-((x - c) ** 2) for c in np.arange(0.5, 10, 0.7)])[:, None]
+        + 0 * x[None, :]
+    )
     settings = TopographySettings(detrend="none", line_alignment="none")
     cleaned = clean(Scan(creased, (10.0, 10.0), "a"), settings)
     assert cleaned.heights_nm == pytest.approx(creased - creased.mean())
@@ -195,7 +213,9 @@ def test_too_many_holes_are_refused():
 
 
 @pytest.mark.skipif(not AFM.is_dir(), reason="real scans are not shipped")
-@pytest.mark.parametrize(("name", "length", "rms"), [("example_ps.tiff", 1000.0, 3.93), ("di-6.di", 10000.0, 16.85)])
+@pytest.mark.parametrize(
+    ("name", "length", "rms"), [("example_ps.tiff", 1000.0, 3.93), ("di-6.di", 10000.0, 16.85)]
+)
 def test_real_scans_are_read_in_nanometres(name, length, rms):
     scan = load_scan(AFM / name)
     assert scan.lengths_nm == pytest.approx((length, length))
@@ -211,8 +231,12 @@ def test_cut_off_scans_are_refused():
 @pytest.mark.parametrize("length_nm", [5.0, 1e9])
 def test_a_size_that_no_instrument_has_is_taken_for_a_mistaken_unit(tmp_path, length_nm):
     path = tmp_path / "scan.gwy"
-    write_gwy(path, Scan(np.random.default_rng(0).standard_normal((64, 64)), (length_nm, length_nm), "a"))
-    with pytest.raises(InputError, match=r"scan\.gwy: a size of .* nm; plausible is 10 \.\. 1e\+08 nm, so its unit"):
+    write_gwy(
+        path, Scan(np.random.default_rng(0).standard_normal((64, 64)), (length_nm, length_nm), "a")
+    )
+    with pytest.raises(
+        InputError, match=r"scan\.gwy: a size of .* nm; plausible is 10 \.\. 1e\+08 nm, so its unit"
+    ):
         load_scan(path)
 
 
@@ -220,7 +244,9 @@ def test_a_height_that_no_surface_has_is_refused(tmp_path):
     heights = np.random.default_rng(0).standard_normal((64, 64))
     heights[3, 4] = 1e200  # one bit of an exponent
     write_gwy(tmp_path / "scan.gwy", Scan(heights, (1000.0, 1000.0), "a"))
-    with pytest.raises(InputError, match=r"scan\.gwy: a height of 1e\+200 nm; plausible is up to 1e\+08 nm about"):
+    with pytest.raises(
+        InputError, match=r"scan\.gwy: a height of 1e\+200 nm; plausible is up to 1e\+08 nm about"
+    ):
         load_scan(tmp_path / "scan.gwy")
 
 
@@ -229,10 +255,17 @@ def _no_channels():
 
 
 def _line_of_three():
-    line = SimpleNamespace(dim=1, unit="um", info={}, positions_and_heights=lambda: ([0.0], [1.0], [2.0]))
+    line = SimpleNamespace(
+        dim=1, unit="um", info={}, positions_and_heights=lambda: ([0.0], [1.0], [2.0])
+    )
     return [
         SimpleNamespace(
-            is_height_channel=True, name="z", unit="um", dim=1, physical_sizes=None, topography=lambda: line
+            is_height_channel=True,
+            name="z",
+            unit="um",
+            dim=1,
+            physical_sizes=None,
+            topography=lambda: line,
         )
     ]
 

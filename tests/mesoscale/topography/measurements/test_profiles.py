@@ -1,4 +1,6 @@
-"""Line profiles: read with their units, levelled, and refused in one line where they say nothing."""
+"""Line profiles: read with their units, levelled, and refused in one line where they say
+nothing.
+"""
 
 import numpy as np
 import pytest
@@ -13,11 +15,15 @@ Z = np.random.default_rng(0).standard_normal(500).cumsum()
 
 
 def written(path, head="", factor=1.0, x=X, z=Z):
-    np.savetxt(path, np.stack([x * factor, z * factor], axis=1), header=head, comments="", delimiter="\t")
+    np.savetxt(
+        path, np.stack([x * factor, z * factor], axis=1), header=head, comments="", delimiter="\t"
+    )
     return path
 
 
-@pytest.mark.parametrize(("head", "factor"), [("x (nm)\tz (nm)", 1.0), ("x/um\tz/um", 1e-3), ("x [mm]\tz [mm]", 1e-6)])
+@pytest.mark.parametrize(
+    ("head", "factor"), [("x (nm)\tz (nm)", 1.0), ("x/um\tz/um", 1e-3), ("x [mm]\tz [mm]", 1e-6)]
+)
 def test_units_in_the_heads_of_columns_are_read(tmp_path, head, factor):
     (result,) = load_measurements(written(tmp_path / "line.txt", head, factor))
     assert isinstance(result.data, Profile)
@@ -27,10 +33,14 @@ def test_units_in_the_heads_of_columns_are_read(tmp_path, head, factor):
 
 def test_a_profile_without_unit_is_refused_unless_the_scene_states_one(tmp_path):
     path = written(tmp_path / "line.txt", factor=1e-3)
-    with pytest.raises(InputError, match=r"profile without length unit; state it in topography\.instruments") as caught:
+    with pytest.raises(
+        InputError, match=r"profile without length unit; state it in topography\.instruments"
+    ) as caught:
         load_measurements(path)
     assert "\n" not in str(caught.value)
-    settings = TopographySettings(instruments=(InstrumentSettings(files="line*", unit="um", tip_radius_nm=2000),))
+    settings = TopographySettings(
+        instruments=(InstrumentSettings(files="line*", unit="um", tip_radius_nm=2000),)
+    )
     (result,) = load_measurements(path, settings=settings)
     assert result.data.rms_nm == pytest.approx(Z.std(), rel=1e-5)
     assert (result.tip_radius_nm, result.radius_stated) == (2000, True)
@@ -68,6 +78,8 @@ def test_levelling_takes_a_line_or_a_parabola():
     tilted = Profile(wave + 30 * x, 1000.0, "tilted")
     bowed = Profile(wave + 30 * x + 20 * x**2, 1000.0, "bowed", bow=True)
     for profile in (tilted, bowed):
-        assert clean_profile(profile, TopographySettings()).rms_nm == pytest.approx(wave.std(), rel=0.03)
+        assert clean_profile(profile, TopographySettings()).rms_nm == pytest.approx(
+            wave.std(), rel=0.03
+        )
     with pytest.raises(InputError, match="all heights are equal"):
         clean_profile(Profile(np.zeros(500), 1000.0, "flat"), TopographySettings())

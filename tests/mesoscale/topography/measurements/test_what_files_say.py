@@ -1,4 +1,6 @@
-"""What stands in people's files for missing points, heights, directions, units, formats: kinds in several dresses."""
+"""What stands in people's files for missing points, heights, directions, units, formats: kinds in
+several dresses.
+"""
 
 import bz2
 import gzip
@@ -23,7 +25,9 @@ SIDE, PIXELS = 500.0, 128
 
 
 def surface(seed=0, pixels=PIXELS):
-    """Heights of RMS 4 nm, correlated over many pixels as those of scans are, with tilt and noise."""
+    """Heights of RMS 4 nm, correlated over many pixels as those of scans are, with tilt and
+    noise.
+    """
     heights = synthesize_spectrum(pixels, SIDE, lambda q: np.maximum(q, 0.03) ** -3.6, 4.0, seed)
     noise = 0.03 * np.random.default_rng(seed).standard_normal(heights.shape)
     return heights + noise + 0.2 * np.arange(pixels)[:, None]
@@ -45,7 +49,10 @@ def refusal(path, **instrument):
 
 
 def matrix(
-    path, heights, words=None, header="# Channel: Height\n# Width: 0.5 um\n# Height: 0.5 um\n# Value units: nm\n"
+    path,
+    heights,
+    words=None,
+    header="# Channel: Height\n# Width: 0.5 um\n# Height: 0.5 um\n# Value units: nm\n",
 ):
     """A text map as Gwyddion exports it; `words` replace values by place."""
     rows = [[f"{value:.5g}" for value in line] for line in heights.T]
@@ -153,7 +160,9 @@ def test_steps_plateaus_pits_dust_and_coarse_digits_are_heights(make):
     assert without_stand_ins(heights)[1] == []
 
 
-@pytest.mark.parametrize("word", ["***", "---", "-", "n/a", "#N/A", "", "null", "1.#QNAN", "OVER", "--", "?"])
+@pytest.mark.parametrize(
+    "word", ["***", "---", "-", "n/a", "#N/A", "", "null", "1.#QNAN", "OVER", "--", "?"]
+)
 def test_a_word_among_numbers_loses_one_point_and_no_line(tmp_path, word):
     heights = surface()
     rng = np.random.default_rng(2)
@@ -202,7 +211,9 @@ def test_one_pixel_in_fifty_is_a_spike_of_any_height():
     true, rng = surface(), np.random.default_rng(1)
     places = rng.random(true.shape) < 0.02
     spiked = np.where(places, true + rng.uniform(50.0, 90.0, true.shape), true)
-    plain, cleaned = (clean(Scan(z, (SIDE, SIDE), "a"), TopographySettings()) for z in (true, spiked))
+    plain, cleaned = (
+        clean(Scan(z, (SIDE, SIDE), "a"), TopographySettings()) for z in (true, spiked)
+    )
     assert cleaned.rms_nm == pytest.approx(plain.rms_nm, rel=0.02)
     assert any(step.startswith("replaced many spikes") for step in cleaned.steps)
 
@@ -311,7 +322,9 @@ def test_both_directions_are_one_channel_and_forward_is_taken(tmp_path, there, b
     assert is_backward(back)
     assert not is_backward(there)
     heights = surface() * 1e-9
-    write_channels(tmp_path / "a.gwy", {back: (heights + 1e-6, "m"), there: (heights, "m")}, (5e-7, 5e-7))
+    write_channels(
+        tmp_path / "a.gwy", {back: (heights + 1e-6, "m"), there: (heights, "m")}, (5e-7, 5e-7)
+    )
     assert load(tmp_path / "a.gwy").heights_nm == pytest.approx(1e9 * heights)
 
 
@@ -326,7 +339,9 @@ def test_the_channel_of_heights_is_taken_where_others_are_known_not_to_be(tmp_pa
     write_channels(tmp_path / "b.gwy", {"Deformation": channels["Deformation"]}, (5e-7, 5e-7))
     assert "no channel of heights" in refusal(tmp_path / "b.gwy")
     assert "it has Deformation" in refusal(tmp_path / "b.gwy")
-    write_channels(tmp_path / "c.gwy", {"Strange": channels["Deformation"], **channels}, (5e-7, 5e-7))
+    write_channels(
+        tmp_path / "c.gwy", {"Strange": channels["Deformation"], **channels}, (5e-7, 5e-7)
+    )
     assert load(tmp_path / "c.gwy").heights_nm == pytest.approx(surface())  # called a height
 
 
@@ -336,8 +351,16 @@ def test_a_gwyddion_file_has_amperes(tmp_path):
     header = "# Channel: Data\n# Width: 0.5 um\n# Height: 0.5 um\n# Value units: A\n"
     assert "no channel of heights" in refusal(matrix(tmp_path / "a.txt", surface(), header=header))
     x, z = line_rows()
-    np.savetxt(tmp_path / "a.csv", np.stack([x, z], 1), delimiter=",", header="Lateral (nm), Raw (A)", comments="")
-    assert load(tmp_path / "a.csv").heights_nm.std() == pytest.approx(0.1 * z.std(), rel=0.01)  # of a stylus: ångström
+    np.savetxt(
+        tmp_path / "a.csv",
+        np.stack([x, z], 1),
+        delimiter=",",
+        header="Lateral (nm), Raw (A)",
+        comments="",
+    )
+    assert load(tmp_path / "a.csv").heights_nm.std() == pytest.approx(
+        0.1 * z.std(), rel=0.01
+    )  # of a stylus: ångström
 
 
 @pytest.mark.parametrize(
@@ -359,7 +382,9 @@ def test_a_gwyddion_file_has_amperes(tmp_path):
 )
 def test_a_table_of_a_curve_is_no_surface(tmp_path, heads):
     x, z = line_rows()
-    np.savetxt(tmp_path / "curve.txt", np.stack([x, z], 1), delimiter="\t", header=heads, comments="")
+    np.savetxt(
+        tmp_path / "curve.txt", np.stack([x, z], 1), delimiter="\t", header=heads, comments=""
+    )
     assert "a table of" in refusal(tmp_path / "curve.txt")
 
 
@@ -371,7 +396,9 @@ def test_columns_of_a_wide_table_are_found_by_their_heads(tmp_path):
     assert load(tmp_path / "wide.txt").heights_nm == pytest.approx(z, abs=1e-4)
     heads = "Index\tDistance (nm)\tPhase (deg)\tHeight raw (nm)\tHeight (nm)"
     np.savetxt(tmp_path / "two.txt", table, delimiter="\t", header=heads, comments="", fmt="%.5f")
-    assert "several columns of heights: Height raw (nm), Height (nm)" in refusal(tmp_path / "two.txt")
+    assert "several columns of heights: Height raw (nm), Height (nm)" in refusal(
+        tmp_path / "two.txt"
+    )
     assert load(tmp_path / "two.txt", channel="Height").heights_nm == pytest.approx(z, abs=1e-4)
     assert "holds no heights" in refusal(tmp_path / "two.txt", channel="Phase")
 
@@ -391,7 +418,9 @@ def test_data_sets_that_are_no_heights_are_not_listed(tmp_path):
     with h5py.File(tmp_path / "a.h5", "w") as file:
         for name in ("z_forward", "excitation_forward", "skeleton", "grain_masks/above"):
             file[name] = surface()
-    assert load(tmp_path / "a.h5", size=(500.0, 500.0), unit="nm").heights_nm == pytest.approx(surface())
+    assert load(tmp_path / "a.h5", size=(500.0, 500.0), unit="nm").heights_nm == pytest.approx(
+        surface()
+    )
 
 
 def test_a_container_of_a_channel_without_heights_is_refused(tmp_path):
@@ -429,7 +458,9 @@ def test_a_container_of_a_channel_without_heights_is_refused(tmp_path):
 def test_units_in_words_are_read(tmp_path, heads, factors):
     x, z = line_rows()
     table = np.stack([x / factors[0], z / factors[1]], 1)
-    np.savetxt(tmp_path / "line.txt", table, delimiter="\t", header=heads, comments="", encoding="utf-8")
+    np.savetxt(
+        tmp_path / "line.txt", table, delimiter="\t", header=heads, comments="", encoding="utf-8"
+    )
     profile = load(tmp_path / "line.txt")
     assert profile.length_nm == pytest.approx(1024.0)
     assert profile.heights_nm == pytest.approx(z)
@@ -472,7 +503,9 @@ def test_numbers_are_read_in_all_spellings(tmp_path, row, encoding):
     if row is minus and encoding == "latin-1":
         pytest.skip("Latin-1 has no such minus")
     x, z = line_rows()
-    (tmp_path / "line.csv").write_text("\n".join(row(a, b) for a, b in zip(x, z, strict=True)), encoding=encoding)
+    (tmp_path / "line.csv").write_text(
+        "\n".join(row(a, b) for a, b in zip(x, z, strict=True)), encoding=encoding
+    )
     profile = load(tmp_path / "line.csv", unit="nm")
     assert profile.length_nm == pytest.approx(1024.0)
     assert profile.heights_nm == pytest.approx(z, abs=1e-4)
@@ -481,9 +514,9 @@ def test_numbers_are_read_in_all_spellings(tmp_path, row, encoding):
 def test_heights_alone_with_decimal_commas_are_one_column(tmp_path):
     _, z = line_rows()
     (tmp_path / "line.txt").write_text("\n".join(f"{value:.4f}".replace(".", ",") for value in z))
-    assert load(tmp_path / "line.txt", size=(1.0,), unit="um", height_unit="nm").heights_nm == pytest.approx(
-        z, abs=1e-3
-    )
+    assert load(
+        tmp_path / "line.txt", size=(1.0,), unit="um", height_unit="nm"
+    ).heights_nm == pytest.approx(z, abs=1e-3)
 
 
 def points_of(heights, kept):
@@ -563,14 +596,18 @@ def test_points_on_no_grid_take_numbers_of_places(tmp_path):
     heights, rng = surface(), np.random.default_rng(0)
     points = points_of(heights, np.ones(heights.shape, dtype=bool))
     points[:, :2] += rng.uniform(-0.6, 0.6, (len(points), 2))
-    np.savetxt(tmp_path / "p.xyz", points, delimiter="\t", header="x (nm)\ty (nm)\tz (nm)", comments="")
+    np.savetxt(
+        tmp_path / "p.xyz", points, delimiter="\t", header="x (nm)\ty (nm)\tz (nm)", comments=""
+    )
     asked = refusal(tmp_path / "p.xyz")
     assert "no regular grid" in asked
     places = tuple(int(count) for count in re.search(r"--points (\d+)x(\d+)", asked).groups())
     scan = load(tmp_path / "p.xyz", points=places)
     assert np.isnan(scan.heights_nm).mean() < 0.05
     assert np.nanstd(scan.heights_nm) == pytest.approx(heights.std(), rel=0.02)
-    assert "points for 1000 x 1000 places; state how many places" in refusal(tmp_path / "p.xyz", points=(1000, 1000))
+    assert "points for 1000 x 1000 places; state how many places" in refusal(
+        tmp_path / "p.xyz", points=(1000, 1000)
+    )
     write_gwy(tmp_path / "a.gwy", Scan(heights, (SIDE, SIDE), "a"))
     assert "is no list of points" in refusal(tmp_path / "a.gwy", points=(64, 64))
 
@@ -578,7 +615,9 @@ def test_points_on_no_grid_take_numbers_of_places(tmp_path):
 # What a file is
 
 
-@pytest.mark.parametrize(("suffix", "opens"), [("gz", gzip.open), ("bz2", bz2.open), ("xz", lzma.open)])
+@pytest.mark.parametrize(
+    ("suffix", "opens"), [("gz", gzip.open), ("bz2", bz2.open), ("xz", lzma.open)]
+)
 def test_a_packed_file_is_unpacked(tmp_path, suffix, opens):
     write_gwy(tmp_path / "a.gwy", Scan(surface(), (SIDE, SIDE), "a"))
     with opens(tmp_path / f"a.gwy.{suffix}", "wb") as stream:
@@ -659,18 +698,21 @@ def test_lines_that_an_aborted_scan_lacks_are_cut_off(tmp_path):
 @pytest.mark.parametrize(
     ("name", "begins", "words"),
     [
-        ("a.dat", b"[Paramco32]\r\nVersion=\xb5", "an image of Createc, which is not read; open it in Gwyddion"),
+        ("a.dat", b"[Paramco32]\r\nVersion=\xb5",
+        "an image of Createc, which is not read; open it in Gwyddion"),
         ("a.VERT", b"ParVERT30\r\n0.1 0.2 0.3\r\n", "a spectrum of Createc"),
         ("a.3ds", b'Grid dim="20 x 20"\r\n', "a grid of spectra of Nanonis"),
         ("a.stl", b"solid part\nfacet normal 0 0 1\n", "a mesh of triangles"),
         ("a.stl", b"\0" * 84 + b"\x01" * 50, "a mesh of triangles"),
-        ("a.sur", b"DSCOMPRESSED" + b"\0" * 600, "Digital Surf, compressed, which is not read; save it without"),
+        ("a.sur", b"DSCOMPRESSED" + b"\0" * 600,
+        "Digital Surf, compressed, which is not read; save it without"),
         ("a.pro", b"DSCOMPRESSED" + b"\0" * 600, "Digital Surf, compressed"),
         ("a.mtrx", b"ONTMATRX0101" + b"\0" * 100, "Omicron MATRIX"),
         ("a.jpk-qi-data", b"PK\x03\x04" + b"\0" * 100, "a force map of JPK"),
         ("a.sm4", b"\xaa\x00S\x00T\x00i\x00M\x00a\x00" + b"\0" * 100, "RHK"),
         ("a.png", b"\x89PNG\r\n\x1a\n" + b"\0" * 100, "a picture"),
-        ("a.gwy", b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 12\n", "a pointer of Git LFS"),
+        ("a.gwy", b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 12\n",
+        "a pointer of Git LFS"),
         ("a.ibw", b"<!DOCTYPE html><html>404</html>", "a web page"),
         ("a.7z", b"7z\xbc\xaf\x27\x1c" + b"\0" * 100, "an archive, which is not read; unpack it"),
         ("a.gwy", b"", "the file is empty"),
