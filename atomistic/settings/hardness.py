@@ -20,7 +20,7 @@ EnergyScales = tuple[Annotated[float, Field(ge=1e-3, le=2)], ...]
 
 
 class AsperitySettings(Settings):
-    """One asperity, min[A sin(2 pi x / lambda), A sin(2 pi y / lambda)] (Kim et al. 2013, eq. 6)."""
+    """An asperity, min[A sin(2 pi x / lambda), A sin(2 pi y / lambda)] (Kim et al. 2013, eq. 6)."""
 
     name: str = key(..., "name in file names and tables", pattern=r"^[A-Za-z][A-Za-z0-9]{0,39}$")
     tiles: int = key(
