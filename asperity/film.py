@@ -13,9 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.contact import ContactInputs, Cycle, run_cycle
-from mesoscale.contact.energy import pull_off
-from mesoscale.device.points import (
+from mesoscale.answer.points import (
     PadModel,
     central_point,
     on_pad_grid,
@@ -23,7 +21,9 @@ from mesoscale.device.points import (
     solve_point,
     surfaces_of,
 )
-from mesoscale.device.release import switch_on_pad
+from mesoscale.answer.release import switch_on_pad
+from mesoscale.contact import ContactInputs, Cycle, run_cycle
+from mesoscale.contact.energy import pull_off
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.inputs.contact import contact_of

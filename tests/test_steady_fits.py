@@ -12,7 +12,7 @@ import pytest
 from atomistic.elastic.equation_of_state import fit_equation_of_state
 from atomistic.hardness import film_law
 from evidence.pad.closed_form import ClosedForm
-from mesoscale.device.known import fit_additive
+from mesoscale.answer.known import fit_additive
 from mesoscale.law.fit import fit_branch
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.likelihood import fit, q0_interval

@@ -19,13 +19,13 @@ import numpy as np
 import asperity as asp
 from evidence.attacks.runs import Attack, figures, table
 from mesoscale.contact.cycle import run_cycle
-from mesoscale.device.beam_switch import BeamStates, solve_beam
-from mesoscale.device.electrode import with_pad
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.studies.answer_stability import made_up_law
+from mesoscale.switch.beam_switch import BeamStates, solve_beam
+from mesoscale.switch.electrode import with_pad
 
 __all__ = ["contacts", "devices", "figures", "presses", "rows", "stresses"]
 SOFTER = 2.0**-14
@@ -37,7 +37,7 @@ of a nanometre of some ten. Of seed 741128 one of 150 beams lands in jerks, wher
 capacitance by 0.15 %."""
 JUMP = 0.02
 """Of a voltage from one stress to the next, over the largest: a mesh moves a release by some per
-cent where it tears off in jerks (`tests/mesoscale/device/test_hard_beams.py`)."""
+cent where it tears off in jerks (`tests/mesoscale/switch/test_hard_beams.py`)."""
 
 
 def arguments(parser: ArgumentParser) -> None:

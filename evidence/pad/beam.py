@@ -15,10 +15,10 @@ from typing import Any
 
 from evidence.pad import finite_differences
 from evidence.pad.loop import central_pad
-from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.electrode import with_pad
-from mesoscale.device.spread import departed
+from mesoscale.answer.spread import departed
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.beam_switch import solve_beam
+from mesoscale.switch.electrode import with_pad
 
 CAUSES = {
     "bending": {"bends_as": "beam", "fringe": 0.0, "anchor_um_per_N": 1e9},

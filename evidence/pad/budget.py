@@ -15,9 +15,9 @@ import numpy as np
 from asperity.guards.foreign_yaml import load_mapping
 from evidence.pad.runs import finished
 from evidence.record import ROOT
-from mesoscale.device.budget import budget, effects_of
-from mesoscale.device.points import solve_point, solve_points, surfaces_of
-from mesoscale.device.release import switch_on_pad
+from mesoscale.answer.budget import budget, effects_of
+from mesoscale.answer.points import solve_point, solve_points, surfaces_of
+from mesoscale.answer.release import switch_on_pad
 from workflow.scene import load_scene
 
 

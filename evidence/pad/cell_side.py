@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from evidence.record import load_table
-from mesoscale.device.points import Point, solve_point
+from mesoscale.answer.points import Point, solve_point
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings

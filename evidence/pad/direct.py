@@ -18,15 +18,15 @@ from scipy.stats import qmc
 
 from evidence.pad.large_surfaces import random_cells
 from evidence.pad.runs import finished
-from mesoscale.device.electrode import presser, solve_deepened
-from mesoscale.device.points import Point, point_of, surfaces_of, values_at
-from mesoscale.device.pressing import pressing, pressure_to_compute
+from mesoscale.answer.points import Point, point_of, surfaces_of, values_at
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.cells import Cell, plan_grid, sample_cells
 from mesoscale.pad.curves import press_cells
 from mesoscale.pad.memory import PadLaw, flats_of
 from mesoscale.settings import ContactSettings
+from mesoscale.switch.electrode import presser, solve_deepened
+from mesoscale.switch.pressing import pressing, pressure_to_compute
 
 OTHER_CELLS = 64
 OTHERS = 500_000

@@ -22,11 +22,11 @@ from evidence.pad.runs import finished
 from mesoscale.circuit.lumps import LumpErrors, Lumps, lumps_of
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import spice_switch
-from mesoscale.device.beam import lumped_beam
-from mesoscale.device.beam_switch import BeamStates, solve_beam, solve_bent
-from mesoscale.device.electrode import with_pad
 from mesoscale.pad.memory import PadLaw, attracting
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.beam import lumped_beam
+from mesoscale.switch.beam_switch import BeamStates, solve_beam, solve_bent
+from mesoscale.switch.electrode import with_pad
 
 PAIRS = (4, 8, 12, 16, 20, 24, 28, 32, 48, 64)
 ELEMENTS = 1024

@@ -13,7 +13,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from evidence.record import load_table
-from mesoscale.device.points import Point, on_pad_grid, press_pad, surfaces_of
+from mesoscale.answer.points import Point, on_pad_grid, press_pad, surfaces_of
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad.adhesion import adhesion_of
 from mesoscale.settings.inputs import WorkAndRangeSettings

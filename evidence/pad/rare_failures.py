@@ -16,13 +16,13 @@ from scipy.special import ndtri
 from scipy.stats import qmc
 
 from evidence.pad.closed_form import ClosedForm
-from mesoscale.device.points import Point, point_of, values_at
-from mesoscale.device.pressing import EXACT, pressure_to_compute
+from mesoscale.answer.points import Point, point_of, values_at
 from mesoscale.failure.population import Attracted, Population
 from mesoscale.failure.rate import corrected, learn
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.pressing import EXACT, pressure_to_compute
 from mesoscale.uncertainty.rare_events import sample_event
 
 PLATE = DeviceSettings(spring_N_per_m=170.0, spread=EXACT)

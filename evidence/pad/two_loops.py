@@ -19,12 +19,12 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
 from evidence.pad.rare_failures import ATTRACTIONS, CUTOFFS_NM, PLATE, TABLE, known_pad, population
-from mesoscale.device.known import ENDS, fit_additive, known
-from mesoscale.device.plate import plate_from_settings, solve_on_pad
-from mesoscale.device.points import point_of, values_at
+from mesoscale.answer.known import ENDS, fit_additive, known
+from mesoscale.answer.points import point_of, values_at
 from mesoscale.failure.population import Attracted, Population
 from mesoscale.failure.rate import learn
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.switch.plate import plate_from_settings, solve_on_pad
 from mesoscale.uncertainty.rare_events import LEAST, quantiles_of
 
 EACH = ("hamaker", "rms")

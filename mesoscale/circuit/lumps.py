@@ -22,11 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.device.beam import Beam, assembled, lumped_beam
-from mesoscale.device.beam_kernels import NM
-from mesoscale.device.beam_switch import BeamStates, solve_beam, solve_bent
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.beam import Beam, assembled, lumped_beam
+from mesoscale.switch.beam_kernels import NM
+from mesoscale.switch.beam_switch import BeamStates, solve_beam, solve_bent
 
 Array = NDArray[np.float64]
 

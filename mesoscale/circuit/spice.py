@@ -15,9 +15,9 @@ import numpy as np
 from mesoscale.circuit.lumps import LumpErrors, Lumps
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.tables import Piece, note, tables_of
-from mesoscale.device.beam_kernels import NM, least_gap_nm
-from mesoscale.device.plate import VACUUM_PERMITTIVITY
 from mesoscale.pad.memory import PadLaw
+from mesoscale.switch.beam_kernels import NM, least_gap_nm
+from mesoscale.switch.plate import VACUUM_PERMITTIVITY
 
 LUMP = "top bottom moved drawn charge"
 """Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge

@@ -13,19 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
+from mesoscale.answer.points import PadModel, Point, point_of, press_pad, values_at
 from mesoscale.circuit.lumps import LumpErrors, choose_lumps
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.device.beam import beam_of, lumped_beam
-from mesoscale.device.beam_switch import loop_fF, solve_bent
-from mesoscale.device.electrode import with_pad
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.points import PadModel, Point, point_of, press_pad, values_at
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.memory import PadLaw
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.settings.device import SPREAD
+from mesoscale.switch.beam import beam_of, lumped_beam
+from mesoscale.switch.beam_switch import loop_fF, solve_bent
+from mesoscale.switch.electrode import with_pad
+from mesoscale.switch.numerics import SWITCH
 
 Array = NDArray[np.float64]
 

@@ -7,9 +7,9 @@ from mesoscale.circuit.lumps import Lumps
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import LUMP
 from mesoscale.circuit.tables import Piece, Tables, note, tables_of
-from mesoscale.device.beam_kernels import least_gap_nm
-from mesoscale.device.plate import VACUUM_PERMITTIVITY
 from mesoscale.pad.memory import PadLaw
+from mesoscale.switch.beam_kernels import least_gap_nm
+from mesoscale.switch.plate import VACUUM_PERMITTIVITY
 
 
 def verilog_pad(law: PadLaw, cells: int) -> str:

@@ -15,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from mesoscale.device.beam_switch import closed_beam
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.plate import plate_from_settings, solve_on_pad
-from mesoscale.device.points import Point, kinds, point_of, values_at
-from mesoscale.device.pressing import held_V
+from mesoscale.answer.points import Point, kinds, point_of, values_at
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.memory import PadLaw, attracting, deepened
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.beam_switch import closed_beam
+from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.plate import plate_from_settings, solve_on_pad
+from mesoscale.switch.pressing import held_V
 
 Array = NDArray[np.float64]
 
@@ -157,7 +157,7 @@ class Population:
 
     Attributes
     ----------
-    table, settings, cutoffs_nm : as `mesoscale.device.points` takes them.
+    table, settings, cutoffs_nm : as `mesoscale.answer.points` takes them.
     release_V : a switch that is still closed at this voltage has failed.
     press : of the pads.
     solved : probabilities (m, dimension) of switches whose pads were pressed at the hold voltage,

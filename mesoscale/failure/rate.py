@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
-from mesoscale.device.points import values_at
-from mesoscale.device.pressing import pull_in_V
-from mesoscale.device.release import WORKS
+from mesoscale.answer.points import values_at
+from mesoscale.answer.release import WORKS
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE, Population
+from mesoscale.switch.pressing import pull_in_V
 from mesoscale.uncertainty.rare_events import (
     LEAST,
     REPEATS,

@@ -7,11 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from mesoscale.device.beam_kernels import OPENING_NM
-from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.electrode import with_pad
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.points import PadModel, Solved
+from mesoscale.answer.points import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.studies.driver import (
     RELEASE,
@@ -23,6 +19,10 @@ from mesoscale.studies.driver import (
     StudyRow,
     rows_of,
 )
+from mesoscale.switch.beam_kernels import OPENING_NM
+from mesoscale.switch.beam_switch import solve_beam
+from mesoscale.switch.electrode import with_pad
+from mesoscale.switch.numerics import SWITCH
 
 SWITCHES = 4
 """Switches that are solved with each choice."""

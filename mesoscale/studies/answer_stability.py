@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.device.beam import euler_MPa
-from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.electrode import solve_deepened, with_pad
-from mesoscale.device.numerics import SWITCH
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import Flats, PadLaw, attracting
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.driver import HardCase
+from mesoscale.switch.beam import euler_MPa
+from mesoscale.switch.beam_switch import solve_beam
+from mesoscale.switch.electrode import solve_deepened, with_pad
+from mesoscale.switch.numerics import SWITCH
 
 Changes = dict[str, Any]
 

@@ -7,14 +7,10 @@ from functools import partial
 
 import numpy as np
 
+from mesoscale.answer.points import PadModel, Solved
 from mesoscale.circuit.lumps import choose_lumps
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.tables import law_of_tables, tables_of
-from mesoscale.device.beam import Beam, beam_of, lumped_beam
-from mesoscale.device.beam_switch import solve_bent
-from mesoscale.device.electrode import with_pad
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.points import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
@@ -29,6 +25,10 @@ from mesoscale.studies.driver import (
     StudyRow,
     rows_of,
 )
+from mesoscale.switch.beam import Beam, beam_of, lumped_beam
+from mesoscale.switch.beam_switch import solve_bent
+from mesoscale.switch.electrode import with_pad
+from mesoscale.switch.numerics import SWITCH
 
 SWITCHES = 3
 """Switches that are solved with each choice: the central one and others."""

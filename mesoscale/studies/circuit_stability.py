@@ -8,23 +8,23 @@ from typing import Any
 
 import numpy as np
 
+from mesoscale.answer.points import Point, press_pad, surfaces_of
 from mesoscale.circuit.lumps import lumps_of
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.switches import central_switch
 from mesoscale.circuit.tables import law_of_tables, tables_of
 from mesoscale.circuit.verilog import verilog_pad
-from mesoscale.device.beam import beam_of, lumped_beam
-from mesoscale.device.beam_switch import solve_bent
-from mesoscale.device.electrode import with_pad
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.points import Point, press_pad, surfaces_of
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import PadLaw, attracting, deepened
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.settings.definitions import RMS_SCATTER
 from mesoscale.studies.answer_stability import SOLVED, TIP, lifted, made_up_law
 from mesoscale.studies.driver import HardCase
+from mesoscale.switch.beam import beam_of, lumped_beam
+from mesoscale.switch.beam_switch import solve_bent
+from mesoscale.switch.electrode import with_pad
+from mesoscale.switch.numerics import SWITCH
 
 CELLS = 4
 """Cells of a pad that is pressed for a case."""

@@ -11,12 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from mesoscale.answer.points import Pad, Point
 from mesoscale.contact.cycle import Cycle, run_cycle
 from mesoscale.contact.energy import dissipated_energy, pull_off
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.surface import shared_wave
-from mesoscale.device.electrode import release_or_nan_V
-from mesoscale.device.points import Pad, Point
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.fit import fit_branch
 from mesoscale.pad.cells import PadGrid, sample_cells
@@ -34,6 +33,7 @@ from mesoscale.studies.driver import (
     StudyRow,
     rows_of,
 )
+from mesoscale.switch.electrode import release_or_nan_V
 
 SEEDS = (1, 2, 3, 4)
 TOUCH_SHARE = 0.03

@@ -9,9 +9,7 @@ from functools import partial
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.plate import plate_from_settings, solve_on_pad
-from mesoscale.device.points import Point
+from mesoscale.answer.points import Point
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE, Attracted, Population
 from mesoscale.failure.rate import furthest_allowed, learn
@@ -19,6 +17,8 @@ from mesoscale.pad.memory import PadLaw, attracting
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_stability import made_up_law
 from mesoscale.studies.driver import Array, HardCase
+from mesoscale.switch.beam_switch import solve_beam
+from mesoscale.switch.plate import plate_from_settings, solve_on_pad
 from mesoscale.uncertainty.rare_events import (
     LEAST,
     Moments,

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mesoscale.device.points import Point
+from mesoscale.answer.points import Point
 from mesoscale.studies.driver import Array
 
 CHANGE_PERCENT = 5.0

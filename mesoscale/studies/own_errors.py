@@ -10,11 +10,9 @@ from functools import partial
 
 import numpy as np
 
+from mesoscale.answer.points import Point, press_pad, surfaces_of
 from mesoscale.contact.numerics import NUMERICS
 from mesoscale.contact.surface import shared_wave
-from mesoscale.device.electrode import release_or_nan_V
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.points import Point, press_pad, surfaces_of
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.memory import PadLaw
 from mesoscale.pad.numerics import PAD
@@ -27,6 +25,8 @@ from mesoscale.studies.contact_accuracy import (
     law_quantities,
 )
 from mesoscale.studies.driver import RELEASE, Array, Choice, Knob, StudyRow, rows_of
+from mesoscale.switch.electrode import release_or_nan_V
+from mesoscale.switch.numerics import SWITCH
 
 STEPS, SITES, ELEMENTS = "steps of separation, nm", "sites a side", "elements of the beam"
 

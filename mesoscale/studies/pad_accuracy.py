@@ -11,12 +11,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.answer.known import ENDS
+from mesoscale.answer.points import PadModel, Point, solve_point, surfaces_of
 from mesoscale.contact.surface import shared_wave, shortest_wave
-from mesoscale.device.electrode import presser, release_or_nan_V
-from mesoscale.device.known import ENDS
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.points import PadModel, Point, solve_point, surfaces_of
-from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.cells import Cell, PadGrid, plan_grid, sample_cells
 from mesoscale.pad.curves import press_cells
@@ -35,6 +32,9 @@ from mesoscale.studies.driver import (
     rows_of,
     timed,
 )
+from mesoscale.switch.electrode import presser, release_or_nan_V
+from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.pressing import pressing, pressure_to_compute
 
 PADS = 4
 """Pads of different surfaces on which a choice is tried."""

@@ -268,14 +268,14 @@ def _pad(root: Path) -> None:
     from asperity.guards.bundle import ROOT
     from asperity.guards.foreign_yaml import load_mapping
     from evidence.pad.closed_form import ClosedForm
-    from mesoscale.device.budget import budget, effects_of
-    from mesoscale.device.electrode import solve_deepened
-    from mesoscale.device.points import Design, Pad, PadModel, Point, Solved
-    from mesoscale.device.release import switch_on_pad
+    from mesoscale.answer.budget import budget, effects_of
+    from mesoscale.answer.points import Design, Pad, PadModel, Point, Solved
+    from mesoscale.answer.release import switch_on_pad
     from mesoscale.pad.cells import PadGrid
     from mesoscale.pad.curves import PadCells
     from mesoscale.pad.memory import Flats, curve_rows
     from mesoscale.settings import DeviceSettings
+    from mesoscale.switch.electrode import solve_deepened
 
     area, flats = 1e6, Flats(0.215, 0.165)
     separation = np.concatenate([np.geomspace(200, 50, 8)[:-1], np.arange(50, 19.9, -0.25)])

@@ -4,11 +4,11 @@ word.
 
 import numpy as np
 
-from mesoscale.device.points import Pad, PadModel, Solved
+from mesoscale.answer.points import Pad, PadModel, Solved
 from mesoscale.inputs.table import to_rows
 from mesoscale.pad.memory import Flats
 from mesoscale.settings import ContactSettings, DeviceSettings
-from tests.mesoscale.device.test_release import MIDDLE, SEPARATION, TABLE, cells_of
+from tests.mesoscale.answer.test_release import MIDDLE, SEPARATION, TABLE, cells_of
 from workflow.files.results import write_csv
 from workflow.report.early import STATUS, early_page
 from workflow.run.pads import ScenePoints

@@ -4,10 +4,10 @@ import h5py
 import numpy as np
 import pytest
 
-from mesoscale.device.points import Pad, Solved
+from mesoscale.answer.points import Pad, Solved
 from mesoscale.pad.memory import Flats
 from mesoscale.settings import ContactSettings, DeviceSettings
-from tests.mesoscale.device.test_release import MIDDLE, SEPARATION, TABLE, cells_of
+from tests.mesoscale.answer.test_release import MIDDLE, SEPARATION, TABLE, cells_of
 from workflow.run.pads import CURVES, STATES, ScenePoints, UnfitModel, load_model, write_solved
 
 

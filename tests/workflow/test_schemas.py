@@ -6,10 +6,8 @@ from pathlib import Path
 import pytest
 
 from evidence.pad.rare_failures import known_pad
-from mesoscale.circuit import switches
-from mesoscale.circuit.switches import spread_switches
-from mesoscale.device import points
-from mesoscale.device.points import (
+from mesoscale.answer import points
+from mesoscale.answer.points import (
     Pad,
     PadModel,
     central_point,
@@ -18,9 +16,11 @@ from mesoscale.device.points import (
     solve_point,
     solve_points,
 )
+from mesoscale.circuit import switches
+from mesoscale.circuit.switches import spread_switches
 from mesoscale.inputs.table import film_table
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
-from tests.mesoscale.device.test_release import cells_of, table
+from tests.mesoscale.answer.test_release import cells_of, table
 from workflow.files.results import load_csv, write_csv
 from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page

@@ -5,8 +5,8 @@ takes its place.
 from pathlib import Path
 from typing import Any
 
-from mesoscale.device.points import PadModel
-from mesoscale.device.release import switch_on_pad
+from mesoscale.answer.points import PadModel
+from mesoscale.answer.release import switch_on_pad
 from workflow.report.available import Results
 from workflow.report.render import render
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from mesoscale.answer.points import Point
 from mesoscale.contact.numerics import Numerics
-from mesoscale.device.points import Point
 from mesoscale.settings import ContactSettings
 from mesoscale.studies.contact_accuracy import releases_on_pads
 from mesoscale.studies.driver import Array

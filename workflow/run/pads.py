@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.device.points import (
+from mesoscale.answer.points import (
     Design,
     Pad,
     PadModel,

@@ -184,8 +184,8 @@ def _no_switch(device: DeviceSettings) -> str:
     }
     if device.touching_at_rest or not device.bends or not unusual & device.model_fields_set:
         return device.touching_at_rest
-    from mesoscale.device.pressing import never_closes, pull_in_V  # takes a second
-    from mesoscale.device.spread import check_spread
+    from mesoscale.answer.spread import check_spread
+    from mesoscale.switch.pressing import never_closes, pull_in_V  # takes a second
 
     try:
         check_spread(device)

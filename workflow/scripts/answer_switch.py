@@ -7,11 +7,11 @@ device/rough_pad.va, device/rough_pad.sub."""
 from pathlib import Path
 
 from asperity.guards.foreign_yaml import load_mapping
+from mesoscale.answer.budget import TWIN, budget, effects_of, with_twins
+from mesoscale.answer.by_hardness import release_by_hardness
+from mesoscale.answer.release import switch_on_pad
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.verilog import verilog_pad
-from mesoscale.device.budget import TWIN, budget, effects_of, with_twins
-from mesoscale.device.by_hardness import release_by_hardness
-from mesoscale.device.release import switch_on_pad
 from mesoscale.studies.own_errors import of_switch
 from workflow.files.results import load_json, write_csv, write_json, write_text
 from workflow.run.job import job

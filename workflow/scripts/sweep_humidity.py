@@ -3,7 +3,7 @@
 In: inputs.csv, pad/model.h5.  Out: device/humidity.csv (V, mJ/m^2, kPa).
 """
 
-from mesoscale.device.humidity import humidity_rows
+from mesoscale.answer.humidity import humidity_rows
 from workflow.files.results import write_csv
 from workflow.run.job import job
 from workflow.run.pads import load_model, points_of_job

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mesoscale.answer.points import PadModel, Point, Solved, plan_points
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.posterior import Calibration, Model
 from mesoscale.calibration.summary import predictive_rows
 from mesoscale.calibration.voltages import fit_voltages
-from mesoscale.device.points import PadModel, Point, Solved, plan_points
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, DeviceSettings
 from tests.mesoscale.calibration.conftest import MAX_FORCE_NN

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from mesoscale.answer.points import Point
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.tables import law_of_tables, tables_of
-from mesoscale.device.beam import lumped_beam
-from mesoscale.device.points import Point
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.studies.circuit_stability import hard_cases
+from mesoscale.switch.beam import lumped_beam
 from tests.mesoscale.circuit.test_tables import pad
 
 VALUES = {

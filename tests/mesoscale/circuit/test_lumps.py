@@ -15,12 +15,12 @@ from mesoscale.circuit.lumps import LumpErrors, Lumps, choose_lumps, lumps_of
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import LUMP, spice_switch
 from mesoscale.circuit.verilog import verilog_lump
-from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.plate import GPA, NM, VACUUM_PERMITTIVITY, plate_from_settings
 from mesoscale.errors import InputError
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_stability import made_up_law
+from mesoscale.switch.beam_switch import solve_beam
+from mesoscale.switch.plate import GPA, NM, VACUUM_PERMITTIVITY, plate_from_settings
 from tests.mesoscale.circuit.motion import capacitance_F, gas_flow, held_Pa, move, pull_Pa, rates
 from tests.mesoscale.circuit.simulators import (
     by_ngspice,

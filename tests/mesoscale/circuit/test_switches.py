@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from evidence.pad.rare_failures import CUTOFFS_NM, known_pad
+from mesoscale.answer import points
+from mesoscale.answer.points import Pad
 from mesoscale.circuit import switches
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.switches import CORNERS, central_switch, loops, spread_switches
-from mesoscale.device import points
-from mesoscale.device.beam import beam_of
-from mesoscale.device.beam_switch import loop_fF, solve_beam
-from mesoscale.device.points import Pad
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.switch.beam import beam_of
+from mesoscale.switch.beam_switch import loop_fF, solve_beam
+from tests.mesoscale.answer.test_release import TABLE, cells_of, model_of
 from tests.mesoscale.circuit.test_tables import pad
-from tests.mesoscale.device.test_release import TABLE, cells_of, model_of
 
 BEAM = DeviceSettings()
 

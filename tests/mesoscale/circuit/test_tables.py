@@ -10,9 +10,9 @@ from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.tables import tables_of
 from mesoscale.circuit.verilog import verilog_pad
-from mesoscale.device.electrode import solve_deepened
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.electrode import solve_deepened
 from tests.mesoscale.circuit.simulators import by_ngspice, needs_ngspice, needs_openvaf
 
 AREA = 1e12

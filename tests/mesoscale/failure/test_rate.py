@@ -8,8 +8,6 @@ import pytest
 from pydantic import ValidationError
 
 from evidence.pad.rare_failures import KnownPad, known_pad, population
-from mesoscale.device.beam_switch import closed_beam, solve_beam
-from mesoscale.device.plate import plate_from_settings, solve_on_pad
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE, Attracted
 from mesoscale.failure.rate import (
@@ -23,6 +21,8 @@ from mesoscale.failure.rate import (
 from mesoscale.pad.memory import attracting
 from mesoscale.settings import DeviceSettings, FailureSettings
 from mesoscale.studies.answer_stability import made_up_law
+from mesoscale.switch.beam_switch import closed_beam, solve_beam
+from mesoscale.switch.plate import plate_from_settings, solve_on_pad
 
 BEAM = DeviceSettings(hold_voltage_V=80.0)
 PLATE = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtri
 
-from mesoscale.contact.surface import random_surface, shared_wave
-from mesoscale.device.points import (
+from mesoscale.answer.points import (
     PadModel,
     central_point,
     plan_points,
@@ -13,6 +12,7 @@ from mesoscale.device.points import (
     solve_points,
     surfaces_of,
 )
+from mesoscale.contact.surface import random_surface, shared_wave
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.numerics import PAD

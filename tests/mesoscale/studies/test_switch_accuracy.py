@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 
 from evidence.pad.rare_failures import PLATE, known_pad, population
+from mesoscale.answer import points
+from mesoscale.answer.points import Pad
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.device import points
-from mesoscale.device.beam_kernels import OPENING_NM
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.points import Pad
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies import answer_accuracy, circuit_accuracy, failure_accuracy
-from tests.mesoscale.device.test_release import cells_of, model_of
+from mesoscale.switch.beam_kernels import OPENING_NM
+from mesoscale.switch.numerics import SWITCH
+from tests.mesoscale.answer.test_release import cells_of, model_of
 
 STAGES = {"answer": answer_accuracy, "circuit": circuit_accuracy}
 

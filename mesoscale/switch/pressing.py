@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.plate import GPA, NM, VACUUM_PERMITTIVITY, plate_from_settings
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.device import SPREAD, SpreadSettings
+from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.plate import GPA, NM, VACUUM_PERMITTIVITY, plate_from_settings
 
 Array = NDArray[np.float64]
 EXACT = SpreadSettings(**dict.fromkeys(SPREAD))
@@ -57,7 +57,7 @@ def pull_in_V(settings: DeviceSettings) -> float:
     """
     if not settings.bends:
         return plate_from_settings(settings).pull_in_V
-    from mesoscale.device.beam_switch import free_pull_in_V  # compiles: not for rules
+    from mesoscale.switch.beam_switch import free_pull_in_V  # compiles: not for rules
 
     return free_pull_in_V(settings)
 

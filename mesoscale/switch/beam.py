@@ -17,10 +17,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam_kernels import GPA, NM, deflect, newton_step
-from mesoscale.device.numerics import SWITCH
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.beam_kernels import GPA, NM, deflect, newton_step
+from mesoscale.switch.numerics import SWITCH
 
 Array = NDArray[np.float64]
 STOPPER_PER_NM = 660.0

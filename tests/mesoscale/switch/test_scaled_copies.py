@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.electrode import with_pad
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_stability import SOLVED, made_up_law
+from mesoscale.switch.beam_switch import solve_beam
+from mesoscale.switch.electrode import with_pad
 
 
 def softer(settings, law, times):

@@ -3,8 +3,8 @@
 import numpy as np
 from numba import njit
 
-from mesoscale.device.plate import GPA, NM
 from mesoscale.pad.local import pad_pressure
+from mesoscale.switch.plate import GPA, NM
 
 CLOSING_NM, OPENING_NM = 1.0, 0.25
 """Largest step of a place in contact. Where a pad of few cells tears off, longer steps overshoot:
@@ -33,7 +33,7 @@ def add_loads(separation_nm, pressure, slope, electric, places):
     electric : dielectric over its permittivity (nm), square of the voltage, vacuum permittivity,
         fringe over width
         (1/nm).
-    places : see `mesoscale.device.beam.Beam.places`.
+    places : see `mesoscale.switch.beam.Beam.places`.
     """
     dielectric_nm, squared_V2, permittivity, edge_per_nm = electric
     wired, lands, _, stopper_nm, stopper_GPa_nm = places
@@ -243,7 +243,7 @@ def creep(
     ----------
     beam, places, pad, electric : what `newton_step`, `add_loads` and `pad_pressure` take last.
     spring_Pa : pull of the spring, the scale of all pressures; see
-        `mesoscale.device.beam.Beam.spring_Pa`.
+        `mesoscale.switch.beam.Beam.spring_Pa`.
     contact_nm : separation at which a place is about to land.
     off_nm : in balance above it, no place is in contact.
     free_nm : a rising beam is off the pad where no place is below this separation.

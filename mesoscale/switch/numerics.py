@@ -8,7 +8,7 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class SwitchNumerics:
     """How a switch is solved. What the kernels of the beam take stands in
-    `mesoscale.device.beam_kernels`.
+    `mesoscale.switch.beam_kernels`.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class SwitchNumerics:
         at 2e-4 nm.
     landed : a place has landed where it is pushed with more than this part of the pull of the
         spring
-        (`mesoscale.device.beam.Beam.spring_Pa`), 1 kPa of the default switch.
+        (`mesoscale.switch.beam.Beam.spring_Pa`), 1 kPa of the default switch.
     release_tolerance : relative error of a release.
     little : of the hold voltage: a beam that is closed at less is tried without any.
     free_steps : steps to the balance of a free beam, each from that of the voltage before.

@@ -12,9 +12,9 @@ from typing import Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.answer.points import PadModel, solve_point, surfaces_of
+from mesoscale.answer.release import probability
 from mesoscale.contact.menisci import reach_nm
-from mesoscale.device.points import PadModel, solve_point, surfaces_of
-from mesoscale.device.release import probability
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.adhesion import adhesion_of
 from mesoscale.settings import ContactSettings

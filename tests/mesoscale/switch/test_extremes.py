@@ -5,9 +5,9 @@ import warnings
 
 import pytest
 
-from mesoscale.device.electrode import solve_deepened
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.electrode import solve_deepened
 from tests.mesoscale.circuit.test_tables import pad
 
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from mesoscale.device.plate import NM, VACUUM_PERMITTIVITY, plate_from_settings, solve_on_pad
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.plate import NM, VACUUM_PERMITTIVITY, plate_from_settings, solve_on_pad
 
 PLATE = plate_from_settings(DeviceSettings())
 DEPTHS = (18.0, 20.0, 22.0, 24.0, 26.0, 28.0)

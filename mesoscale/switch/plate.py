@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.numerics import SWITCH
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.numerics import SWITCH
 
 if TYPE_CHECKING:  # rules read this module: it imports nothing heavy
     from mesoscale.pad.memory import PadLaw
@@ -85,7 +85,7 @@ def beam_stiffness_N_per_m(settings: DeviceSettings) -> float:
     ------
     InputError : it touches the dielectric at rest.
     """
-    from mesoscale.device.beam import beam_of  # compiles: not where a scene is only planned
+    from mesoscale.switch.beam import beam_of  # compiles: not where a scene is only planned
 
     beam = beam_of(settings, 32)
     at_rest = np.zeros((beam.elements + 1, 2))

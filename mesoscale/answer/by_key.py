@@ -5,10 +5,10 @@ designs it.
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from mesoscale.device.electrode import solve_deepened
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.electrode import solve_deepened
 
 OF_A_BEAM = (
     "thickness_um",

@@ -12,11 +12,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.answer.spread import properties_at, with_properties
 from mesoscale.contact.surface import shortest_wave
-from mesoscale.device.electrode import presser, release_or_nan_V, solve_deepened
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.pressing import pressing, pressure_to_compute
-from mesoscale.device.spread import properties_at, with_properties
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.distributions import InputTable
@@ -25,6 +22,9 @@ from mesoscale.pad.curves import PadCells, press_cells
 from mesoscale.pad.memory import Flats, PadLaw, flats_of, law_of
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.switch.electrode import presser, release_or_nan_V, solve_deepened
+from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.pressing import pressing, pressure_to_compute
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]

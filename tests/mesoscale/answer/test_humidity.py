@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from mesoscale.contact.menisci import menisci_of, reach_nm
-from mesoscale.device.humidity import HALVINGS, humidity_rows, levels, sticking_between
-from mesoscale.device.points import (
+from mesoscale.answer.humidity import HALVINGS, humidity_rows, levels, sticking_between
+from mesoscale.answer.points import (
     PadModel,
     central_point,
     plan_points,
@@ -14,6 +13,7 @@ from mesoscale.device.points import (
     solve_points,
     surfaces_of,
 )
+from mesoscale.contact.menisci import menisci_of, reach_nm
 from mesoscale.failure.population import Population
 from mesoscale.inputs.table import input_table
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow

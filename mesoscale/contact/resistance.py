@@ -78,7 +78,7 @@ def diffusive_share(knudsen: Array) -> Array:
 
     As Nikolic and Allen (Phys. Rev. B 60 (1999) 3963) fit it to Boltzmann's equation. Electrons
     followed one by one give a resistance that is up to 4 % higher
-    (tests/mesoscale/device/test_resistance.py)."""
+    (tests/mesoscale/contact/test_resistance.py)."""
     return (1.0 + 0.83 * knudsen) / (1.0 + 1.33 * knudsen)
 
 

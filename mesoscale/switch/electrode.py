@@ -9,13 +9,13 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam_switch import press_GPa, solve_beam
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.plate import plate_from_settings, solve_on_pad
-from mesoscale.device.pressing import never_closes
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.memory import Flats, PadLaw, deepened
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.beam_switch import press_GPa, solve_beam
+from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.plate import plate_from_settings, solve_on_pad
+from mesoscale.switch.pressing import never_closes
 
 T = TypeVar("T")
 

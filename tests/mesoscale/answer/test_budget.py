@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from asperity.guards.foreign_yaml import load_mapping
-from mesoscale.device.budget import NUMERICAL, TWIN, budget, effects_of, with_twins
-from mesoscale.device.electrode import solve_deepened
-from mesoscale.device.points import Point, Solved
+from mesoscale.answer.budget import NUMERICAL, TWIN, budget, effects_of, with_twins
+from mesoscale.answer.points import Point, Solved
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.definitions import BY_NAME
 from mesoscale.studies.answer_stability import made_up_law
+from mesoscale.switch.electrode import solve_deepened
 
 SHIPPED = load_mapping(Path(__file__).parents[3] / "config" / "effects.yaml", "table of effects")
 ROW = {

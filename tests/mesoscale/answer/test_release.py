@@ -9,13 +9,9 @@ import pytest
 
 from evidence.pad.closed_form import ClosedForm
 from evidence.pad.rare_failures import known_pad
-from mesoscale.device import points
-from mesoscale.device.beam_kernels import solve_beam_matrix
-from mesoscale.device.beam_switch import press_GPa
-from mesoscale.device.by_key import release_by_key
-from mesoscale.device.electrode import presser, solve_deepened
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.points import (
+from mesoscale.answer import points
+from mesoscale.answer.by_key import release_by_key
+from mesoscale.answer.points import (
     Pad,
     PadModel,
     central_point,
@@ -23,13 +19,17 @@ from mesoscale.device.points import (
     solve_point,
     solve_points,
 )
-from mesoscale.device.pressing import pressing, pressure_to_compute
-from mesoscale.device.release import _probability, answer, switch_on_pad
+from mesoscale.answer.release import _probability, answer, switch_on_pad
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.table import input_table
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
+from mesoscale.switch.beam_kernels import solve_beam_matrix
+from mesoscale.switch.beam_switch import press_GPa
+from mesoscale.switch.electrode import presser, solve_deepened
+from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.pressing import pressing, pressure_to_compute
 
 CONTACT = ContactSettings(mechanics="asperity")
 PLATE = DeviceSettings(spring_N_per_m=170.0)

@@ -9,8 +9,8 @@ import pytest
 
 from mesoscale.contact import ContactInputs, run_cycle
 from mesoscale.contact.coupled.engine import CoupledContact
+from mesoscale.contact.resistance import resistance_Ohm, stiffness_of
 from mesoscale.contact.surface import random_surface
-from mesoscale.device.resistance import resistance_Ohm, stiffness_of
 from mesoscale.settings import ContactSettings
 
 GOLD = ((22.0, 22.0), (37.7, 37.7))

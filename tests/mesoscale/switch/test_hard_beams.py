@@ -4,10 +4,7 @@ says why.
 
 import pytest
 
-from mesoscale.device.beam import lumped_beam
-from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.electrode import with_pad
-from mesoscale.device.spread import check_spread
+from mesoscale.answer.spread import check_spread
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_stability import (
@@ -18,6 +15,9 @@ from mesoscale.studies.answer_stability import (
     hard_cases,
     made_up_law,
 )
+from mesoscale.switch.beam import lumped_beam
+from mesoscale.switch.beam_switch import solve_beam
+from mesoscale.switch.electrode import with_pad
 
 CASES = list(hard_beams())
 

@@ -1,7 +1,7 @@
 """The answer: release voltage and probability of sticking over all that is uncertain, and what
 makes them so.
 
-It is taken from the switches of `mesoscale.device.points` as they are. A point without an answer
+It is taken from the switches of `mesoscale.answer.points` as they are. A point without an answer
 has its reason, and the probability's interval counts it both ways."""
 
 from dataclasses import asdict, dataclass
@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.by_key import release_by_key
-from mesoscale.device.electrode import release_or_nan_V
-from mesoscale.device.known import ENDS, fit_additive, known
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.points import PadModel, Solved
+from mesoscale.answer.by_key import release_by_key
+from mesoscale.answer.known import ENDS, fit_additive, known
+from mesoscale.answer.points import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.pad.adhesion import adhesion_of
 from mesoscale.pad.memory import attracting
+from mesoscale.switch.electrode import release_or_nan_V
+from mesoscale.switch.numerics import SWITCH
 
 Array = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ class Answer:
         one at a time.
     noise : share that a number seems to explain by chance, taken off those of `sensitivity`.
     known : bands of what is not known and of what differs between devices; see
-        `mesoscale.device.known.known`."""
+        `mesoscale.answer.known.known`."""
 
     release_V: dict[str, Any]
     quantile_error_V: dict[str, float]

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from mesoscale.device.by_hardness import harder, release_by_hardness
-from mesoscale.device.electrode import release_or_nan_V
-from mesoscale.device.points import Point, press_pad, surfaces_of
+from mesoscale.answer.by_hardness import harder, release_by_hardness
+from mesoscale.answer.points import Point, press_pad, surfaces_of
 from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.switch.electrode import release_or_nan_V
 
 VALUES = {
     "hamaker": 0.1, "e_star": 91.0, "h_macro": 2.0, "h_prime": 8.0, "q0": 0.1, "hurst": 0.8,

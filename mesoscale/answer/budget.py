@@ -9,13 +9,13 @@ from pydantic import model_validator
 from scipy.constants import elementary_charge
 
 from asperity.guards.settings import Settings, key
-from mesoscale.device.by_key import OF_A_PLATE, value_of
-from mesoscale.device.electrode import solve_deepened
-from mesoscale.device.plate import NM, VACUUM_PERMITTIVITY
-from mesoscale.device.points import Solved
-from mesoscale.device.spread import departed
+from mesoscale.answer.by_key import OF_A_PLATE, value_of
+from mesoscale.answer.points import Solved
+from mesoscale.answer.spread import departed
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.electrode import solve_deepened
+from mesoscale.switch.plate import NM, VACUUM_PERMITTIVITY
 
 HERE = "this scene's points"
 SETTLE = {"common": "measure it", "each": "control it from device to device"}

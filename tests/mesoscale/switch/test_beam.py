@@ -5,15 +5,15 @@ import pytest
 from scipy.optimize import brentq
 
 from evidence.pad import finite_differences
-from mesoscale.device.beam import beam_of, euler_MPa, rests_as_stated
-from mesoscale.device.beam_kernels import elongation
-from mesoscale.device.beam_switch import free_pull_in_V, solve_beam
-from mesoscale.device.plate import VACUUM_PERMITTIVITY, beam_stiffness_N_per_m
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_stability import made_up_law
+from mesoscale.switch.beam import beam_of, euler_MPa, rests_as_stated
+from mesoscale.switch.beam_kernels import elongation
+from mesoscale.switch.beam_switch import free_pull_in_V, solve_beam
+from mesoscale.switch.plate import VACUUM_PERMITTIVITY, beam_stiffness_N_per_m
 
 DEFAULT = DeviceSettings(gap_um=2.3)
 

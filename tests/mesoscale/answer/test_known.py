@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from mesoscale.device.known import _fit, fit_additive, known
+from mesoscale.answer.known import _fit, fit_additive, known
 
 UNITS = qmc.LatinHypercube(3, rng=2).random(200)
 X = 2.0 * UNITS - 1.0

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from mesoscale.device.electrode import release_or_nan_V
-from mesoscale.device.points import Point, press_pad, surfaces_of
+from mesoscale.answer.points import Point, press_pad, surfaces_of
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings
+from mesoscale.switch.electrode import release_or_nan_V
 
 HARDNESS = ("h_macro", "h_prime")
 FILM = "h_film"

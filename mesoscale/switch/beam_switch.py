@@ -1,6 +1,6 @@
 """A switch whose electrode bends: where it lands, how hard, and when it lets go.
 
-The beam of `mesoscale.device.beam` meets the pad place by place, and every place remembers its own
+The beam of `mesoscale.switch.beam` meets the pad place by place, and every place remembers its own
 deepest closing. The landed area is a result. The way down is followed by the place that comes down
 farthest, past pull-in to contact. From just beyond pull-in the beam creeps to the balance at the
 hold voltage, as it snaps. Then the voltage is lowered until no place is in contact."""
@@ -11,8 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam import Beam, beam_of
-from mesoscale.device.beam_kernels import (
+from mesoscale.errors import InputError, NotComputed
+from mesoscale.pad.local import LocalPad
+from mesoscale.pad.memory import PadLaw, attracting
+from mesoscale.settings import DeviceSettings
+from mesoscale.switch.beam import Beam, beam_of
+from mesoscale.switch.beam_kernels import (
     BEYOND,
     CLOSING_NM,
     GPA,
@@ -24,13 +28,9 @@ from mesoscale.device.beam_kernels import (
     creep,
     least_gap_nm,
 )
-from mesoscale.device.numerics import SWITCH
-from mesoscale.device.plate import VACUUM_PERMITTIVITY
-from mesoscale.device.pressing import never_closes
-from mesoscale.errors import InputError, NotComputed
-from mesoscale.pad.local import LocalPad
-from mesoscale.pad.memory import PadLaw, attracting
-from mesoscale.settings import DeviceSettings
+from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.plate import VACUUM_PERMITTIVITY
+from mesoscale.switch.pressing import never_closes
 
 Array = NDArray[np.float64]
 
