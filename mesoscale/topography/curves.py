@@ -65,9 +65,11 @@ def _pooled(spectra: Sequence[Spectrum]) -> Curves:
 
 def _fits(pooled: Pooled, typical: RoughSpectrum | None) -> Curves:
     """The fits on a common grid of q (1/nm), C in nm^4; bounds are those of the line fits."""
-    lowest, end = min(item.spectrum.q[0] for item in pooled.spectra), pooled.topography.cutoff
+    lowest = min(item.spectrum.q[0] for item in pooled.spectra)
+    end = pooled.topography.cutoff
     q = np.geomspace(lowest, max(end, 2 * lowest), 200)
-    curves, line = {"q": q}, pooled.topography.line_fit
+    curves = {"q": q}
+    line = pooled.topography.line_fit
     if pooled.topography.likelihood is not None:
         curves["likelihood"] = pooled.topography.likelihood.spectrum(end).psd(q)
     if line is not None:

@@ -105,11 +105,11 @@ def _carried_correlation(heights: tuple[float, ...]) -> tuple[Array, Array]:
     x, weight = np.polynomial.hermite_e.hermegauss(160)
     weight = weight / weight.sum()
     values = np.interp(x, Z, np.asarray(heights))
-    previous, current = (
-        np.zeros_like(x),
-        np.ones_like(x),
-    )  # normalised Hermite polynomials by recursion
-    squares, terms = [], 24
+    # normalised Hermite polynomials by recursion
+    previous = np.zeros_like(x)
+    current = np.ones_like(x)
+    squares = []
+    terms = 24
     for n in range(terms):
         previous, current = current, (x * current - np.sqrt(n) * previous) / np.sqrt(n + 1)
         squares.append(float(np.sum(weight * values * current)) ** 2)

@@ -41,14 +41,14 @@ KEPT = ("q", "psd", "profile_q", "profile_psd", "heights", "line")
 
 def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays, dict[str, Any]]:
     """Arrays (keys of `DATASETS`) and attributes of one measurement."""
-    data, arrays, attributes = measured.data, {}, {}
+    data = measured.data
+    arrays = {}
+    attributes = {}
     if isinstance(data, Scan):
         cleaned = clean(data, settings)
-        limits, (length_x, length_y), pixels = (
-            trusted_map(cleaned, measured),
-            cleaned.lengths_nm,
-            cleaned.heights_nm.shape,
-        )
+        limits = trusted_map(cleaned, measured)
+        (length_x, length_y) = cleaned.lengths_nm
+        pixels = cleaned.heights_nm.shape
         share, skewness = alignment_effect(data, settings)
         attributes = {"length_y_nm": length_y, "pixels_y": pixels[1], "form": limits.form}
         attributes |= {
@@ -61,11 +61,9 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
             arrays["quantiles"] = height_quantiles(cleaned.heights_nm)
     else:
         cleaned = clean_profile(data, settings)
-        limits, length_x, pixels = (
-            trusted_profile(cleaned, measured),
-            data.length_nm,
-            data.heights_nm.shape,
-        )
+        limits = trusted_profile(cleaned, measured)
+        length_x = data.length_nm
+        pixels = data.heights_nm.shape
         arrays["profile_q"], arrays["profile_psd"] = line_spectrum(cleaned)
         arrays["line"] = _thinned(cleaned.heights_nm, 2000)
     attributes["parabola"] = any(

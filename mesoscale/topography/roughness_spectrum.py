@@ -76,7 +76,8 @@ class SpectrumTable:
         order of q."""
 
     def __init__(self, q: Sequence[float] | np.ndarray, psd: Sequence[float] | np.ndarray):
-        self.q, self.values = np.asarray(q, dtype=float), np.asarray(psd, dtype=float)
+        self.q = np.asarray(q, dtype=float)
+        self.values = np.asarray(psd, dtype=float)
         if self.q.ndim != 1 or len(self.q) < 2 or self.q.shape != self.values.shape:
             raise InputError(
                 "spectrum: accepted are two lists of one length, q (1/nm) and C (nm^4), of two"
@@ -100,7 +101,8 @@ class SpectrumTable:
 
     def mean_square(self, q1: float) -> float:
         """Mean square height, nm^2: the integral of 2 pi q C(q) from zero to q1."""
-        low, high = self.q[0], min(q1, self.q[-1])
+        low = self.q[0]
+        high = min(q1, self.q[-1])
         square = np.pi * self.values[0] * min(low, q1) ** 2
         if high > low:
             inside = self.q[self.q < high]

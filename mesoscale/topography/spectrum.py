@@ -100,9 +100,12 @@ def radial_spectrum(
     """
     nx, ny = heights.shape
     per_side = max(1, round(np.sqrt(sections)))
-    mx, my = section_pixels(nx, fraction), section_pixels(ny, fraction)
-    xs, ys = section_starts(nx, mx, per_side), section_starts(ny, my, per_side)
-    wx, wy = flat_window(mx, flat), flat_window(my, flat)
+    mx = section_pixels(nx, fraction)
+    my = section_pixels(ny, fraction)
+    xs = section_starts(nx, mx, per_side)
+    ys = section_starts(ny, my, per_side)
+    wx = flat_window(mx, flat)
+    wy = flat_window(my, flat)
     window = np.outer(wx, wy).astype(np.float32)
     data = np.ascontiguousarray(heights, dtype=np.float32)  # 7 digits; spectra span fewer
     total = np.zeros((mx, my // 2 + 1))
@@ -120,7 +123,8 @@ def radial_spectrum(
 
     kx = np.abs(np.fft.fftfreq(mx, 1 / mx)).astype(int)
     ky = np.arange(my // 2 + 1)
-    qx, qy = 2 * np.pi / size[0] * kx, 2 * np.pi / size[1] * ky
+    qx = 2 * np.pi / size[0] * kx
+    qy = 2 * np.pi / size[1] * ky
     spacing = max(2 * np.pi / size[0], 2 * np.pi / size[1])
     nyquist = min(np.pi * mx / size[0], np.pi * my / size[1])
     q = np.sqrt(qx[:, None] ** 2 + qy[None, :] ** 2)
@@ -130,7 +134,8 @@ def radial_spectrum(
         weight[kx <= 1] = 0.0
     count = int(nyquist / spacing)
     inside = shell <= count
-    index, weight = shell[inside], weight[inside]
+    index = shell[inside]
+    weight = weight[inside]
     modes = np.bincount(index, weight, count + 1)[1:]
     known = modes > 0
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -26,7 +26,9 @@ def measurement_lines(content: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _cells(row: Mapping[str, Any]) -> tuple[str, ...]:
-    name, ends, longest = row["name"], f"{row['trusted_low']:.2g} to {row['trusted_high']:.2g}", 20
+    name = row["name"]
+    ends = f"{row['trusted_low']:.2g} to {row['trusted_high']:.2g}"
+    longest = 20
     if len(name) > longest:  # so that the table fits on 80 columns
         name = f"{name[: longest // 2 - 1]}…{name[-longest // 2 :]}"
     pixels = row["pixels"].replace(" ", "")

@@ -19,7 +19,9 @@ def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     nothing = np.empty(0, dtype=int), np.empty(0), np.empty(0)
     if inside.sum() < 3:
         return nothing
-    q, psd, modes = item.spectrum.q[inside], corrected[inside], item.spectrum.modes[inside]
+    q = item.spectrum.q[inside]
+    psd = corrected[inside]
+    modes = item.spectrum.modes[inside]
     grid = np.floor(np.log10(q) * BANDS_PER_DECADE).astype(int)
     numbers, index = np.unique(grid, return_inverse=True)
     worth = np.bincount(index, modes)

@@ -77,10 +77,9 @@ def cell_waves(cell_nm: float) -> tuple[np.ndarray, np.ndarray, float]:
 
     The mean plane counts as one more wave of the longest: the spectrum of the film is flat there.
     """
-    step, summed = (
-        2.0 * np.pi / cell_nm,
-        16,
-    )  # beyond, sum and integral differ by less than a per cent
+    # beyond, sum and integral differ by less than a per cent
+    step = 2.0 * np.pi / cell_nm
+    summed = 16
     numbers = np.arange(-summed, summed + 1)
     squared, count = np.unique(numbers[:, None] ** 2 + numbers**2, return_counts=True)
     inside = squared <= summed**2
@@ -90,7 +89,8 @@ def cell_waves(cell_nm: float) -> tuple[np.ndarray, np.ndarray, float]:
 def mean_square_of_cells(one: OneSpectrum, psd: np.ndarray, cell_nm: float) -> np.ndarray:
     """Mean square height (nm^2) of cells by spectra (..., m) on the bands of `one`."""
     waves, areas, end = cell_waves(cell_nm)
-    logs, known = np.log(psd).reshape(-1, len(one.q)), waves <= one.q[-1]
+    logs = np.log(psd).reshape(-1, len(one.q))
+    known = waves <= one.q[-1]
     summed = [
         np.exp(np.interp(np.log(waves[known]), np.log(one.q), row)) @ areas[known] for row in logs
     ]
@@ -157,7 +157,8 @@ def finer_waves_doubt(
     finest, seen = _shortest_wave(spectra)
     if cell_nm >= 16.0 * seen:  # the contact is mostly one of measured waves
         return []
-    step, end = 2.0 * np.pi / cell_nm, 2.0 * np.pi / seen
+    step = 2.0 * np.pi / cell_nm
+    end = 2.0 * np.pi / seen
     effects = []
     for last in (end, 10.0 * end):
         q = np.geomspace(step, last, 400)
@@ -223,7 +224,8 @@ def unlike_measured(
     known = {name: ends for name, ends in in_cells.items() if ends}
     if not known:
         return []
-    low, high = min(ends[0] for ends in known.values()), max(ends[1] for ends in known.values())
+    low = min(ends[0] for ends in known.values())
+    high = max(ends[1] for ends in known.values())
     if 0.5 * low <= rms_nm <= 2.0 * high:
         return []
     text = (

@@ -95,7 +95,8 @@ def choose(
     settings: TopographySettings,
 ) -> Choice:
     """The first description that the measurements do not contradict, or the scene's."""
-    power_law, strange = not topography.doubts, not_gaussian(tests)
+    power_law = not topography.doubts
+    strange = not_gaussian(tests)
     heights = (
         f"as Gaussian surfaces of the same spectrum ({len(tests)} scans)"
         if tests

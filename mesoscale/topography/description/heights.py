@@ -54,7 +54,8 @@ def compare_heights(name: str, heights: np.ndarray, lengths_nm: tuple[float, flo
         [moments(synthesize_spectrum(n, side, psd, 1.0, seed)) for seed in range(39)]
     )
     skewness, kurtosis, highest = moments(square)
-    expected, spread = gaussian.mean(axis=0), gaussian.std(axis=0, ddof=1)
+    expected = gaussian.mean(axis=0)
+    spread = gaussian.std(axis=0, ddof=1)
     return HeightTest(name, skewness, kurtosis, highest, expected, spread, slope_ratio(square))
 
 
@@ -134,7 +135,8 @@ def height_quantiles(heights: np.ndarray) -> np.ndarray:
     table = np.interp(ndtr(Z), place, values)
     for side in (1, -1):
         end = float(ndtri(1 - 0.5 / count))
-        outside, near = side * Z > end, (side * Z <= end) & (side * Z >= end - 1.0)
+        outside = side * Z > end
+        near = (side * Z <= end) & (side * Z >= end - 1.0)
         slope = max(np.polyfit(Z[near], table[near], 1)[0], 0.0)
         edge = Z[near][-1] if side > 0 else Z[near][0]
         start = table[near][-1] if side > 0 else table[near][0]

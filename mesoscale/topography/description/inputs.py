@@ -96,7 +96,8 @@ def rows_of(
 
 def middle(row: Mapping[str, Any]) -> float:
     """The median of a row."""
-    low, high = row["a"], row.get("b", row["a"])
+    low = row["a"]
+    high = row.get("b", row["a"])
     return float(
         np.sqrt(low * high) if row["distribution"] == "log_uniform" else 0.5 * (low + high)
     )
@@ -119,8 +120,10 @@ def _nearest(
 
 def _bends(one: OneSpectrum, q0: float, drawn: np.ndarray) -> tuple[float, float]:
     """How far ln q0 and the Hurst exponent may be from the pivot, at the intervals' level."""
-    logs, log_q = np.log(drawn), np.log(one.q)
-    long, short = one.q <= q0, one.q >= q0
+    logs = np.log(drawn)
+    log_q = np.log(one.q)
+    long = one.q <= q0
+    short = one.q >= q0
     slopes = (
         np.polyfit(log_q[short], logs[:, short].T, 1)[0]
         if short.sum() > 2
@@ -204,7 +207,8 @@ def rms_scatter_row(topography: Topography, one: OneSpectrum | None) -> Row:
 
     Uniform over its interval; half of a normal distribution of the same upper end where it is not
     told from 0. Beyond MOST_APART measurements have no common level."""
-    fitted, most = topography.likelihood, MOST_APART / 2
+    fitted = topography.likelihood
+    most = MOST_APART / 2
     if one is not None:
         between = one.between
     else:

@@ -87,10 +87,8 @@ class Estimate:
         quadrature.
         """
         centre, ends = (np.log(v) if log else np.asarray(v) for v in (self.value, self.interval))
-        low, high = (
-            centre - np.hypot(centre - ends[0], REACH * error),
-            centre + np.hypot(ends[1] - centre, REACH * error),
-        )
+        low = centre - np.hypot(centre - ends[0], REACH * error)
+        high = centre + np.hypot(ends[1] - centre, REACH * error)
         interval = (float(np.exp(low)), float(np.exp(high))) if log else (float(low), float(high))
         return Estimate(self.value, interval, union(interval, self.scatter))
 

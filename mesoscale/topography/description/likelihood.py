@@ -84,7 +84,8 @@ class _Data:
         for number, item in enumerate(spectra):
             s, ok = item.spectrum, item.trusted
             if item.line is not None:
-                s, ok = item.line, np.ones(len(item.line.q), dtype=bool)
+                s = item.line
+                ok = np.ones(len(item.line.q), dtype=bool)
             bins = np.floor(np.log10(s.q[ok]) * per_decade).astype(int)
             size_class = round(
                 float(np.log(s.spacing)) * 20
@@ -117,7 +118,8 @@ class _Data:
         # a line's C1(k) is the integral of 2 C(q) q over t, with q = k cosh t
         end = 7.7  # arcosh(q/k) = 1100 k
         t, step = np.polynomial.legendre.leggauss(48)
-        t, step = end * (t + 1) / 2, end / 2 * step
+        t = end * (t + 1) / 2
+        step = end / 2 * step
         spacing = np.array([item.spectrum.spacing for item in spectra])
         k = spread(self.q[self.line], spacing[self.scan[self.line]])
         self.line_q = np.concatenate(k[:, :, None] * np.cosh(t), axis=1)
@@ -183,7 +185,8 @@ def fit(
     level = np.array([np.log(np.median(item.spectrum.psd[item.trusted][:5])) for item in spectra])
     spread = 1.0  # standard deviation of ln amplitude, updated below
 
-    low, high = data.log_q.min(), data.log_q.max()
+    low = data.log_q.min()
+    high = data.log_q.max()
 
     def objective(parameters: np.ndarray) -> float:
         outside = max(low - parameters[0], 0.0) + max(parameters[0] - high, 0.0)
@@ -193,7 +196,10 @@ def fit(
 
     grid = [(q0, slope) for q0 in np.linspace(low, high, 14)[:-1] for slope in (1.0, 2.0, 3.0, 4.0)]
     best = np.array(min(grid, key=lambda point: objective(np.array(point))))
-    dispersion, raw, residual, between = 1.0, level, np.ones(bins), PlaceScatter()
+    dispersion = 1.0
+    raw = level
+    residual = np.ones(bins)
+    between = PlaceScatter()
     for _ in range(4):
         minimum = minimize(
             objective, best, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-3}
@@ -301,12 +307,15 @@ def _covariance(
         return total, _typical(raw, scale / data.per_scan, spread)[0]
 
     centre = value(best)[0]
-    hessian, gradient = np.zeros((2, 2)), np.zeros(2)
+    hessian = np.zeros((2, 2))
+    gradient = np.zeros(2)
     for i in range(2):
-        up, down = best.copy(), best.copy()
+        up = best.copy()
+        down = best.copy()
         up[i] += steps[i]
         down[i] -= steps[i]
-        (f_up, l_up), (f_down, l_down) = value(up), value(down)
+        (f_up, l_up) = value(up)
+        (f_down, l_down) = value(down)
         hessian[i, i] = (f_up + f_down - 2 * centre) / steps[i] ** 2
         gradient[i] = (l_up - l_down) / (2 * steps[i])
     corners = [
@@ -335,7 +344,8 @@ def q0_interval(
     from scipy.optimize import brentq, minimize_scalar
 
     data = _Data([item for item in spectra if item.trusted.sum() >= 3], fitted.q0)
-    level, best = np.log(fitted.amplitudes), np.log(fitted.q0)
+    level = np.log(fitted.amplitudes)
+    best = np.log(fitted.q0)
 
     def lowest(log_q0: float) -> float:
         inside = max(fitted.slope - 1.0, 0.0), min(fitted.slope + 1.0, MAX_SLOPE)
@@ -348,7 +358,10 @@ def q0_interval(
         return float(minimum.fun)
 
     allowed = lowest(best) + reach**2 * max(fitted.dispersion, 1.0)
-    ends, step, furthest = [], 0.04, 10.0  # no plateau within a factor of e^10 is none
+    # no plateau within a factor of e^10 is none
+    ends = []
+    step = 0.04
+    furthest = 10.0
     for side in (-1, 1):
         distance = step
         while lowest(best + side * distance) < allowed and distance < furthest:
@@ -373,7 +386,8 @@ def single_scans(
     Their range is the scatter between places; it includes the statistical error of single scans.
     """
     log_q0 = np.log(fitted.q0)
-    knees, slopes = [], []
+    knees = []
+    slopes = []
     for item in spectra:
         if item.trusted.sum() < 3:
             continue

@@ -65,7 +65,8 @@ def points(spectra: Sequence[TrustedSpectrum], q0: float = np.inf, slope: float 
     """
     parts = [np.empty((4, 0))]
     for number, item in enumerate(spectra):
-        q, modes = item.spectrum.q[item.trusted], item.spectrum.modes[item.trusted]
+        q = item.spectrum.q[item.trusted]
+        modes = item.spectrum.modes[item.trusted]
         log_c = np.log(item.corrected_psd()[item.trusted])
         log_c = log_c - np.where(q > q0, blur(slope, q / item.spectrum.spacing), 0)
         bins, index = np.unique(np.floor(12 * np.log10(q)), return_inverse=True)  # 12 a decade
@@ -137,7 +138,8 @@ def _fit_points(data: Points) -> LineFit | None:
     reference = float(np.median(fits[len(fits) // 3 :, 1]))
     allowed = np.maximum(0.05, _threshold(len(x) - first) * fits[:, 2])
     last = int(np.flatnonzero(np.abs(fits[:, 1] - reference) <= allowed).max())
-    intercept, slope = fits[last, 0], -float(fits[last, 1])
+    intercept = fits[last, 0]
+    slope = -float(fits[last, 1])
     log_q0 = (intercept - level) / slope
     shape = -slope * np.maximum(data.log_q - log_q0, 0)
     levels = [np.mean((data.log_c - shape)[data.scan == k]) for k in np.unique(data.scan)]
@@ -179,9 +181,11 @@ def _threshold(freedom: int) -> float:
 
 def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float] | None:
     """Meeting point of plateau and power law: ln q0 and the plateau's level."""
-    log_q0, level = float(x[end]) - 0.2, 0.0
+    log_q0 = float(x[end]) - 0.2
+    level = 0.0
     for _ in range(20):
-        flat, fall = x < log_q0 - 0.1, x > log_q0 + 0.15
+        flat = x < log_q0 - 0.1
+        fall = x > log_q0 + 0.15
         if flat.sum() < 2 or fall.sum() < 4:
             return None
         level = float(y[flat].mean())

@@ -176,7 +176,8 @@ class OneSpectrum:
         Power 0 is the mean square height (nm^2), 2 the mean square slope, 4 that of the Laplacian
         (1/nm^2). Of the waves at q (1/nm) the share `counted` enters."""
         psd = self.psd if psd is None else psd
-        start, end = float(low or self.q[0]), min(high, self.q[-1])
+        start = float(low or self.q[0])
+        end = min(high, self.q[-1])
         if end <= start:
             return np.zeros(psd.shape[:-1])
         below = 2 * np.pi * psd[..., 0] * start ** (power + 2) / (power + 2) if low == 0 else 0.0
@@ -229,7 +230,8 @@ class OneSpectrum:
 
         Curvature is half the RMS Laplacian, the mean of both principal ones.
         """
-        drawn, first = self.draws(places=False), self.first
+        drawn = self.draws(places=False)
+        first = self.first
         result = {}
         for name, power, factor, unit in (
             ("rms", 0, 1.0, "nm"),
@@ -270,15 +272,18 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     values = np.concatenate([entry[2] for entry in measured])
     weight = 1 / np.concatenate([entry[3] for entry in measured])
     owner = np.concatenate([np.full(len(entry[1]), k) for k, entry in enumerate(measured)])
-    m, places = len(bands), len(measured)
+    m = len(bands)
+    places = len(measured)
     system = np.zeros((len(values), m + places))
     system[np.arange(len(values)), index] = 1.0
     system[np.arange(len(values)), m + owner] = 1.0
-    normal, right = system.T @ (weight[:, None] * system), system.T @ (weight * values)
+    normal = system.T @ (weight[:, None] * system)
+    right = system.T @ (weight * values)
     # standard deviation of the change of slope times the band's width, from band to band
     bends = np.diff(np.eye(m), 2, axis=0) / 0.35
     normal[:m, :m] += bends.T @ bends
-    unseen, width = int(np.searchsorted(bands, seen.min())), np.log(10) / BANDS_PER_DECADE
+    unseen = int(np.searchsorted(bands, seen.min()))
+    width = np.log(10) / BANDS_PER_DECADE
     first = min(measured, key=lambda entry: entry[1][0])
     slope, error = unseen_slope(first[1] * width, *first[2:])
     rise = np.diff(np.eye(m), axis=0)[:unseen] / width
@@ -347,8 +352,11 @@ def unseen_slope(
     ----------
     log_q, log_psd, variance : ln q, ln C and the variance of ln C of the bands of the longest
         measurement."""
-    end, possible = slice(None, BANDS_PER_DECADE // 2), np.linspace(-4.0, 0.0, 33)
-    q, level, weight = log_q[end], log_psd[end], 1 / variance[end]
+    end = slice(None, BANDS_PER_DECADE // 2)
+    possible = np.linspace(-4.0, 0.0, 33)
+    q = log_q[end]
+    level = log_psd[end]
+    weight = 1 / variance[end]
     q = q - weight @ q / weight.sum()
     precision = float(weight @ q**2)
     away = possible - np.clip(weight * q @ level / precision, -4.0, 0.0)

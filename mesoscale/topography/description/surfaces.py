@@ -65,7 +65,8 @@ def levels_and_tilts(spectra: Sequence[TrustedSpectrum]) -> dict[str, tuple[Arra
     )
     x = number * np.log(10) / BANDS_PER_DECADE
     x = x - np.average(x, weights=1 / variance)
-    film, places = np.eye(len(count))[index], np.eye(len(bands))[owner]
+    film = np.eye(len(count))[index]
+    places = np.eye(len(bands))[owner]
     mean_free = np.eye(len(bands)) - 1 / len(bands)
     estimates = {}
     for name, parts in (("level", [film, places]), ("tilt", [film, places, places * x[:, None]])):
@@ -85,15 +86,18 @@ def best_cut(values: Array, covariance: Array) -> Cut:
     """
     n = len(values)
     order = np.argsort(values)
-    values, covariance = values[order], covariance[np.ix_(order, order)]
+    values = values[order]
+    covariance = covariance[np.ix_(order, order)]
     below = np.arange(1, n)
     above = n - below
     # sums over the first j values, and of the blocks of the covariance that a cut behind them makes
-    summed, squares = np.cumsum(values), float(values @ values)
+    summed = np.cumsum(values)
+    squares = float(values @ values)
     low = np.cumsum(np.cumsum(covariance, axis=0), axis=1).diagonal()[:-1]
     across = np.cumsum(covariance.sum(axis=1))[:-1] - low
     high = covariance.sum() - low - 2 * across
-    first, second = summed[:-1], summed[-1] - summed[:-1]
+    first = summed[:-1]
+    second = summed[-1] - summed[:-1]
     apart = second / above - first / below
     within = squares - first**2 / below - second**2 / above
     expected = np.trace(covariance) - low / below - high / above

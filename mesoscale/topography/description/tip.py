@@ -114,7 +114,9 @@ def _mean_lifts(radius_nm: float, fitted: LikelihoodFit, end: float) -> Array:
 
 def _gain(image: Array, lifts: Array) -> float:
     """ln of what the tip made of C, from the heights of an image (nm at each of `Z`)."""
-    surface, lift, scale = image, np.zeros_like(image), LIFT.amplitudes
+    surface = image
+    lift = np.zeros_like(image)
+    scale = LIFT.amplitudes
     for _ in range(4):
         steepness = np.maximum(np.gradient(surface, Z), 0.0)
         left = _covariance(surface, surface) / _covariance(image, image)
@@ -131,7 +133,8 @@ def _smooth(heights: Array) -> Array:
     """The best sum of Hermite polynomials up to the third, rising: tables of few grains are
     rough.
     """
-    root, shapes = np.sqrt(WEIGHT), np.stack([np.ones_like(Z), Z, Z**2 - 1, Z**3 - 3 * Z])
+    root = np.sqrt(WEIGHT)
+    shapes = np.stack([np.ones_like(Z), Z, Z**2 - 1, Z**3 - 3 * Z])
     share = np.linalg.lstsq((shapes * root).T, heights * root, rcond=None)[0]
     return np.maximum.accumulate(share @ shapes)
 

@@ -24,14 +24,17 @@ PASSED = 0.15
 """Share of C that a filter passes at the end of what is trusted. Up to there G is known to 30 %, on
 made maps.
 """
-STEEPEST, OVER = -8.5, 1.3
+STEEPEST = -8.5
+OVER = 1.3
 """d ln C / d ln q, over this ratio of wave vectors, that no measured map has."""
 FIRST_SHELL, SHELLS = 4.0, 4.0  # the first, and how many apart at least: single ones scatter
 WIDTH, LAST = (
     0.12,
     0.95,
 )  # of means, and of the Nyquist wave vector, where waves that a computer made may end
-POWERS, WALL = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 40.0), 6.0  # from a Gaussian to a wall
+# from a Gaussian to a wall
+POWERS = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 40.0)
+WALL = 6.0
 NEAR = 2.5  # times below its end a fall is compared with a straight one: a knee lies further away
 CREASED = 5.0  # -d ln C / d ln q of creases: a filter leaves less, all the way to the end
 SLOPES = (1.5, CREASED)  # of -d ln C / d ln q of roughness
@@ -115,7 +118,8 @@ def _roughness_left(heights: np.ndarray) -> float:
     fourth = second[1:-1] - (second[:-2] + second[2:]) / 2
     tall = np.abs(heights - np.median(heights))
     usual = (tall < 4 * np.median(tall))[2:-2]
-    second, fourth = second[1:-1][usual], fourth[usual]
+    second = second[1:-1][usual]
+    fourth = fourth[usual]
     middle = float(np.median(np.abs(second - np.median(second))))
     return float(np.median(np.abs(fourth - np.median(fourth)))) / middle if middle > 0 else np.inf
 
@@ -134,7 +138,8 @@ def restored(spectrum: Spectrum, treated: Treatment, rms_nm: float) -> tuple[Spe
 
 def _fall(spectrum: Spectrum) -> Treatment | None:
     """A filter by the fall of a spectrum."""
-    q, log_psd = spectrum.q, np.log(spectrum.psd)
+    q = spectrum.q
+    log_psd = np.log(spectrum.psd)
     last = LAST * spectrum.nyquist / (1 + WIDTH) / OVER
     starts = np.geomspace(
         FIRST_SHELL * spectrum.spacing, max(last, FIRST_SHELL * spectrum.spacing), 100
@@ -150,7 +155,8 @@ def _fall(spectrum: Spectrum) -> Treatment | None:
     first = int(np.argmax(falls))
     goes_on = [*(slopes[first:] < -CREASED), False]  # up to the first side lobe
     steepest = first + int(np.argmin(slopes[first : first + int(np.argmin(goes_on))]))
-    start, end = float(starts[first]), float(ends[steepest])
+    start = float(starts[first])
+    end = float(ends[steepest])
     beyond = (q > end) & (q < LAST * spectrum.nyquist)
     rest = log_psd[beyond] + CREASED * np.log(q[beyond] / start)
     if len(rest) and np.mean(rest) > low[first] - 0.5:  # the fall behind the peak of a pattern
@@ -182,7 +188,8 @@ def _steepens(u: np.ndarray, level: np.ndarray) -> bool:
     filter?
     """
     near = u > 1 / NEAR
-    log_u, level = np.log(u[near]), level[near]
+    log_u = np.log(u[near])
+    level = level[near]
     straight = level - np.polyval(np.polyfit(log_u, level, 1), log_u)
     bent = min(_fitted(u[near], level, power)[0] for power in POWERS)
     return bool(bent < 0.5 * (straight @ straight))
@@ -201,7 +208,8 @@ def _fitted(u: np.ndarray, level: np.ndarray, power: float) -> tuple[float, floa
     """Squared misfit, strength and power of ln C = a - s ln u - strength u^power, s within
     `SLOPES`.
     """
-    log_u, fall = np.log(u), u**power
+    log_u = np.log(u)
+    fall = u**power
     system = np.stack([np.ones_like(u), -log_u, -fall], axis=1)
     level_at_end, slope, strength = np.linalg.lstsq(system, level, rcond=None)[0]
     if not SLOPES[0] <= slope <= SLOPES[1]:

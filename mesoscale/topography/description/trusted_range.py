@@ -122,7 +122,8 @@ class TrustedSpectrum:
     def corrected_psd(self) -> np.ndarray:
         """(m,) C with the tip's bias taken out, nm^4; meaningful inside the trusted range."""
         q, psd = self.spectrum.q, self.spectrum.psd
-        smooth, bias = _smooth(psd, q), np.zeros_like(q)
+        smooth = _smooth(psd, q)
+        bias = np.zeros_like(q)
         for _ in range(5):
             bias = tip_bias(curvature(self.tip_radius_nm, q, smooth, np.exp(bias)))
         return psd * np.exp(bias)
@@ -171,11 +172,9 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
 def trusted_map(cleaned: Scan, measured: Measurement) -> TrustedSpectrum:
     """Spectrum of a cleaned scan within what its instrument shows."""
     white = (measured.noise_nm or 0.0) ** 2 * float(np.prod(cleaned.pixel_nm)) / (2 * np.pi) ** 2
-    spectrum, rms_nm, shortest_nm = (
-        hann_spectrum(cleaned),
-        cleaned.rms_nm,
-        measured.shortest_wave_nm,
-    )
+    spectrum = hann_spectrum(cleaned)
+    rms_nm = cleaned.rms_nm
+    shortest_nm = measured.shortest_wave_nm
     raw = measured.data
     treated = treatment_of(raw, cleaned, spectrum) if isinstance(raw, Scan) else None
     if treated is not None:
@@ -184,7 +183,8 @@ def trusted_map(cleaned: Scan, measured: Measurement) -> TrustedSpectrum:
     limits = trusted_range(
         cleaned.name, spectrum, measured.tip_radius_nm, rms_nm, shortest_nm, white
     )
-    side_nm, form = float(np.sqrt(np.prod(cleaned.lengths_nm))), form_share(cleaned.heights_nm)
+    side_nm = float(np.sqrt(np.prod(cleaned.lengths_nm)))
+    form = form_share(cleaned.heights_nm)
     return replace(limits, side_nm=side_nm, form=form, treatment=treated.kind if treated else "")
 
 
@@ -251,7 +251,8 @@ def trusted_profile(cleaned: Profile, measured: Measurement) -> TrustedSpectrum:
     InputError : hardly a wave between the ends of what is trusted.
     """
     k, c1 = line_spectrum(cleaned)
-    nyquist, radius = np.pi / cleaned.step_nm, measured.tip_radius_nm
+    nyquist = np.pi / cleaned.step_nm
+    radius = measured.tip_radius_nm
     low = (
         (TRUST.lowest_wave_bow if cleaned.bow else TRUST.lowest_wave)
         * 2
@@ -272,7 +273,8 @@ def trusted_profile(cleaned: Profile, measured: Measurement) -> TrustedSpectrum:
     spectrum = isotropic_spectrum(cleaned, low, reach)
     curved = curvature(radius, spectrum.q, spectrum.psd)
     if blunt := _first("tip", spectrum.q, curved > TRUST.curved):
-        limit, high = "tip", blunt["tip"]
+        limit = "tip"
+        high = blunt["tip"]
         _check_span(cleaned, low, high, limit)
         # what the tip has taken beyond would pull the waves below down with it
         reach = float(spectrum.q[curved < TRUST.most_curved][-1])
@@ -328,5 +330,6 @@ def _windowed_mean(
     side: Literal["left", "right"],
 ) -> np.ndarray:
     total = np.concatenate([[0.0], np.cumsum(values)])
-    first, last = np.searchsorted(q, low), np.searchsorted(q, high, side=side)
+    first = np.searchsorted(q, low)
+    last = np.searchsorted(q, high, side=side)
     return (total[last] - total[first]) / (last - first)

@@ -114,7 +114,8 @@ def measured_part(scan: Scan) -> Scan:
     lines = heights.shape[1]
     if len(measured) < 2 or len(measured) == lines:
         return scan
-    first, last = measured[0], measured[-1] + 1
+    first = measured[0]
+    last = measured[-1] + 1
     repeated = float(
         np.mean((same & ~empty)[first:last] & (np.ptp(heights, axis=0) != 0)[first:last])
     )
@@ -123,7 +124,8 @@ def measured_part(scan: Scan) -> Scan:
             f"{scan.name}: {repeated:.0%} of the scan lines repeat the line before: the map was"
             " enlarged after it was measured; give it as it was measured"
         )
-    kept, steps = np.array(heights[:, first:last], dtype=float), scan.steps
+    kept = np.array(heights[:, first:last], dtype=float)
+    steps = scan.steps
     if last - first < lines:
         steps = (
             *steps,
@@ -194,7 +196,8 @@ def alignment_effect(scan: Scan, settings: TopographySettings) -> tuple[float, f
     heights = np.where(np.isfinite(scan.heights_nm), scan.heights_nm, np.nan)
     heights, _ = levelled(heights, settings)
     aligned = heights - _line_medians(heights)
-    before, after = float(np.nanstd(heights)), float(np.nanstd(aligned))
+    before = float(np.nanstd(heights))
+    after = float(np.nanstd(aligned))
     if min(before, after) == 0:
         return 0.0, 0.0
     centred = [z - np.nanmean(z) for z in (heights, aligned)]
@@ -242,16 +245,19 @@ def form_share(heights: np.ndarray) -> float:
     much is form.
     """
     rest = heights - fitted_trend(heights, order=2)
-    before, after = float(np.nanvar(heights)), float(np.nanvar(rest))
+    before = float(np.nanvar(heights))
+    after = float(np.nanvar(rest))
     return float(np.log(before / after)) if after > 0 else 0.0
 
 
 def cut_off_share(heights: np.ndarray) -> float:
     """Share of pixels at the very highest or lowest value; 0 where all heights are equal."""
-    top, bottom = np.nanmax(heights), np.nanmin(heights)
+    top = np.nanmax(heights)
+    bottom = np.nanmin(heights)
     if top == bottom:
         return 0.0
-    at_top, at_bottom = np.mean(heights == top), np.mean(heights == bottom)
+    at_top = np.mean(heights == top)
+    at_bottom = np.mean(heights == bottom)
     return float(max(at_top, at_bottom))
 
 
@@ -260,7 +266,8 @@ def fitted_trend(heights: np.ndarray, order: int) -> np.ndarray:
     out.
     """
     nx, ny = heights.shape
-    x, y = np.linspace(-1, 1, nx), np.linspace(-1, 1, ny)
+    x = np.linspace(-1, 1, nx)
+    y = np.linspace(-1, 1, ny)
     powers = [(0, 0), (1, 0), (0, 1), *([(2, 0), (1, 1), (0, 2)] if order >= 2 else [])]
     x, y = (
         np.stack([u**k for k in range(2 * order + 1)]) for u in (x, y)

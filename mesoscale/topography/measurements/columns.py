@@ -138,7 +138,8 @@ def _by_order(where: str, values: np.ndarray) -> tuple[list[int], int]:
 def _runs_with(first: np.ndarray, second: np.ndarray) -> bool:
     """Is one column a linear function of the other?"""
     known = np.isfinite(first) & np.isfinite(second)
-    first, second = first[known], second[known]
+    first = first[known]
+    second = second[known]
     if len(first) < 3 or np.ptp(first) == 0 or np.ptp(second) == 0:
         return False
     fitted = np.polyval(np.polyfit(second, first, 1), second)

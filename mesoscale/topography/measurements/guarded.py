@@ -37,7 +37,8 @@ def guarded(path: Path, read: Callable[[], Any]) -> Any:
         raise InputError(f"{path}: {size_MB:.0f} MB; at most 4000 MB are accepted: crop the scan")
     # measured: 6 s and 2.6 GB for a map of 8192² pixels (512 MB), 9 s and 0.8 GB for one of 4096²
     # as text (147 MB)
-    cpu_s, memory_MB = min(CPU_S + size_MB, 50.0), min(MEMORY_MB + 20.0 * size_MB, 16000.0)
+    cpu_s = min(CPU_S + size_MB, 50.0)
+    memory_MB = min(MEMORY_MB + 20.0 * size_MB, 16000.0)
     with tempfile.TemporaryDirectory(
         prefix="asperity-"
     ) as folder:  # ours: the process may be killed

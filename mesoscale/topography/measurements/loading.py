@@ -95,7 +95,8 @@ def load_measurements(
         physical size or
         unit; a container of several surfaces.
     """
-    path, settings = Path(path), settings or TopographySettings()
+    path = Path(path)
+    settings = settings or TopographySettings()
     if not os.path.isfile(path):  # unlike Path.is_file, False for a name that is too long
         raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
     if is_of_the_system(path):
@@ -162,7 +163,8 @@ def _alone(path: Path, file: Path, name: str, settings: TopographySettings) -> M
     file : what is read: the same, or what was packed in it.
     """
     instrument = _instrument(path.name, settings)
-    where, head = str(path), _head_of(file)
+    where = str(path)
+    head = _head_of(file)
     wanted = instrument.channel or settings.channel
     if named := foreign(file, head, by_name=False):
         raise InputError(named.replace(str(file), where, 1))
@@ -218,7 +220,8 @@ def _of_channels(
     instrument: InstrumentSettings,
 ) -> Measurement:
     """The measurement of the channel of heights that a reader of SurfaceTopography finds."""
-    where, head = str(path), _head_of(file)
+    where = str(path)
+    head = _head_of(file)
     try:
         reader = opened(file, head)
     except InputError as error:
@@ -250,10 +253,8 @@ def _of_channels(
         whole = _tried(where, lambda: channel.topography(**given))
         below = np.asarray(_tried(where, whole.heights))[lost]
         if len(np.unique(below[np.isfinite(below)])) > 1:  # what is missing has one value
-            topography, marked = (
-                whole,
-                f"{MARKED} {lost.mean():.1%} of the pixels, which have heights: kept them",
-            )
+            topography = whole
+            marked = f"{MARKED} {lost.mean():.1%} of the pixels, which have heights: kept them"
     steps = (
         f"read channel {channel.name}",
         *note,
@@ -272,7 +273,8 @@ def _word_steps(text: Text | None) -> tuple[str, ...]:
     }
     if text is None or not said:
         return ()
-    most, count = max(said, key=lambda word: said[word]), sum(said.values())
+    most = max(said, key=lambda word: said[word])
+    count = sum(said.values())
     share = count / (len(text.rows) * text.width)
     return (
         f"{STAND_INS} {share:.2%} of the values ({count}), which are words such as {most[:20]!r}",

@@ -116,14 +116,17 @@ def _jumps(heights: np.ndarray, marked: np.ndarray) -> bool:
     """Does the surface jump where it meets these points? A plateau it meets as it meets any other
     point.
     """
-    steps, met = [], []
+    steps = []
+    met = []
     for axis in range(heights.ndim):
         step = np.abs(np.diff(heights, axis=axis))
         first, second = (np.take(marked, range(k, k + step.shape[axis]), axis) for k in (0, 1))
         steps.append(step[~first & ~second])
         met.append(step[first ^ second])
-    usual, across = np.concatenate(steps), np.concatenate(met)
-    usual, across = usual[np.isfinite(usual)], across[np.isfinite(across)]
+    usual = np.concatenate(steps)
+    across = np.concatenate(met)
+    usual = usual[np.isfinite(usual)]
+    across = across[np.isfinite(across)]
     if not len(usual) or not len(across):
         return False
     return bool(np.median(across) > JUMP * np.quantile(usual, 0.9))
@@ -178,7 +181,8 @@ def _largest_rectangle(known: np.ndarray) -> tuple[slice, slice]:
 
     Row by row, each column is as high as what is true above it; a stack finds the largest rectangle
     under these."""
-    best, largest = 0, (slice(0, 0), slice(0, 0))
+    best = 0
+    largest = (slice(0, 0), slice(0, 0))
     high = np.zeros(known.shape[1], dtype=int)
     for row, line in enumerate(known):
         high = np.where(line, high + 1, 0)

@@ -39,7 +39,9 @@ def on_grid(
     InputError : no regular grid, or too few points on it.
     """
     known = np.isfinite(x) & np.isfinite(y)
-    x, y, z = x[known], y[known], z[known]
+    x = x[known]
+    y = y[known]
+    z = z[known]
     if len(x) < 4:
         raise InputError(f"{where}: {len(x)} points with a position; give a map")
     if min(np.ptp(x), np.ptp(y)) <= 0:

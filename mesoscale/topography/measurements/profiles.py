@@ -133,7 +133,8 @@ def _from_above(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, t
     turn = int(np.argmax(np.abs(x - x[0])))  # the far end of the way there
     there = steps[:turn] * np.sign(x[turn] - x[0])
     if abs(x[turn] - x[0]) > 0.9 * np.ptp(x) and (there >= 0).all() and turn < 0.8 * len(x):
-        x, z = x[: turn + 1], z[: turn + 1]
+        x = x[: turn + 1]
+        z = z[: turn + 1]
         order = np.argsort(x, kind="stable")
         return x[order], z[order], (f"{THERE_AND_BACK}: took the {len(x)} points of the way there",)
     back = int(np.count_nonzero(forth < 0))
@@ -169,7 +170,8 @@ def clean_profile(profile: Profile, settings: TopographySettings) -> Profile:
         raise InputError(
             f"{profile.name}: all heights are equal; this is no measurement of a surface"
         )
-    heights, steps = profile.heights_nm - profile.heights_nm.mean(), profile.steps
+    heights = profile.heights_nm - profile.heights_nm.mean()
+    steps = profile.steps
     if settings.detrend != "none":
         x = np.linspace(-1, 1, len(heights))
         line, parabola = (
@@ -181,7 +183,9 @@ def clean_profile(profile: Profile, settings: TopographySettings) -> Profile:
         elif (
             settings.detrend == "auto" and form > 3.5
         ):  # 400 lines across C ~ q^-4 without a plateau reach 3.3
-            heights, note, profile = parabola, form_step(form), replace(profile, bow=True)
+            heights = parabola
+            note = form_step(form)
+            profile = replace(profile, bow=True)
         else:
             heights, note = line, "subtracted a line"
         steps = (*steps, note)

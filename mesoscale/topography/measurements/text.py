@@ -130,7 +130,8 @@ def text_of(raw: bytes) -> Text | None:
     places, rows, width = _rows(lines, separator, comma)
     if not places:
         return None
-    first, last = places[0], places[-1]
+    first = places[0]
+    last = places[-1]
     others = set(range(first, min(last + 2, len(lines)))) - set(
         places
     )  # a line more: the last may be cut
@@ -176,12 +177,14 @@ def _layout(lines: Sequence[str]) -> tuple[str | None, bool]:
     ]  # past most of a header
     if _one_column(sample):
         return None, True
-    best, layout = 0.0, (None, False)
+    best = 0.0
+    layout = (None, False)
     for comma in (False, True):
         for separator in SEPARATORS:
             score = _understood(sample, separator, comma)
             if score > best:
-                best, layout = score, (separator, comma)
+                best = score
+                layout = (separator, comma)
     return layout
 
 
@@ -235,7 +238,8 @@ def _rows(
             words += [""] * (width - len(words))  # the last values are missing
         if len(words) == width:
             kept[place] = words
-    first, last = min(kept), max(kept)
+    first = min(kept)
+    last = max(kept)
     for place, words in others.items():  # a row of words alone, among rows of numbers
         may_be_lost = len(words) == width and (width > 3 or width == 1 or len(set(words)) == 1)
         if (
