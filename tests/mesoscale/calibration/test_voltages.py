@@ -108,7 +108,7 @@ def test_switches_that_stuck_are_rough_ones(prior, cycles):
     posterior = model.posterior([sticking(20, 20)])
     x = posterior.inputs(posterior.draw().z)
     assert np.quantile(x[:, 6], 0.05) > 7.0
-    assert posterior.simulated(x[:1], np.random.default_rng(1)).parts[0].stuck[0] > 10
+    assert posterior.simulated(x[:1], np.random.default_rng(1)).data[0].stuck[0] > 10
 
 
 def test_voltages_that_no_switch_has_are_refused(switches):
