@@ -93,15 +93,19 @@ def test_fields_are_described_in_one_form():
     for path in CODE:
         lines = path.read_text(encoding="utf-8").splitlines()
         for record in filter(_is_record, ast.walk(ast.parse("\n".join(lines)))):
-            pairs = pairwise([*record.body, record])
-            fields = [pair for pair in pairs if isinstance(pair[0], ast.AnnAssign)]
-            explained = [field for field, below in fields if isinstance(below, ast.Expr)]
-            choices = bool(fields) and all(field.value is not None for field, _ in fields)
-            whole = len(explained) == len(fields) and "Attributes" not in ast.get_docstring(record)
-            wrong = [] if choices and whole else explained
-            wrong += [field for field, _ in fields if "#" in lines[field.lineno - 1]]
-            uses += [
-                f"{path.relative_to(ROOT)}:{field.lineno}: {record.name}.{ast.unparse(field.target)}"
-                for field in wrong
+            pairs = list(pairwise([*record.body, record]))
+            fields = [field for field, _ in pairs if isinstance(field, ast.AnnAssign)]
+            explained = [
+                field
+                for field, below in pairs
+                if isinstance(field, ast.AnnAssign) and isinstance(below, ast.Expr)
             ]
+            choices = bool(fields) and all(field.value is not None for field in fields)
+            listed = "Attributes" in (ast.get_docstring(record) or "")
+            wrong = explained
+            if choices and not listed and len(explained) == len(fields):
+                wrong = []
+            wrong += [field for field in fields if "#" in lines[field.lineno - 1]]
+            place = path.relative_to(ROOT)
+            uses += [f"{place}:{field.lineno}: {record.name}" for field in wrong]
     assert uses == []

@@ -47,13 +47,13 @@ def fit_voltages(model: PadModel, prior: InputTable) -> dict[str, Voltage]:
     ------
     InputError : too few of the switches have an answer, or let go.
     """
-    design = model.design
+    sampled = model.design
     solved = [model.points[k] for k in model.solved]
-    unmeasured = [k for k in design.varying if design.names[k] not in prior.names]
-    of_device = np.array([design.varies[k] == "each" for k in unmeasured], bool)
+    unmeasured = [k for k in sampled.varying if sampled.names[k] not in prior.names]
+    of_device = np.array([sampled.varies[k] == "each" for k in unmeasured], bool)
     inputs = np.array([[point.point.values[name] for name in prior.names] for point in solved])
     inputs = inputs.reshape(len(solved), -1)
-    probabilities = design.probability[model.solved][:, unmeasured]
+    probabilities = sampled.probability[model.solved][:, unmeasured]
     drawn = np.hstack([inputs, probabilities])
     unit_ranges = np.tile([0.0, 1.0], (len(unmeasured), 1))
     ranges = np.vstack([prior.ranges(), unit_ranges])
