@@ -51,7 +51,8 @@ class Distribution:
             return np.full_like(p, self.a)
         below = ndtr((self.low - self.a) / self.b)
         above = ndtr((self.high - self.a) / self.b)
-        return np.clip(self.a + self.b * ndtri(below + p * (above - below)), self.low, self.high)
+        values = self.a + self.b * ndtri(below + p * (above - below))
+        return np.clip(values, self.low, self.high)
 
     def scaled(self, factor: float) -> "Distribution":
         """The distribution of `factor` times the value."""
@@ -65,7 +66,9 @@ class Distribution:
 
         All of a bounded distribution; the central share of an unbounded one.
         """
-        share = central_share if self.kind == "normal" else 1.0
+        share = 1.0
+        if self.kind == "normal":
+            share = central_share
         low, high = self.quantile(np.array([(1 - share) / 2, (1 + share) / 2]))
         return float(low), float(high)
 
@@ -158,12 +161,10 @@ def correlation_matrix(names: list[str], pairs: dict[tuple[str, str], float]) ->
         i = names.index(first)
         j = names.index(second)
         matrix[i, j] = matrix[j, i] = rank
-    if (
-        np.linalg.eigvalsh(
-            2 * np.sin(np.pi / 6 * matrix) * (1 - np.eye(len(names))) + np.eye(len(names))
-        )[0]
-        <= 0
-    ):
+    # correlation of the normal variables behind the ranks (Pearson 1907)
+    identity = np.eye(len(names))
+    normal = 2 * np.sin(np.pi / 6 * matrix) * (1 - identity) + identity
+    if np.linalg.eigvalsh(normal)[0] <= 0:
         raise InputError(
             f"inputs.correlations: {', '.join(f'{a}-{b} {r:g}' for (a, b), r in pairs.items())}"
             " contradict one another (not positive definite); make them weaker"

@@ -39,9 +39,8 @@ class HardnessLaw(NamedTuple):
         base = self.h_macro + self.h_prime / np.sqrt(length)
         if not np.any(self.t_film):
             return base
-        return base + (self.h_film - base) / (
-            1.0 + self.k_film * (length / self.t_film) ** self.m_film
-        )
+        crossover = self.k_film * (length / self.t_film) ** self.m_film
+        return base + (self.h_film - base) / (1.0 + crossover)
 
     def scaled(self, factor: float) -> "HardnessLaw":
         """The law of a material with this share of the hardness."""

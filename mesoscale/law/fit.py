@@ -132,14 +132,9 @@ def fit_branch(
     ------
     InputError : arrays of unequal length or not finite.
     """
-    named = (
-        ("separation_nm", separation_nm),
-        ("repulsive_nN", repulsive_nN),
-        ("attractive_nN", attractive_nN),
-    )
-    h, repulsive, attractive = (
-        checked_array(f"law fit: {name}", x, name.rpartition("_")[2]) for name, x in named
-    )
+    h = checked_array("law fit: separation_nm", separation_nm, "nm")
+    repulsive = checked_array("law fit: repulsive_nN", repulsive_nN, "nN")
+    attractive = checked_array("law fit: attractive_nN", attractive_nN, "nN")
     if not (h.ndim == 1 and h.shape == repulsive.shape == attractive.shape):
         raise InputError(
             f"law fit: separation and forces have shapes {h.shape}, {repulsive.shape}, "
@@ -164,20 +159,16 @@ def fit_branch(
     f_r = np.interp(h_r, h, repulsive)
     rho, at_bound = _best_rho(depth, f_r)
     C_r = float(_prefactor(depth, f_r, np.array([rho]))[0][0])
-    covariance = _covariance(
-        depth, f_r, C_r, rho, C_a_var, points=min(int(inside.sum()), FIT.points)
-    )
-    residual = float(
-        np.sqrt(np.mean((f_r - C_r * np.expm1(depth / rho)) ** 2) + misfit_a**2) / scale
-    )
+    points = min(int(inside.sum()), FIT.points)
+    covariance = _covariance(depth, f_r, C_r, rho, C_a_var, points=points)
+    misfit_r = np.mean((f_r - C_r * np.expm1(depth / rho)) ** 2)
+    residual = float(np.sqrt(misfit_r + misfit_a**2) / scale)
 
     fit = LawFit(float(d_c_nm), C_a, C_r, rho, covariance, residual)
     if at_bound:
-        why = (
-            "the curve is a straight line, only C_r/rho_r is determined"
-            if at_bound > 0
-            else "a step at the end"
-        )
+        why = "a step at the end"
+        if at_bound > 0:
+            why = "the curve is a straight line, only C_r/rho_r is determined"
         return _without_repulsion(fit, f"not_identifiable: {why}")
     relative_error = np.sqrt(np.diag(covariance)[1:]) / np.array([C_r, rho])
     if not np.all(relative_error < FIT.largest_error):
@@ -207,8 +198,9 @@ def _fit_attraction(
     C_a = float(arm @ excess / (arm @ arm))
     misfit = excess - C_a * arm
     points = max(2, min(FIT.points, int((h <= top).sum())))
-    variance = float(np.mean(misfit**2) * len(grid) / (points - 1) / (arm @ arm))
-    return C_a, variance, float(np.sqrt(np.mean(misfit**2)))
+    square = np.mean(misfit**2)
+    variance = float(square * len(grid) / (points - 1) / (arm @ arm))
+    return C_a, variance, float(np.sqrt(square))
 
 
 def _prefactor(depth: Array, f: Array, rho: Array) -> tuple[Array, Array]:
@@ -233,7 +225,8 @@ def _best_rho(depth: Array, f: Array) -> tuple[float, int]:
     misfit = _prefactor(depth, f, np.exp(grid))[1]
     best = int(np.argmin(misfit))
     if best in (0, len(grid) - 1):
-        return float(np.exp(grid[best])), -1 if best == 0 else 1
+        side = -1 if best == 0 else 1
+        return float(np.exp(grid[best])), side
     left = grid[best - 1]
     right = grid[best + 1]
     for _ in range(9):  # each round shrinks the bracket 5-fold: 2e6 in all
@@ -265,14 +258,16 @@ def _covariance(
     return covariance
 
 
+def _plain(value: float) -> float | None:
+    """Six digits of a number; None of none."""
+    return float(f"{value:.6g}") if np.isfinite(value) else None
+
+
 def row_of(fit: LawFit) -> dict[str, Any]:
     """One row of law/parameters.csv (without run, seed and branch); the covariance as JSON."""
-    values = [
-        [float(f"{x:.6g}") if np.isfinite(x) else None for x in line] for line in fit.covariance
-    ]
-    return {
-        **{name: value for name, value in zip(PARAMETERS, fit.parameters.tolist(), strict=True)},
-        "covariance": json.dumps(values),
-        "residual": fit.residual,
-        "status": fit.status,
-    }
+    covariance = [[_plain(value) for value in line] for line in fit.covariance]
+    row: dict[str, Any] = dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True))
+    row["covariance"] = json.dumps(covariance)
+    row["residual"] = fit.residual
+    row["status"] = fit.status
+    return row

@@ -53,11 +53,9 @@ def periodic_part(heights: np.ndarray) -> np.ndarray:
     jumps[-1] -= heights[-1] - heights[0]
     jumps[:, 0] += heights[:, -1] - heights[:, 0]
     jumps[:, -1] -= heights[:, -1] - heights[:, 0]
-    laplace = (
-        2 * np.cos(2 * np.pi * np.fft.fftfreq(nx))[:, None]
-        + 2 * np.cos(2 * np.pi * np.fft.rfftfreq(ny))
-        - 4
-    )
+    wave_x = 2 * np.cos(2 * np.pi * np.fft.fftfreq(nx))[:, None]
+    wave_y = 2 * np.cos(2 * np.pi * np.fft.rfftfreq(ny))
+    laplace = wave_x + wave_y - 4
     laplace[0, 0] = 1.0
     smooth = np.asarray(scipy.fft.rfft2(jumps)) / laplace
     smooth[0, 0] = 0.0

@@ -42,7 +42,8 @@ class SpectrumSettings(Settings):
                 f"psd has {len(self.psd)} values, q has {len(self.q)}; accepted are lists of one"
                 " length"
             )
-        if any(later <= earlier for earlier, later in zip(self.q, self.q[1:], strict=False)):
+        pairs = zip(self.q, self.q[1:], strict=False)
+        if any(later <= earlier for earlier, later in pairs):
             raise ValueError("q is not in rising order")
         if (self.q0 is None) != (self.hurst is None):
             raise ValueError("q0 and hurst go together; give both or neither")

@@ -27,4 +27,6 @@ def full_chunks(runs: int) -> dict[str, tuple[int, int]]:
     """As `chunk_bounds`, the last of several chunks filled up, so that more runs leave every chunk
     as it is.
     """
-    return chunk_bounds(runs if runs <= CHUNK_RUNS else -(-runs // CHUNK_RUNS) * CHUNK_RUNS)
+    if runs > CHUNK_RUNS:
+        runs = -(-runs // CHUNK_RUNS) * CHUNK_RUNS
+    return chunk_bounds(runs)

@@ -44,7 +44,8 @@ def level1_response(y: Array, ranges: Array) -> Surrogate:
     lower = y[1::2]
     upper = y[2::2]
     constant = (1 - inputs / 3) * y[0] + (lower + upper).sum() / 6
-    degrees = np.vstack([np.zeros((1, inputs), int), np.eye(inputs, dtype=int)])
+    linear = np.eye(inputs, dtype=int)
+    degrees = np.vstack([np.zeros((1, inputs), int), linear])
     return Surrogate(ranges, degrees, np.concatenate([[constant], (upper - lower) / 2]))
 
 
@@ -54,4 +55,6 @@ def elementary_effects(y: Array) -> Array:
 
     With the nodes y0 in the middle, y1 and y2 at the ends, half the range apart: mu* = abs(y0 - y1)
     + abs(y2 - y0)."""
-    return np.abs(y[0] - y[1::2]) + np.abs(y[2::2] - y[0])
+    below = np.abs(y[0] - y[1::2])
+    above = np.abs(y[2::2] - y[0])
+    return below + above

@@ -25,7 +25,7 @@ def table2(
         scale = SCALE_TABLE_2.get(row["output"], 1.0)
         values[row["output"]] = (float(row["mean"]) * scale, float(row["dev"]) * scale)
     if exchanged:
-        values["delta_C_a"], values["delta_C_r"] = values["delta_C_r"], values["delta_C_a"]
+        values |= {"delta_C_a": values["delta_C_r"], "delta_C_r": values["delta_C_a"]}
     return values
 
 
@@ -44,7 +44,6 @@ def table3(
             if column == "parameter":
                 continue
             output = column if as_printed else EXCHANGED.get(column, column)
-            values.setdefault(output, {})[row["parameter"]] = float(text) * SCALE_TABLE_3.get(
-                column, 1.0
-            )
+            scale = SCALE_TABLE_3.get(column, 1.0)
+            values.setdefault(output, {})[row["parameter"]] = float(text) * scale
     return values

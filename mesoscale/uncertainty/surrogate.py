@@ -16,7 +16,8 @@ def legendre(u: Array, highest: int) -> Array:
     """
     values = [np.ones_like(u), u]
     for n in range(1, highest):
-        values.append(((2 * n + 1) * u * values[n] - n * values[n - 1]) / (n + 1))
+        rising = (2 * n + 1) * u * values[n]
+        values.append((rising - n * values[n - 1]) / (n + 1))
     return np.stack(values[: highest + 1])
 
 
@@ -32,7 +33,8 @@ def basis_matrix(u: Array, degrees: NDArray[np.int_]) -> Array:
     -------
     shape (m, terms).
     """
-    powers = legendre(np.ascontiguousarray(u.T), max(1, int(degrees.max(initial=0))))
+    highest = max(1, int(degrees.max(initial=0)))
+    powers = legendre(np.ascontiguousarray(u.T), highest)
     columns = np.ones((len(degrees), len(u)))
     # most terms are of one or two inputs
     for term, k in zip(*np.nonzero(degrees), strict=True):
@@ -47,7 +49,8 @@ def scaled(x: Array, ranges: Array) -> Array:
     low = ranges[:, 0]
     high = ranges[:, 1]
     width = high - low
-    return np.where(width > 0, 2 * (x - low) / np.where(width > 0, width, 1.0) - 1, 0.0)
+    divisor = np.where(width > 0, width, 1.0)
+    return np.where(width > 0, 2 * (x - low) / divisor - 1, 0.0)
 
 
 @dataclass(frozen=True)
@@ -70,10 +73,11 @@ class Surrogate:
 
     def __call__(self, x: Array) -> Array:
         """Output at inputs x of shape (m, n)."""
-        total = (
-            basis_matrix(scaled(np.atleast_2d(x), self.ranges), self.degrees) @ self.coefficients
-        )
-        return np.exp(total) if self.transform == "log" else total
+        matrix = basis_matrix(scaled(np.atleast_2d(x), self.ranges), self.degrees)
+        total = matrix @ self.coefficients
+        if self.transform == "log":
+            return np.exp(total)
+        return total
 
 
 @dataclass(frozen=True)
@@ -105,21 +109,20 @@ Response = Surrogate | Below
 
 def evaluate(responses: Sequence[Callable[[Array], Array] | None], x: Array) -> Array:
     """Responses at inputs x (m, n), shape (m, responses); NaN where there is no response."""
-    return np.stack(
-        [response(x) if response else np.full(len(x), np.nan) for response in responses], axis=1
-    )
+    columns = []
+    for response in responses:
+        columns.append(response(x) if response else np.full(len(x), np.nan))
+    return np.stack(columns, axis=1)
 
 
 def to_json(response: Response) -> dict[str, Any]:
     """The response as plain values; docs/uncertainty.md has a ten-line reader."""
-    surrogate = response.drop if isinstance(response, Below) else response
-    return {
-        **({"below": response.above_name} if isinstance(response, Below) else {}),
-        "transform": surrogate.transform,
-        "terms": [
-            {"degrees": degrees, "coefficient": coefficient}
-            for degrees, coefficient in zip(
-                surrogate.degrees.tolist(), surrogate.coefficients.tolist(), strict=True
-            )
-        ],
-    }
+    content: dict[str, Any] = {}
+    if isinstance(response, Below):
+        content["below"] = response.above_name
+        response = response.drop
+    content["transform"] = response.transform
+    degrees = response.degrees.tolist()
+    pairs = zip(degrees, response.coefficients.tolist(), strict=True)
+    content["terms"] = [{"degrees": term, "coefficient": value} for term, value in pairs]
+    return content
