@@ -1,6 +1,4 @@
-"""What the contact model takes: the inputs of Table 1, those of a film, and how uncertain inputs
-enter it.
-"""
+"""What the contact model takes: Table 1, a film, and how uncertain inputs enter it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -15,8 +13,7 @@ from mesoscale.settings.definitions import BY_NAME, RMS_SCATTER, definition
 
 @dataclass(frozen=True)
 class ContactInputs:
-    """The seven inputs of Table 1, and a film; their accepted ranges stand in
-    `mesoscale.settings.definitions`.
+    """The inputs of Table 1, and a film; ranges stand in `mesoscale.settings.definitions`.
 
     Attributes
     ----------
@@ -94,8 +91,7 @@ class FilmInputs(ContactInputs):
 def contact_of(
     values: Mapping[str, float], settings: ContactSettings
 ) -> tuple[ContactInputs, ContactSettings]:
-    """Contact inputs from values by name, and the settings with those inputs put in that replace
-    one of them.
+    """Contact inputs from values by name, and the settings with the inputs that replace one.
 
     Raises
     ------

@@ -1,6 +1,4 @@
-"""Distributions of the uncertain inputs: quantile function, support, and joint samples with
-correlation.
-"""
+"""Distributions of the uncertain inputs: quantiles, support, joint samples with correlation."""
 
 from dataclasses import dataclass, field
 
@@ -117,9 +115,7 @@ class InputTable:
         return [row.name for row in self.rows]
 
     def medians(self) -> dict[str, float]:
-        """Central values by name, in the inputs' units (the means, where a distribution is
-        symmetric).
-        """
+        """Central values by name, in the inputs' units (means of symmetric distributions)."""
         return {row.name: float(row.distribution.quantile(0.5)) for row in self.rows}
 
     def ranges(self) -> Array:
@@ -127,9 +123,7 @@ class InputTable:
         return np.array([row.distribution.span() for row in self.rows])
 
     def transform(self, unit_points: Array) -> Array:
-        """Points of the unit cube (m, n) to values of the inputs with their correlation (Gaussian
-        copula).
-        """
+        """Points of the unit cube (m, n) to correlated values of the inputs (Gaussian copula)."""
         if not np.array_equal(self.correlation, np.eye(len(self.rows))):
             from scipy.special import ndtr, ndtri
 

@@ -1,6 +1,4 @@
-"""The table of uncertain inputs in use (the paper's Table 1): each row from literature or from a
-stage.
-"""
+"""The table of uncertain inputs in use (Table 1): each row from literature or a stage."""
 
 import json
 import os
@@ -119,8 +117,7 @@ def film_table(
 
 
 def check_literature(settings: InputsSettings) -> dict[str, tuple[float, float]]:
-    """Check what needs no stage: the literature rows, priors among them, and the correlations that
-    the settings give.
+    """Check what needs no stage: literature rows, priors among them, and stated correlations.
 
     Returns
     -------
@@ -205,8 +202,7 @@ def stated_distribution(name: str, row: DistributionRow, section: str = "inputs"
 
 
 def joint_samples(rows: Mapping[str, InputRow]) -> dict[tuple[str, str], float]:
-    """Rank correlations of inputs whose samples stand in the same file, a row of it one joint
-    sample.
+    """Rank correlations of inputs whose samples stand in one file, a joint sample a row.
 
     Raises
     ------
@@ -358,7 +354,5 @@ def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
 
 
 def medians(rows: Iterable[Mapping[str, str]]) -> dict[str, float]:
-    """Central inputs by name (the means, where a distribution is symmetric) from the rows of
-    inputs.csv.
-    """
+    """Central inputs by name (means of symmetric distributions) from the rows of inputs.csv."""
     return from_rows(rows).medians()

@@ -62,9 +62,7 @@ def pressure(separation_nm: ArrayLike, law: Law) -> tuple[Array, Array]:
 
 
 def force(separation_nm: ArrayLike, law: Law, cell_area_nm2: float) -> tuple[Array, Array]:
-    """Attractive (negative) and repulsive force in nN on a cell of `cell_area_nm2` (1 GPa nm^2 = 1
-    nN).
-    """
+    """Attractive (negative) and repulsive force in nN on `cell_area_nm2` (1 GPa nm^2 = 1 nN)."""
     attractive, repulsive = pressure(separation_nm, law)
     return attractive * cell_area_nm2, repulsive * cell_area_nm2
 

@@ -15,8 +15,7 @@ QUANTILES = {"pressure_q05_GPa": 0.05, "pressure_q50_GPa": 0.5, "pressure_q95_GP
 
 
 def band_rows(columns: Mapping[str, Array], points: int = 301) -> Iterator[dict[str, Any]]:
-    """Rows of uq/law.csv: the pressure over samples of the law, branch by branch; positive:
-    repulsive.
+    """Rows of uq/law.csv: the pressure over samples of the law, by branch; positive: repulsive.
 
     Parameters
     ----------

@@ -1,6 +1,4 @@
-"""The scan is the judge: surfaces made from a description are pressed beside the measured scans
-themselves.
-"""
+"""The scan is the judge: surfaces made from a description are pressed beside the scans."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -121,8 +119,7 @@ def judge(
 
 
 def disagreeing(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """First contacts that are further from their description than the worst of so many scans is by
-    chance.
+    """First contacts further from their description than the worst of so many scans by chance.
 
     Parameters
     ----------
@@ -150,9 +147,7 @@ def testable(rows: Sequence[Mapping[str, Any]]) -> bool:
 
 
 def height_maps(scans: Sequence[Scan], count: int = 10) -> Iterator[tuple[float, ...]]:
-    """Maps of heights that few grains allow: from blocks of the scans drawn anew (bootstrap over
-    places).
-    """
+    """Maps of heights that few grains allow: blocks of the scans drawn anew (bootstrap)."""
     blocks = []
     cuts = 4
     for scan in scans:
@@ -229,8 +224,7 @@ def _judged(
 def _press(
     surface: Array, inputs: ContactInputs, contact: ContactSettings, cell_nm: float
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """RMS, first contact, separation at both pressures and area at the larger; nm, nm^2. Contact is
-    at the minima.
+    """RMS, first contact, separation at both pressures, area at the larger; nm, nm^2; at minima.
 
     Besides, for what is read at a load, the share of the cell in contact there.
     """

@@ -28,9 +28,7 @@ NOMINAL_LOADS_NN = (1e3, 3e3, 7e3, 1e4, 2e4, 5e4)
 
 
 def advised_grid(pixels: int) -> str:
-    """Advice for a message to take so many sites a side, up to its comma; empty where no grid may
-    have them.
-    """
+    """Advice for a message to take so many sites a side, up to its comma; empty beyond the most."""
     if pixels > MOST_PIXELS:
         return ""
     return f"contact.pixels >= {pixels}, "

@@ -86,9 +86,7 @@ class DistributionRow(Settings):
 
     @property
     def reaches(self) -> float | None:
-        """The largest number that it states as an end, or its mean; None of samples and of a
-        stage's distribution.
-        """
+        """The largest number that it states as an end, or its mean; None of samples or a stage."""
         place = {"uniform": 1, "log_uniform": 1, "truncated_normal": 3}.get(self.distribution, 0)
         if not isinstance(self.values, tuple):
             return None

@@ -14,9 +14,7 @@ counts.
 
 
 class SpectrumSettings(Settings):
-    """A spectrum by points instead of the form of eq. 9; only its shape counts, the RMS is that of
-    Table 1.
-    """
+    """A spectrum by points instead of eq. 9; only its shape counts, the RMS is that of Table 1."""
 
     q: tuple[Positive, ...] = key(
         ..., "wave vectors in rising order", "1/nm", min_length=2, max_length=10000

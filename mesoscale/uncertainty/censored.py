@@ -104,17 +104,13 @@ def most_likely(matrix: Array, y: Array, below: NDArray[np.bool_]) -> Censored:
 
 
 def _hazard(z: Array) -> Array:
-    """Normal density over distribution at z: how far below -z, in deviations, values below it are
-    on average.
-    """
+    """Normal density over distribution at z: deviations that values below -z lie below it."""
     log_density = -0.5 * z**2 - 0.5 * np.log(2 * np.pi)
     return np.exp(log_density - log_ndtr(z))
 
 
 def _maximum(known: Array, unknown: Array, values: Array) -> tuple[Array, float]:
-    """Most likely coefficients over the scatter, and one over the scatter, by the terms of known
-    and unknown values.
-    """
+    """Coefficients over the scatter, and one over the scatter, at the largest likelihood."""
     from scipy.optimize import minimize  # slow to import
 
     count = len(values)

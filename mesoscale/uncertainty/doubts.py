@@ -1,6 +1,4 @@
-"""Which outputs of the law are not to be trusted: those that responses explain too little, or
-against physics.
-"""
+"""Outputs of the law not to be trusted: explained too little by responses, or against physics."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -25,8 +23,7 @@ SHARES = np.array([0.1, 0.25, 0.5, 1.0])
 def explained(
     first: Array, second: Array, predicted: Array, rng: np.random.Generator
 ) -> dict[str, Any]:
-    """What a response explains of what the inputs can explain, by runs at equal inputs on two
-    surfaces each.
+    """What a response explains of what inputs can explain, by pairs of runs at equal inputs.
 
     The covariance of a pair about the mean is the variance that the inputs explain; about the
     prediction it is the mean square error of the response. Scatter between surfaces is in neither.
@@ -131,9 +128,7 @@ def _moved(base: Array, k: int, value: float) -> Array:
 
 
 def _separations(laws: Array, largest_GPa: float) -> Array:
-    """Separations (nm) at which laws (m, 4) repel with shares of a pressure, shape (m,
-    len(SHARES)).
-    """
+    """Separations (nm) at which laws (m, 4) repel with shares of a pressure, (m, len(SHARES))."""
     d_c, _, C_r, rho_r = laws.T[:, :, None]
     return d_c - rho_r * np.log1p(SHARES * largest_GPa / C_r)
 

@@ -17,9 +17,7 @@ EXCHANGED = {"C_a": "C_r", "C_r": "C_a"}
 def table2(
     rows: Iterable[Mapping[str, str]], exchanged: bool = False
 ) -> dict[str, tuple[float, float]]:
-    """Mean and deviation by output of config/paper/table2.csv; `exchanged` swaps delta_C_a and
-    delta_C_r.
-    """
+    """Mean and deviation by output of Table 2; `exchanged` swaps delta_C_a and delta_C_r."""
     values = {}
     for row in rows:
         scale = SCALE_TABLE_2.get(row["output"], 1.0)

@@ -44,9 +44,7 @@ class NodeOutputs:
 
 
 def to_paper_outputs(parameters: Array) -> Array:
-    """Closing and opening parameters (..., len(FITTED)) to closing parameters and their change,
-    same shape.
-    """
+    """Closing and opening parameters (..., len(FITTED)) to closing ones and their change."""
     closing = parameters[..., CLOSING]
     opening = parameters[..., OPENING]
     return np.concatenate([closing, opening - closing], axis=-1)
@@ -96,8 +94,7 @@ def exported_responses(
 def output_responses(
     exported: Sequence[Response | None], direct: Direct, ranges: Array
 ) -> list[Response | None]:
-    """Responses of the outputs of Table 2, behind indices and elementary effects, from the exported
-    ones.
+    """Responses of the outputs of Table 2, behind indices and effects, from the exported ones.
 
     A change on opening has a response of its own: as a small difference of two large numbers it
     would inherit the errors of both."""
@@ -141,9 +138,7 @@ class Propagation:
 
     @property
     def seed_share(self) -> Array:
-        """Share of the variance of each output of Table 2 that is scatter between seeds, shape
-        (len(OUTPUTS),).
-        """
+        """Share of seeds' scatter in the variance of each output of Table 2, (len(OUTPUTS),)."""
         with np.errstate(invalid="ignore", divide="ignore"):
             return self.variances[1] / self.variances.sum(axis=0)
 
@@ -178,8 +173,7 @@ def propagate(
 
 
 def linear_outputs(values: Array, ranges: Array, x: Array) -> Array:
-    """Closing and opening parameters at inputs x (m, n) by the paper's linear responses, shape (m,
-    len(FITTED)).
+    """Closing and opening parameters at x (m, n) by the paper's linear responses, (m, len(FITTED)).
 
     Parameters
     ----------
@@ -198,8 +192,7 @@ def output_rows(
     paper: Mapping[str, tuple[float, float]],
     paper_exchanged: Mapping[str, tuple[float, float]],
 ) -> list[dict[str, Any]]:
-    """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of
-    seeds.
+    """Rows of uq/outputs.csv: Table 2 beside the paper's, in units of the scatter of seeds.
 
     mean and dev are the paper's method; response_* are those of the exported responses, averaged
     over random surfaces; cell_* those of the direct runs, each a cell of its own."""

@@ -114,9 +114,7 @@ class Sampled:
 
     @property
     def variation(self) -> float:
-        """Coefficient of variation of the probability, from the scatter between the runs; 0 of one
-        run.
-        """
+        """Coefficient of variation of the probability between the runs; 0 of one run."""
         if self.estimates.size < 2 or not self.estimates.any():
             return 0.0
         relative = self.estimates.std(ddof=1) / self.estimates.mean()
@@ -130,9 +128,7 @@ class Sampled:
 def _interval(
     value: float, variation: float, freedom: int, confidence: float
 ) -> tuple[float, float]:
-    """Interval of a lognormal estimate whose coefficient of variation was found with so many
-    degrees of freedom.
-    """
+    """Interval of a lognormal estimate, its variation known with so many degrees of freedom."""
     from scipy.special import stdtrit  # Student's quantile
 
     factor = stdtrit(max(freedom, 1), 0.5 + 0.5 * confidence)
@@ -152,8 +148,7 @@ def sample_event(
     samples: int = SAMPLES,
     repeats: int = REPEATS,
 ) -> Sampled:
-    """Subset simulation of the event that mean + deviation x (a standard normal number) is not
-    above the threshold.
+    """Subset simulation of: mean + deviation x (standard normal) is not above the threshold.
 
     Parameters
     ----------
@@ -182,9 +177,7 @@ def sample_event(
 def _simulate(
     moments: Moments, dimension: int, threshold: float, seed: int, samples: int
 ) -> tuple[float, Array]:
-    """Probability and points of one run of subset simulation; 0 and none where the event is not
-    met.
-    """
+    """Probability and points of one run of subset simulation; 0 and none without an event."""
     with needs("uncertainty"):
         import openturns as ot
 
@@ -224,8 +217,7 @@ def rates_given(
     draws: int = 400,
     inner: int = 100,
 ) -> Array:
-    """Probability of the event by what is common to all devices, for so many draws of it, shape
-    (draws,).
+    """Probability of the event by what is common to all devices, per draw of it, (draws,).
 
     The error of the response is one unknown for all devices too: each draw has its own, mean +
     deviation x (a standard normal number). The numbers of each device are drawn about the likeliest
@@ -250,8 +242,8 @@ def rates_given(
         return mean + deviation * error - threshold
 
     if common.all():
-        alone = reserve(np.empty((draws, 1, 0)))
-        return (alone[:, 0] <= 0.0).astype(float)
+        single = reserve(np.empty((draws, 1, 0)))
+        return (single[:, 0] <= 0.0).astype(float)
     likeliest = np.zeros((draws, 1, int((~common).sum())))
     for _ in range(3):
         x = rng.normal(size=(draws, inner, likeliest.shape[2]))

@@ -1,6 +1,4 @@
-"""Runs of the contact model: which inputs and seed each has, computing them, and the law of
-each.
-"""
+"""Runs of the contact model: inputs and seed of each, computing them, and the law of each."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -101,8 +99,7 @@ def monte_carlo(
     seed: int = 1,
     progress: Callable[[float, str], None] | None = None,
 ) -> MonteCarlo:
-    """Close and open `samples` random surfaces, each with its own draw of the inputs, and fit the
-    law to each.
+    """Close and open `samples` random surfaces, each with a draw of the inputs; fit the law.
 
     Samples whose cycle or fit failed are left out and counted. More samples extend fewer ones of
     the same seed.

@@ -1,6 +1,4 @@
-"""Which input matters: elementary effects (the paper's Table 3) and Sobol' indices with
-intervals.
-"""
+"""Which input matters: elementary effects (Table 3) and Sobol' indices with intervals."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -127,8 +125,7 @@ def sensitivity_rows(
 def index_intervals(
     responses: Sequence[Response | None], direct: Direct, table: InputTable
 ) -> tuple[Array, Array]:
-    """First-order and total indices of the outputs: estimate, lower and upper end, shape (3,
-    len(OUTPUTS), n).
+    """First-order and total indices: estimate, lower and upper end, (3, len(OUTPUTS), n).
 
     Parameters
     ----------
@@ -171,9 +168,7 @@ def response_indices(points: Array, responses: Sequence[Response | None]) -> Arr
 
 
 def _refitted(responses: Sequence[Response | None], x: Array, y: Array) -> list[Surrogate | None]:
-    """The regression responses with their terms kept and their coefficients fitted to other
-    runs.
-    """
+    """The regression responses with their terms and coefficients fitted to other runs."""
     again: list[Surrogate | None] = []
     for k, response in enumerate(responses):
         if not isinstance(response, Surrogate):

@@ -11,9 +11,7 @@ Array = NDArray[np.float64]
 
 
 def legendre(u: Array, highest: int) -> Array:
-    """Legendre polynomials P_0 .. P_highest (P_n(1) = 1), shape (highest + 1, ...) with that of
-    u.
-    """
+    """Legendre polynomials P_0 .. P_highest (P_n(1) = 1), (highest + 1, ...) of u."""
     values = [np.ones_like(u), u]
     for n in range(1, highest):
         rising = (2 * n + 1) * u * values[n]
@@ -43,9 +41,7 @@ def basis_matrix(u: Array, degrees: NDArray[np.int_]) -> Array:
 
 
 def scaled(x: Array, ranges: Array) -> Array:
-    """Inputs (m, n), of ranges (n, 2), in -1 .. 1, and beyond where they leave them; an input of no
-    width gives 0.
-    """
+    """Inputs (m, n), of ranges (n, 2), in -1 .. 1 and beyond; an input of no width gives 0."""
     low = ranges[:, 0]
     high = ranges[:, 1]
     width = high - low
@@ -55,8 +51,7 @@ def scaled(x: Array, ranges: Array) -> Array:
 
 @dataclass(frozen=True)
 class Surrogate:
-    """y = transform( sum_t coefficient_t prod_k P_{degree_tk}(u_k) ), u = 2 (x - low)/(high - low)
-    - 1.
+    """y = transform( sum_t coefficient_t prod_k P_{degree_tk}(u_k) ), u = -1 .. 1 over the range.
 
     Attributes
     ----------
@@ -82,8 +77,7 @@ class Surrogate:
 
 @dataclass(frozen=True)
 class Below:
-    """y = above - drop, a response that nowhere exceeds another one: the drop is the exponential of
-    a sum.
+    """y = above - drop, which nowhere exceeds `above`: the drop is the exponential of a sum.
 
     Attributes
     ----------

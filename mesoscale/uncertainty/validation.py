@@ -1,6 +1,4 @@
-"""Responses against direct cycles: bias of mean and deviation, errors, Q², and what makes an output
-doubtful.
-"""
+"""Responses against direct cycles: bias, errors, Q², and what makes an output doubtful."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
@@ -29,9 +27,7 @@ Array = NDArray[np.float64]
 def direct_runs_of_rows(
     rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int
 ) -> Direct:
-    """Inputs (m, n) and parameters (m, len(FITTED)) of the first `count` runs; NaN where
-    missing.
-    """
+    """Inputs (m, n) and parameters (m, len(FITTED)) of the first `count` runs; NaN if missing."""
     rows = list(islice(rows, count))
     inputs = np.array([[float(row[name]) for name in names] for row in rows])
     outputs = np.array([[_number(row[name]) for name in FITTED] for row in rows])
@@ -45,8 +41,7 @@ def _number(text: str) -> float:
 
 
 def held_out_predictions(direct: Direct, ranges: Array, settings: UncertaintySettings) -> Array:
-    """Closing and opening parameters of every direct run by responses that never saw it, shape (m,
-    len(FITTED)).
+    """Parameters of every direct run by responses that never saw it, (m, len(FITTED)).
 
     The responses are fitted anew, terms and coefficients, without each fifth of the runs (five-fold
     cross-validation)."""
