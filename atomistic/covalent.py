@@ -54,7 +54,8 @@ def tersoff_table(parameters: Tersoff) -> str:
         r = elements[k]
         inner = np.sqrt(p.R * r.R)
         outer = np.sqrt(p.S * r.S)
-        attraction = np.sqrt(p.B * q.B) * chi.get(frozenset((i, j)), 1.0)
+        strength = chi.get(frozenset((i, j)), 1.0)
+        attraction = np.sqrt(p.B * q.B) * strength
         numbers = [3, 1, 0, p.c, p.d, p.h, p.n, p.beta, (p.mu + q.mu) / 2, attraction]
         numbers += [(inner + outer) / 2, (outer - inner) / 2]
         numbers += [(p.lambda_ + q.lambda_) / 2, np.sqrt(p.A * q.A)]

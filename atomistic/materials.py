@@ -385,13 +385,13 @@ def load_materials(folder: str | Path) -> dict[str, Material]:
         same formula."""
     paths = sorted(Path(folder).glob("*.yaml"))
     materials = {path.stem: load_material(path) for path in paths}
-    kept: dict[str, Path] = {}
+    owners: dict[str, Path] = {}
     for path, material in zip(paths, materials.values(), strict=True):
         glass = [f"oxide glass {material.formula_text}"] if material.oxide_glass else []
         for thing in [*(f"crystal {name}" for name in material.crystals), *glass]:
-            if thing in kept:
-                raise InputError(f"{path}: {thing} stands in {kept[thing]} too; keep one")
-            kept[thing] = path
+            if thing in owners:
+                raise InputError(f"{path}: {thing} stands in {owners[thing]} too; keep one")
+            owners[thing] = path
     return materials
 
 

@@ -41,10 +41,9 @@ class Morse(_Sourced):
 
     def energy_and_slope(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         decay = np.exp(-self.a_1_per_A * (r - self.r0_A))
-        return (
-            self.D_eV * ((1 - decay) ** 2 - 1),
-            2 * self.D_eV * self.a_1_per_A * (1 - decay) * decay,
-        )
+        energy = self.D_eV * ((1 - decay) ** 2 - 1)
+        slope = 2 * self.D_eV * self.a_1_per_A * (1 - decay) * decay
+        return energy, slope
 
 
 class Power(_Sourced):
@@ -163,10 +162,8 @@ class Potential(Settings):
 
         def bare(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             screened = erfc(alpha * x) / x
-            return (
-                screened,
-                screened / x + 2 * alpha / np.sqrt(np.pi) * np.exp(-((alpha * x) ** 2)) / x,
-            )
+            gaussian = np.exp(-((alpha * x) ** 2))
+            return screened, screened / x + 2 * alpha / np.sqrt(np.pi) * gaussian / x
 
         value, force = bare(r)
         value_c, force_c = bare(np.array([r_c]))
@@ -182,10 +179,9 @@ class Potential(Settings):
         energy_scale : factor on every energy and force; 0.5 gives the twin with halved energies.
         """
         title = f"{' '.join(self.description.split())}; energies x {energy_scale}"
-        sections: dict[str, EnergyAndForce] = {
-            f"{first}_{second}": partial(self.energy_and_force, first, second)
-            for first, second in combinations_with_replacement(elements, 2)
-        }
+        sections: dict[str, EnergyAndForce] = {}
+        for first, second in combinations_with_replacement(elements, 2):
+            sections[f"{first}_{second}"] = partial(self.energy_and_force, first, second)
         return pair_table(title, sections, self.cutoff_A, energy_scale)
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
@@ -237,8 +233,8 @@ def pair_table(
     r = np.sqrt(np.linspace(TABLE_START_A**2, cutoff_A**2, points))
     lines = io.StringIO()
     lines.write(f"# {title}; eV, Angstrom\n")
-    for name, of in {**sections, "contact": contact_energy_and_force}.items():
-        energy, force = of(r)
+    for name, law in {**sections, "contact": contact_energy_and_force}.items():
+        energy, force = law(r)
         lines.write(f"\n{name}\nN {points} RSQ {TABLE_START_A} {cutoff_A}\n\n")
         rows = np.column_stack(
             [np.arange(1, points + 1), r, energy_scale * energy, energy_scale * force]
@@ -275,11 +271,11 @@ def load_potential(path: str | Path) -> Potential:
 
 
 def _check(path: Path, potential: Potential) -> None:
-    named = {
-        potential.coulomb.source,
-        *(name for ion in potential.species.values() for name in (ion.source, ion.mass_source)),
-        *(term.source for pair in potential.pairs for term in pair.terms),
-    }
+    named = {potential.coulomb.source}
+    for ion in potential.species.values():
+        named |= {ion.source, ion.mass_source}
+    for pair in potential.pairs:
+        named |= {term.source for term in pair.terms}
     if unknown := sorted(named - set(potential.sources)):
         raise InputError(f"{path}: source {unknown[0]!r} is used but not listed under `sources`")
     seen: set[frozenset[str]] = set()

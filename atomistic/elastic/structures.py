@@ -79,11 +79,8 @@ def relaxed_structure(
             done = Relaxation(failure=f"relaxation: {error}")
     atoms = strained(quenched if done.failure else atoms, 0.0)
     verdict = examine(atoms, criteria)
-    reasons = [
-        *verdict.reasons,
-        *filter(None, [done.failure]),
-        *no_insulator(done.gap_eV, criteria),
-    ]
+    failures = [done.failure] if done.failure else []
+    reasons = [*verdict.reasons, *failures, *no_insulator(done.gap_eV, criteria)]
     return Structure(atoms, calculator, verdict, done, tuple(reasons))
 
 
@@ -105,10 +102,13 @@ def trusted_moduli(
             reasons = [*filter(None, [row["flags"]]), *gates[row["structure"]]["reasons"]]
             B = float(row["B_GPa"] or "nan")
             error = float(row["B_error_GPa"] or "nan")
-            moduli.append(
-                Modulus(row["structure"], row["xc"], B, not reasons, "; ".join(reasons), error)
-            )
+            why = "; ".join(reasons)
+            moduli.append(Modulus(row["structure"], row["xc"], B, not reasons, why, error))
     return moduli
+
+
+NESTED = ("relaxation", "gate", "provenance")
+"""Entries of a report that are no columns of a table."""
 
 
 def structure_rows(
@@ -117,18 +117,13 @@ def structure_rows(
     """Rows of elastic/structures.csv from the structures' reports and the number of quenches each
     one took.
     """
-    return [
-        {
-            **{
-                key: value
-                for key, value in report.items()
-                if key not in ("relaxation", "gate", "provenance")
-            },
-            **report["relaxation"],
-            "quenches": count,
-            "status": "accepted"
-            if report["gate"]["passed"]
-            else "rejected: " + "; ".join(report["gate"]["reasons"]),
-        }
-        for report, count in zip(reports, quenches, strict=True)
-    ]
+    rows = []
+    for report, count in zip(reports, quenches, strict=True):
+        row = {key: value for key, value in report.items() if key not in NESTED}
+        row |= report["relaxation"]
+        row["quenches"] = count
+        row["status"] = "accepted"
+        if not report["gate"]["passed"]:
+            row["status"] = "rejected: " + "; ".join(report["gate"]["reasons"])
+        rows.append(row)
+    return rows

@@ -31,7 +31,8 @@ def cut_asperity(glass: Atoms, tiles: int, amplitude_A: float, base_A: float, se
     rng = np.random.default_rng(np.random.SeedSequence([seed, 3]))
     shifted = np.mod(glass.positions_A + rng.uniform(0, 1, 3) * glass.cell_A, glass.cell_A)
     repeats = (np.arange(tiles), np.arange(tiles), np.arange(-below, above))
-    offsets = np.stack(np.meshgrid(*repeats, indexing="ij"), axis=-1).reshape(-1, 3)
+    offsets = np.stack(np.meshgrid(*repeats, indexing="ij"), axis=-1)
+    offsets = offsets.reshape(-1, 3)
     positions = (shifted[None] + (offsets * glass.cell_A)[:, None]).reshape(-1, 3)
     positions[:, 2] += base_A
     types = np.tile(glass.types, len(offsets))
@@ -71,6 +72,5 @@ def remove_strays(atoms: Atoms, formula: np.ndarray) -> Atoms:
     are no surface.
     """
     height = atoms.positions_A[:, 2]
-    return neutralise(
-        atoms.take(height <= float(np.partition(height, -TOP_ATOMS)[-TOP_ATOMS]) + 2.5), formula
-    )
+    eighth = float(np.partition(height, -TOP_ATOMS)[-TOP_ATOMS])
+    return neutralise(atoms.take(height <= eighth + 2.5), formula)

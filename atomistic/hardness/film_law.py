@@ -76,9 +76,9 @@ class FilmPoints(NamedTuple):
     length_nm: np.ndarray
     stress_GPa: np.ndarray
 
-    def take(self, kept: np.ndarray) -> "FilmPoints":
+    def take(self, chosen: np.ndarray) -> "FilmPoints":
         """Some of the points."""
-        return FilmPoints(*(column[kept] for column in self))
+        return FilmPoints(*(column[chosen] for column in self))
 
     @property
     def film(self) -> np.ndarray:
@@ -110,7 +110,7 @@ def points_of(
         if point["sound"] == "True" and float(point["energy_scale"]) == 1.0:
             thickness = float(point["film_nm"]) if point["film_nm"] else np.inf
             stresses = mean_stresses(curves[point["run"]], float(point["wavelength_nm"]))
-            rows += [(float(point["seed"]), thickness, *of) for of in stresses]
+            rows += [(float(point["seed"]), thickness, *mean) for mean in stresses]
     return FilmPoints(*np.array(rows).reshape(-1, 4).T)
 
 
@@ -120,15 +120,15 @@ def mean_stresses(
     """Mean contact length (nm) and stress (GPa) in every bin of length, while the contact is
     judged.
     """
-    length, stress = (
-        np.array([row[f"contact_{key}"] for row in curve]) for key in ("length_nm", "stress_GPa")
-    )
+    length = np.array([row["contact_length_nm"] for row in curve])
+    stress = np.array([row["contact_stress_GPa"] for row in curve])
     widest = RULES.max_area_fraction**0.5 * wavelength_nm
     means = []
     for low in np.arange(RULES.min_length_nm, widest, FILM_FIT.bin_nm):
-        here = (length >= low) & (length < min(low + FILM_FIT.bin_nm, widest)) & (stress > 0)
-        if here.any():
-            means.append((float(np.mean(length[here])), float(np.mean(stress[here]))))
+        end = min(low + FILM_FIT.bin_nm, widest)
+        inside = (length >= low) & (length < end) & (stress > 0)
+        if inside.any():
+            means.append((float(np.mean(length[inside])), float(np.mean(stress[inside]))))
     return means
 
 
@@ -190,7 +190,8 @@ def fit(name: str, points: FilmPoints) -> np.ndarray:
         foretold = law(np.exp(logs), points.length_nm, points.thickness_nm)
         return np.log(foretold / points.stress_GPa)
 
-    solution = least_squares(misfit, np.log(start), bounds=(np.log(1e-3), np.log(50.0)))
+    bounds = (np.log(1e-3), np.log(50.0))
+    solution = least_squares(misfit, np.log(start), bounds=bounds)
     if not solution.success:
         raise InputError(
             f"hardness: the law {name} of films does not settle in {solution.nfev} steps; give more"
@@ -206,8 +207,8 @@ def left_out(name: str, points: FilmPoints) -> float:
     The laws without film are fitted to the other films, `film` to oxide and base besides. Seeds are
     averaged."""
 
-    def foretell(others: FilmPoints, at: FilmPoints) -> np.ndarray:
-        return LAWS[name][0](fit(name, others), at.length_nm, at.thickness_nm)
+    def foretell(fitted: FilmPoints, points_left: FilmPoints) -> np.ndarray:
+        return LAWS[name][0](fit(name, fitted), points_left.length_nm, points_left.thickness_nm)
 
     return error_left_out(points, foretell, name == "film")
 
@@ -225,11 +226,11 @@ def error_left_out(
     errors = []
     for thickness in np.unique(points.thickness_nm[points.film]):
         same = points.thickness_nm == thickness
-        at = points.take(same)
-        wrong = np.log(
-            foretell(points.take(~same & (points.film | knows_bodies)), at) / at.stress_GPa
-        )
-        errors += [float(np.mean(wrong[at.bin == one])) for one in np.unique(at.bin)]
+        points_left = points.take(same)
+        predicted = foretell(points.take(~same & (points.film | knows_bodies)), points_left)
+        wrong = np.log(predicted / points_left.stress_GPa)
+        bins = points_left.bin
+        errors += [float(np.mean(wrong[bins == number])) for number in np.unique(bins)]
     return float(np.sqrt(np.mean(np.square(errors))))
 
 
@@ -247,25 +248,26 @@ def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
     high = np.array([*np.log(high[:3]), high[3]])
     drawn, weights = _weighed(points, rng.uniform(low, high, (FILM_FIT.trials, 4)))
     counts = drawn[weights > FILM_FIT.negligible]
-    drawn, weights = _weighed(
-        points, rng.uniform(counts.min(axis=0), counts.max(axis=0), drawn.shape)
-    )
-    kept = drawn[rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())]
-    return np.column_stack([np.exp(kept[:, :3]), kept[:, 3]])
+    narrowed = rng.uniform(counts.min(axis=0), counts.max(axis=0), drawn.shape)
+    drawn, weights = _weighed(points, narrowed)
+    picks = rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())
+    chosen = drawn[picks]
+    return np.column_stack([np.exp(chosen[:, :3]), chosen[:, 3]])
 
 
 def _weighed(points: FilmPoints, drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Draws of ln H_film, ln H_base, ln k and m, shape (n, 4), with their likelihoods over the
     largest.
     """
-    _, run = np.unique(
-        np.column_stack([points.seed, points.thickness_nm]), axis=0, return_inverse=True
-    )
-    per_run = np.bincount(run.ravel())
+    runs = np.column_stack([points.seed, points.thickness_nm])
+    _, run = np.unique(runs, axis=0, return_inverse=True)
+    run = run.ravel()
+    per_run = np.bincount(run)
     values = np.vstack([np.exp(drawn[:, :3].T), drawn[:, 3]])
     misfits = np.zeros((per_run.size, len(drawn)))
-    for of, _, thickness, length, stress in zip(run.ravel(), *points, strict=True):
-        misfits[of] += np.log(film(values, length, thickness) / stress) / per_run[of]
+    for number, _, thickness, length, stress in zip(run, *points, strict=True):
+        misfit = np.log(film(values, length, thickness) / stress)
+        misfits[number] += misfit / per_run[number]
     squares = (misfits**2).sum(axis=0)
     return drawn, (squares / squares.min()) ** (-per_run.size / 2)
 
@@ -294,18 +296,17 @@ def fit_films(
     and in `film` what the runs say of the base, how well each law foretells a thickness that its
     fit had not, and the range of L/t."""
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
-    unsound = [
-        {"run": point["run"], "status": point["status"]}
-        for point in points
-        if point["sound"] != "True"
-    ]
+    unsound = []
+    for point in points:
+        if point["sound"] != "True":
+            unsound.append({"run": point["run"], "status": point["status"]})
     sound = len(points) - len(unsound)
     if sound < FIT_RULES.least_share * len(points):
         reasons.append(
             f"only {sound} of {len(points)} runs are sound (gate {FIT_RULES.least_share:.0%})"
         )
-    of = points_of(points, curves)
-    if few := too_few(of):
+    stresses = points_of(points, curves)
+    if few := too_few(stresses):
         reasons.append(few)
     throughout = [point for point in points if point["sound"] == "True" and not point["film_nm"]]
     slopes = steepness(throughout) if throughout else {}
@@ -326,12 +327,11 @@ def fit_films(
     if few:
         return result
     rng = np.random.default_rng(np.random.SeedSequence([43]))
-    draws = likely(of, rng)
-    shared = rng.normal(size=(2, FILM_FIT.draws)) * [
-        [np.linalg.norm([area_error / 3**0.5, *SYSTEMATIC.values()])],
-        [FILM_FIT.bond],
-    ]
-    draws *= np.exp([shared[0], shared[0], shared[1], 0 * shared[1]]).T
+    draws = likely(stresses, rng)
+    errors = [area_error / 3**0.5, *SYSTEMATIC.values()]
+    scatters = [[np.linalg.norm(errors)], [FILM_FIT.bond]]
+    of_area, of_bond = rng.normal(size=(2, FILM_FIT.draws)) * scatters
+    draws *= np.exp([of_area, of_area, of_bond, 0 * of_bond]).T
     h_film, base, k, m = draws.T
     scales = scales_of(throughout)
     if energies == "measured":
@@ -342,20 +342,17 @@ def fit_films(
         high = scales[-1]
         h_film *= rng.choice(scales, len(h_film))
     result["energies"] = [low, high]
+    with_h_film = {"h_film": spearman(h_film, k)}
+    with_both = {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}
     result["inputs"] = {
         "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
-        "k_film": samples_of(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},
-        "m_film": (
-            samples_of(m, "1")
-            | {"correlation": {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}}
-        ),
+        "k_film": samples_of(k, "1") | {"correlation": with_h_film},
+        "m_film": samples_of(m, "1") | {"correlation": with_both},
     }
+    ratio = stresses.length_over_thickness
     result["film"] = {
         "base_GPa": summary(base),
-        "left_out": {name: left_out(name, of) for name in LAWS},
-        "length_over_thickness": [
-            float(of.length_over_thickness.min()),
-            float(of.length_over_thickness.max()),
-        ],
+        "left_out": {name: left_out(name, stresses) for name in LAWS},
+        "length_over_thickness": [float(ratio.min()), float(ratio.max())],
     }
     return result

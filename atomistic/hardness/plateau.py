@@ -154,11 +154,9 @@ def plastic_onset(
     exposure = float(np.sum(travel[before]))
     background = float(np.sum(new[before])) / exposure
     expected = background * travel
-    limit = (
-        expected + np.maximum(rules.min_exchanges, 2 * np.sqrt(expected))
-        if by_bonds
-        else np.zeros(len(new))
-    )
+    limit = np.zeros(len(new))
+    if by_bonds:
+        limit = expected + np.maximum(rules.min_exchanges, 2 * np.sqrt(expected))
     lowering -= lowering[apart][-1]
     lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= rules.min_lowering_A
     onsets = np.flatnonzero((new >= limit) & lasting & ~apart)
@@ -239,25 +237,24 @@ def find_hardness(
     start = onset.displacement_nm
     if start is None:
         return Hardness("no_yield", **measured)
-    beyond = window & (travel >= start)
+    yielded = window & (travel >= start)
     last = witness[-1]
+    after = [row["new_exchanges"] for row in witness if row["displacement_nm"] >= start]
     measured |= {
         "onset_displacement_nm": start,
         "onset_length_nm": float(np.interp(start, travel, length)),
         "exchanges_at_onset": onset.exchanges,
         "onset_p_value": onset.p_value,
-        "exchanges_after": float(
-            np.mean([row["new_exchanges"] for row in witness if row["displacement_nm"] >= start])
-        ),
+        "exchanges_after": float(np.mean(after)),
         "lowering_nm": float(last["lowering_nm"]),
     }
-    if np.sum(beyond) < rules.min_points:
+    if np.sum(yielded) < rules.min_points:
         return Hardness(
             "rejected: too few averages between onset and the end of the window", **measured
         )
-    first = 0 if on_base else settled(stress[beyond])
-    plateau = stress[beyond][first:]
-    lengths = length[beyond][first:]
+    first = 0 if on_base else settled(stress[yielded])
+    plateau = stress[yielded][first:]
+    lengths = length[yielded][first:]
     exponent = _exponent(lengths, plateau)
     low, high = interval_of_mean(plateau)
     measured |= {
@@ -332,14 +329,11 @@ def point(curve: Rows, witness: Rows, run: Mapping[str, Any], potential: str) ->
     )
     if run["film_nm"] and (fault := film_fault(run)):
         hardness = replace(hardness, status=f"rejected: {fault}", sound=False)
-    return {
-        "run": run["run"],
-        "potential": potential,
-        **{key: run[key] for key in copied},
-        "atom_steps": run["atoms"] * run["steps"],
-        "lammps_cpu_s": run["lammps_cpu_s"],
-        **asdict(hardness),
-    }
+    row = {"run": run["run"], "potential": potential}
+    row |= {key: run[key] for key in copied}
+    row["atom_steps"] = run["atoms"] * run["steps"]
+    row["lammps_cpu_s"] = run["lammps_cpu_s"]
+    return row | asdict(hardness)
 
 
 def film_fault(summary: Mapping[str, Any], rules: Rules = RULES) -> str | None:
@@ -386,8 +380,10 @@ def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
     from scipy.special import stdtrit
 
     effective = _effective_number(values)
-    half = float(stdtrit(effective - 1, 0.84)) * float(np.std(values, ddof=1)) / np.sqrt(effective)
-    return float(np.mean(values)) - half, float(np.mean(values)) + half
+    student = float(stdtrit(effective - 1, 0.84))
+    half = student * float(np.std(values, ddof=1)) / np.sqrt(effective)
+    mean = float(np.mean(values))
+    return mean - half, mean + half
 
 
 def settled(stress: np.ndarray) -> int:
@@ -401,7 +397,9 @@ def settled(stress: np.ndarray) -> int:
         _effective_number(stress[start:]) for start in range(len(stress) // RULES.latest_start + 1)
     ]
     best = int(np.argmax(independent))
-    return best if independent[best] > RULES.clearly_more * independent[0] else 0
+    if independent[best] <= RULES.clearly_more * independent[0]:
+        return 0
+    return best
 
 
 def _effective_number(values: np.ndarray) -> float:

@@ -80,9 +80,8 @@ class Stack:
         """
         below = self.base.below_films
         end = np.array([self.oxide.cutoff_A])
-        morse = Morse(
-            term="morse", **below.bonds[pair].model_dump(), source=below.source, confidence="low"
-        )
+        parameters = below.bonds[pair].model_dump()
+        morse = Morse(term="morse", **parameters, source=below.source, confidence="low")
         (energy, slope) = morse.energy_and_slope(r)
         (energy_end, slope_end) = morse.energy_and_slope(end)
         return energy - energy_end - slope_end * (r - end), slope_end - slope
@@ -97,7 +96,9 @@ def base_of(material: Material) -> Base:
     InputError : nothing is known of films on the material.
     """
     material.part("film_base")
-    return Metal(material) if material.eam is not None else Network(material)
+    if material.eam is not None:
+        return Metal(material)
+    return Network(material)
 
 
 def check_ions(base: Material, ions: Iterable[str]) -> None:
@@ -165,12 +166,9 @@ def lay(
     x, y, z = film.positions_A.T
     floor = base_A + GAP_A + profile(x, y, float(film.cell_A[0]), amplitude_A)
     film = neutralise(film.take(z > floor), formula_of(glass))
-    return Atoms(
-        (*base.elements, *film.elements),
-        np.concatenate([below.types, film.types + len(base.elements)]),
-        np.concatenate([below.positions_A, film.positions_A]),
-        film.cell_A,
-    )
+    types = np.concatenate([below.types, film.types + len(base.elements)])
+    positions_A = np.concatenate([below.positions_A, film.positions_A])
+    return Atoms((*base.elements, *film.elements), types, positions_A, film.cell_A)
 
 
 def cut_base(
@@ -211,9 +209,11 @@ def film_properties(
     beneath = (
         near & ~film & (z > z[near & ~film].max() - 6.0)
     )  # its way is compared with that of the film
-    slid = np.median(moved[near & film], axis=0) - np.median(moved[beneath], axis=0)
+    film_moved = np.median(moved[near & film], axis=0)
+    slid = film_moved - np.median(moved[beneath], axis=0)
+    gaps = (low - top)[both]
     return {
         "covered_share": float(np.mean(np.isfinite(low))),
-        "gap_95_A": float(np.quantile((low - top)[both], 0.95)),
+        "gap_95_A": float(np.quantile(gaps, 0.95)),
         "slid_A": float(np.hypot(*slid)),
     }

@@ -92,33 +92,27 @@ def gap_cutoff(
     by_work = combined_cutoffs_nm(top for tops in runs.values() for top in tops)[1]
     logs = np.log(by_run[:, 1])
     rng = np.random.default_rng(0)
-    errors = (
-        mean_over_glasses(logs, [glasses[run] for run in runs], FIT_RULES.samples, rng)
-        - logs.mean()
-    )
+    of_runs = [glasses[run] for run in runs]
+    errors = mean_over_glasses(logs, of_runs, FIT_RULES.samples, rng) - logs.mean()
     follow = rng.normal(*FOLLOW, FIT_RULES.samples)
     rim = np.exp(rng.uniform(-RIM_ERROR, RIM_ERROR, FIT_RULES.samples))
     cutoffs = by_work * np.exp(errors) * follow * rim
-    return {
-        **samples_of(cutoffs, "nm"),
-        "runs": [
-            {"run": run, "snapshots": len(tops), "by_force_nm": force, "by_work_nm": work}
-            for (run, tops), (force, work) in zip(runs.items(), by_run.tolist(), strict=True)
-        ],
-    }
+    rows = []
+    for (run, tops), (force, work) in zip(runs.items(), by_run.tolist(), strict=True):
+        row = {"run": run, "snapshots": len(tops), "by_force_nm": force, "by_work_nm": work}
+        rows.append(row)
+    return {**samples_of(cutoffs, "nm"), "runs": rows}
 
 
 def tops_of(witness: Sequence[Mapping[str, float]]) -> list[TopAttraction]:
     """Tops of the snapshots of a run with a contact; rows of `Closing.witness`."""
-    return [
-        TopAttraction(
-            100 * row["top_area_nm2"],
-            row["top_force_over_hamaker"] / 10,
-            row["top_work_over_hamaker"],
-        )
-        for row in witness
-        if row["top_area_nm2"] > 0
-    ]
+    tops = []
+    for row in witness:
+        if row["top_area_nm2"] > 0:
+            force = row["top_force_over_hamaker"] / 10
+            work = row["top_work_over_hamaker"]
+            tops.append(TopAttraction(100 * row["top_area_nm2"], force, work))
+    return tops
 
 
 def mean_over_glasses(
@@ -146,14 +140,14 @@ def mean_over_glasses(
     weights = 1 / (of_runs**2 * (ratio**2 + 1 / runs))
     total = weights.sum(axis=-1)
     centre = weights @ means / total
-    logs = 0.5 * (np.log(weights) - weights * (means - centre[..., None]) ** 2).sum(
-        axis=-1
-    ) - 0.5 * np.log(total)
+    squares = weights * (means - centre[..., None]) ** 2
+    logs = 0.5 * (np.log(weights) - squares).sum(axis=-1) - 0.5 * np.log(total)
     logs += (-freedom * np.log(of_runs) - 0.5 * within / of_runs**2)[..., 0]
     logs += (np.log(ratio) - np.log1p(ratio**2))[..., 0]  # even steps of the logarithm
     shares = np.exp(logs - logs.max()).ravel()
     chosen = rng.choice(shares.size, count, p=shares / shares.sum())
-    return centre.ravel()[chosen] + rng.normal(size=count) / np.sqrt(total.ravel()[chosen])
+    error = rng.normal(size=count) / np.sqrt(total.ravel()[chosen])
+    return centre.ravel()[chosen] + error
 
 
 def combined_cutoffs_nm(tops: Iterable[TopAttraction]) -> tuple[float, float]:
@@ -201,11 +195,11 @@ def attract_top(
         return float(shares @ _pull(gap + depths, contact))
 
     gaps = np.arange(0.5 * contact, 3 * contact, STEP_A)
-    rest = _lowest(energy, gaps)
-    apart = np.arange(rest, 3 * contact, STEP_A)
+    resting = _lowest(energy, gaps)
+    apart = np.arange(resting, 3 * contact, STEP_A)
     strongest = _lowest(lambda gap: -pull(gap), apart)
     of_hamaker = 1 / (6 * np.pi * density_per_A3)
-    return TopAttraction(area_A2, of_hamaker * pull(strongest), -of_hamaker * energy(rest))
+    return TopAttraction(area_A2, of_hamaker * pull(strongest), -of_hamaker * energy(resting))
 
 
 @lru_cache
@@ -236,7 +230,8 @@ def bulk_density_per_A3(positions_A: np.ndarray, area_A2: float) -> float:
     """
     heights = positions_A[:, 2] - positions_A[:, 2].min()
     low, high = 6.0, 18.0  # above the frozen bottom's lowest atom: glass without a surface
-    return float(np.sum((heights >= low) & (heights < high)) / (area_A2 * (high - low)))
+    inside = (heights >= low) & (heights < high)
+    return float(np.sum(inside) / (area_A2 * (high - low)))
 
 
 def _energy(distances_A: np.ndarray, contact_A: float) -> np.ndarray:
