@@ -166,8 +166,8 @@ def _closest(centre, lattice, mesh, i, j, radius):
     in_plane = lattice[0] * (i / mesh[0]) + lattice[1] * (j / mesh[1])
     origin = in_plane - centre
     s2 = step[0] ** 2 + step[1] ** 2 + step[2] ** 2
-    along = origin[0] * step[0] + origin[1] * step[1] + origin[2] * step[2]
-    closest = -along / s2
+    projection = origin[0] * step[0] + origin[1] * step[1] + origin[2] * step[2]
+    closest = -projection / s2
     distance2 = origin[0] ** 2 + origin[1] ** 2 + origin[2] ** 2 - closest * closest * s2
     room = radius * radius - distance2
     if room <= 0.0:
@@ -193,8 +193,8 @@ def _gaussians(out, exponents, origin, step, middle, begin, end):
             continue
         point = origin + start * step
         r2 = point[0] ** 2 + point[1] ** 2 + point[2] ** 2
-        along = point[0] * step[0] + point[1] * step[1] + point[2] * step[2]
-        rs = sign * along
+        projection = point[0] * step[0] + point[1] * step[1] + point[2] * step[2]
+        rs = sign * projection
         count = start - begin + 1
         if sign == 1:
             count = end - start + 1
