@@ -19,7 +19,7 @@ from asperity.guards.foreign_text import COLUMNS, did_you_mean, shown, wrapped
 from workflow.run.changed_files import change_lines, changed_files
 from workflow.run.cost import Costs, refusal, wall_seconds
 from workflow.run.job import last_line
-from workflow.scene.renamed import STAGES, SINCE, name_now, place_now
+from workflow.scene.renamed import SINCE, STAGES, name_now, place_now
 
 NO_SUCH_TARGET = re.compile(
     r"MissingRuleException:\nNo rule to produce (.*) \(if you use input functions"

@@ -2,7 +2,8 @@
 
 In: inputs.csv, law/parameters.csv, the paper's Tables 2 and 3; of uncertainty/:
 direct/chunk_NNN.csv, direct/chunk_again.csv. Out, in uncertainty/: outputs.csv (Table 2),
-sensitivity.csv (Table 3), surrogate.json, samples.csv, validation.csv, law.csv (nm, GPa/nm, GPa)."""
+sensitivity.csv (Table 3), surrogate.json, samples.csv, validation.csv,
+law.csv (nm, GPa/nm, GPa)."""
 
 import numpy as np
 
