@@ -261,10 +261,8 @@ class PyscfGamma(Calculator):
             return lib.tag_array(2 * c @ c.T, mo_coeff=c, mo_occ=np.full(c.shape[1], 2.0))
         coarse = self._mean_field(tuple(int(np.ceil(SCF.coarse * n)) for n in cell.mesh))
         self._keep_overlap(coarse, overlap)
-        coarse.conv_tol, coarse.conv_tol_grad = (
-            SCF.coarse_tolerance_Ha,
-            10 * np.sqrt(SCF.coarse_tolerance_Ha),
-        )
+        coarse.conv_tol = SCF.coarse_tolerance_Ha
+        coarse.conv_tol_grad = 10 * np.sqrt(SCF.coarse_tolerance_Ha)
         coarse.kernel()  # where it does not converge the fine mesh goes on from where it ended
         return coarse.make_rdm1()
 
