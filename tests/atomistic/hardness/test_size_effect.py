@@ -74,7 +74,9 @@ def test_h_prime_follows_the_scenes_own_h_macro():
     nm^0.5.
     """
     points = [point(10.0, 4.0, spread=0.0, asperity=f"a{k}") for k in range(4)]
-    result = fit_size_effect(points, GLASS, 0.0, lambda p: 6 + 2 * p, systematic_errors={"none": 0.0})
+    result = fit_size_effect(
+        points, GLASS, 0.0, lambda p: 6 + 2 * p, systematic_errors={"none": 0.0}
+    )
     low, high = (result["inputs"]["h_prime"][end] for end in "ab")
     # the 68 % interval of H_macro is 6.32 to 7.68 GPa
     assert (low, high) == pytest.approx((2 * (10 - 7.68), 2 * (10 - 6.32)), abs=0.15)
