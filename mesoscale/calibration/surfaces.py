@@ -31,6 +31,8 @@ Part = tuple[Array, Array, Array, Array]
 
 KINDS = (*CURVES, *SCALARS)
 """Kinds that name, or may name, the specimen; the same name means the same surface."""
+MOST_STEPS = 30  # towards the place where data are linearised
+SETTLED = 1e-3  # last step, in standard deviations of the prior; beyond, it has not settled
 
 
 @dataclass(frozen=True)
@@ -185,11 +187,17 @@ def surface_data(
             free = np.full(len(values), float(table.kind in CURVES and not table.zero_known))
             specimens.setdefault(specimen, []).append((columns, values, variances, free))
     expected = expected_over_prior(cycles, names)
+    bend = any(table.kind in CURVES for table in tables)  # other data are linear everywhere
     precision = []
     information = []
-    for tables_of_specimen in specimens.values():
+    for specimen, tables_of_specimen in specimens.items():
         columns = (np.concatenate(column) for column in zip(*tables_of_specimen, strict=True))
-        a, b = _linearised(names, expected, *columns)
+        a, b, last_step = _linearised(names, expected, *columns)
+        if bend and not last_step <= SETTLED:
+            raise InputError(
+                f"{tables[0].file}: specimen {specimen}: its observables do not settle in"
+                f" {MOST_STEPS} steps; look at units, columns and errors, or leave it out"
+            )
         precision.append(a)
         information.append(b)
     return SurfaceData(
@@ -294,8 +302,10 @@ def _linearised(
     values: Array,
     variances: Array,
     free: Array,
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array, float]:
     """A and b of the data of one specimen, linear in its observables where data and prior put them.
+
+    The last step towards that place comes with them, in standard deviations of the prior.
 
     Parameters
     ----------
@@ -310,7 +320,8 @@ def _linearised(
     mean, covariance = expected
     stiffness = np.linalg.inv(covariance)
     f = mean.copy()
-    for _ in range(30):  # steps of Gauss and Newton
+    deviations = np.array([np.inf])
+    for _ in range(MOST_STEPS):  # of Gauss and Newton
         physical, slopes = _separations(names, f)
         linear = columns @ slopes
         pull = linear.T @ weights @ (values - columns @ physical) + stiffness @ (mean - f)
@@ -320,7 +331,8 @@ def _linearised(
     physical, slopes = _separations(names, f)
     linear = columns @ slopes
     precision = linear.T @ weights @ linear
-    return precision, linear.T @ weights @ (values - columns @ physical + linear @ f)
+    information = linear.T @ weights @ (values - columns @ physical + linear @ f)
+    return precision, information, float(deviations.max())
 
 
 def _model_error(table: Measurements, size: int) -> Array:

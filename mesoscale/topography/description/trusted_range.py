@@ -64,6 +64,8 @@ class Trust:
 
 
 TRUST = Trust()
+MOST_ROUNDS = 12  # for the tip's correction, whose error falls to a half or less in each
+SETTLED = 1e-3  # change of ln C in the last round; beyond, a correction has not settled
 
 
 def curvature(
@@ -145,11 +147,17 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     use : (m,) bool, the shells.
     psd : (m,) C with the tip's bias and the window's blur taken out, nm^4.
     error : (m,) error of ln C that the correction leaves; 0 in the trusted range.
+
+    Raises
+    ------
+    InputError : the tip's correction does not settle.
     """
     q, psd = item.spectrum.q, item.spectrum.psd
     smooth = _smooth(psd, q)
     curved = bias = np.zeros_like(q)
-    for _ in range(12):
+    previous = bias
+    for _ in range(MOST_ROUNDS):
+        previous = bias
         curved = curvature(item.tip_radius_nm, q, smooth, np.exp(bias))
         blunt = TRUST.blunt_bias * np.minimum(curved, 2 * TRUST.most_curved)
         bias = np.where(curved < 0.5, tip_bias(curved), blunt)
@@ -157,6 +165,7 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     blunt = curved > TRUST.most_curved
     if (blunt & use).any():
         use &= q < q[blunt & use][0]
+    _check_settled(item, np.abs(bias - previous)[use])
     error = np.where(q > item.high, TRUST.blunt_error * bias, 0.0)
     psd = psd * np.exp(bias)
     if (
@@ -171,6 +180,16 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
         error = np.where(long, TRUST.levelled_error, error)
         use |= long
     return use, psd, error
+
+
+def _check_settled(item: TrustedSpectrum, change: np.ndarray) -> None:
+    """Refuse a correction of the tip that still changes ln C in its last round."""
+    if change.max(initial=0.0) > SETTLED:
+        raise InputError(
+            f"{item.name}: the correction of a tip of {item.tip_radius_nm:g} nm does not settle:"
+            f" ln C still changes by {change.max():.2g} in its last round; state the tip's radius"
+            " (topography.instruments), or leave the scan out"
+        )
 
 
 def trusted_map(cleaned: Scan, measured: Measurement) -> TrustedSpectrum:
