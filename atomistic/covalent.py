@@ -13,27 +13,31 @@ from atomistic.materials import Core, Tersoff
 
 @dataclass(frozen=True)
 class Quench:
-    """How a cell is melted and quenched; a glass below films takes the same temperatures.
-
-    Attributes
-    ----------
-    start_distance_A : random start: nothing closer than this
-    melt_K, melt_ps, final_K, rate_K_ps : temperature and time of the melt; temperature of the
-        glass, cooling rate
-    free_below_K : a melt has no shape to keep; below this its network can still change and settles
-        as a glass
-    timestep_fs : of the molecular dynamics
-    attempts : quenches until one passes the gates; of 28 atoms about one in sixty does
-    """
+    """How a cell is melted and quenched; a glass below films takes the same temperatures."""
 
     start_distance_A: float = 1.4
+    """In a random start nothing is closer."""
+
     melt_K: float = 5000.0
+    """Of the melt."""
+
     melt_ps: float = 3.0
+    """Of the melt."""
+
     final_K: float = 300.0
+    """Of the glass."""
+
     rate_K_ps: float = 300.0
+    """Of the cooling."""
+
     free_below_K: float = 2500.0
+    """A melt has no shape to keep; below this its network still settles as a glass."""
+
     timestep_fs: float = 1.0
+    """Of the molecular dynamics."""
+
     attempts: int = 1000
+    """Quenches until one passes the gates; of 28 atoms about one in sixty does."""
 
 
 QUENCH = Quench()

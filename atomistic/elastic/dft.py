@@ -29,33 +29,34 @@ Store = MutableMapping[str, dict[str, np.ndarray]]
 
 @dataclass(frozen=True)
 class ScfNumerics:
-    """How tightly energies converge; no scene sets it.
-
-    Attributes
-    ----------
-    energy_tolerance_Ha : of the SCF, per cell; B of β-Si3N4 is then within 0.01 % of its value at
-        1e-8
-    forces_tolerance_Ha : the same where forces are computed
-    max_cycles : of an SCF; a glass with a gap takes 8 to 14
-    coarse : mesh on which an SCF without a former one starts, over the mesh itself: a fifth of the
-        points
-    coarse_tolerance_Ha : of that start
-    single_precision_Ha : SCF tolerance from which orbitals on the grid need no double precision
-    rounding_Ha : per atom: the energy's jitter from cycle to cycle in single precision stays below
-        it
-    history : former solutions a start is extrapolated from
-    guess_damping : of the weights' normal equations
-    """
+    """How tightly energies converge; no scene sets it."""
 
     energy_tolerance_Ha: float = 1e-6
+    """Per cell; B of β-Si3N4 is then within 0.01 % of its value at 1e-8."""
+
     forces_tolerance_Ha: float = 1e-7
+    """The same where forces are computed."""
+
     max_cycles: int = 50
+    """A glass with a gap takes 8 to 14."""
+
     coarse: float = 0.6
+    """Mesh on which an SCF without a former one starts, over the mesh: a fifth of the points."""
+
     coarse_tolerance_Ha: float = 1e-3
+    """Of that start."""
+
     single_precision_Ha: float = 1e-7
+    """SCF tolerance from which orbitals on the grid need no double precision."""
+
     rounding_Ha: float = 5e-8
+    """Per atom: in single precision the energy's jitter from cycle to cycle is below it."""
+
     history: int = 5
+    """Former solutions a start is extrapolated from."""
+
     guess_damping: float = 1e-7
+    """Of the weights' normal equations."""
 
 
 SCF = ScfNumerics()

@@ -33,29 +33,34 @@ from atomistic.hardness.size_effect import (
 
 @dataclass(frozen=True)
 class FilmFit:
-    """How the law of films is fitted.
-
-    Attributes
-    ----------
-    bond : standard deviation of ln k by the assumed bonds of film and metal: films with bonds half
-        and 1.5 times as
-        deep have stresses that differ by 4 % with a scatter of 10 % (runs of scene films, commit
-        9151035b), seven times as much in k.
-    bin_nm : of contact length: a run has one mean stress in each.
-    least_points, least_thicknesses : mean stresses of films, and their thicknesses.
-    trials, draws : values drawn from the prior, and how many of them are kept by their likelihood.
-    negligible : likelihood over the largest that need not be drawn again.
-    prior : ranges of H_film, H_base, k, m.
-    """
+    """How the law of films is fitted."""
 
     bond: float = 0.5
+    """Standard deviation of ln k by the assumed bonds of film and metal.
+
+    Films with bonds half and 1.5 times as deep have stresses that differ by 4 % with a scatter of
+    10 % (runs of scene films, commit 9151035b), seven times as much in k."""
+
     bin_nm: float = 0.5
+    """Of contact length: a run has one mean stress in each."""
+
     least_points: int = 3
+    """Mean stresses of films."""
+
     least_thicknesses: int = 2
+    """Of films."""
+
     trials: int = 200_000
+    """Values drawn from the prior."""
+
     draws: int = 2000
+    """Values of these that their likelihood leaves."""
+
     negligible: float = 1e-4
+    """Likelihood over the largest that need not be drawn again."""
+
     prior: tuple[tuple[float, float], ...] = ((2, 20), (0.5, 100), (1e-3, 10), (0.5, 4))
+    """Ranges of H_film, H_base, k, m."""
 
 
 FILM_FIT = FilmFit()

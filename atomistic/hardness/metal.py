@@ -23,33 +23,40 @@ from atomistic.materials import Eam
 
 @dataclass(frozen=True)
 class MetalNumerics:
-    """How the potential is tabulated and a body of grains is made.
-
-    Attributes
-    ----------
-    points, cutoff_A : of the tables; all functions of titanium are below 2e-6 eV at 7 Å; at the
-        authors' 6.56 Å lies a
-        shell of neighbours.
-    most_density : end of the table of embedding, over the density of the crystal.
-    too_near : of the nearest distance: of two atoms of different grains that are nearer one is left
-        out.
-    anneal_K, anneal_ps, final_K, timestep_fs : of the anneal.
-    max_strain : of the dense body, brought to the width of the asperity.
-    annealed_density : of grains after the anneal, over the crystal at 0 K (study `hardness.metal`).
-    widenings : steps in which the number of atoms follows the width, to 0.1 %.
-    """
+    """How the potential is tabulated and a body of grains is made."""
 
     points: int = 5000
+    """Of a table."""
+
     cutoff_A: float = 7.0
+    """Titanium's functions are below 2e-6 eV here; the authors' 6.56 Å is a shell of neighbours."""
+
     most_density: float = 4.0
+    """End of the table of embedding, over the density of the crystal."""
+
     too_near: float = 0.75
+    """Of the nearest distance: of two atoms of different grains that are nearer one is left out."""
+
     anneal_K: float = 900.0
+    """Of the anneal."""
+
     anneal_ps: float = 10.0
+    """Of the anneal, and as long of the cooling after it."""
+
     final_K: float = 300.0
+    """After the cooling."""
+
     timestep_fs: float = 3.0
+    """Of anneal, cooling and rest."""
+
     max_strain: float = 0.01
+    """Of the dense body, brought to the width of the asperity."""
+
     annealed_density: float = 0.972
+    """Of grains after the anneal, over the crystal at 0 K (study `hardness.metal`)."""
+
     widenings: int = 3
+    """Steps in which the number of atoms follows the width, to 0.1 %."""
 
 
 METAL = MetalNumerics()

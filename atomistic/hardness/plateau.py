@@ -16,53 +16,61 @@ Rows = Sequence[Mapping[str, float]]
 
 @dataclass(frozen=True)
 class Rules:
-    """What counts as yield, when a run may end, and which film does not count: its gates are
-    lengths of bonds.
+    """What counts as yield, when a run may end, and which film does not count (lengths of bonds).
 
     The error rates of study `hardness.detection` fix all that is no gate of a film.
-
-    Attributes
-    ----------
-    min_length_nm, max_area_fraction : contact length, and area over cell area, between which stress
-        is judged.
-    min_exchanges, min_lowering_A : changed bonds above the background, and lasting lowering, that
-        witness plasticity.
-    min_points : averages beyond the onset.
-    max_exponent : largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic.
-    stop_interval, stop_points, stop_area_fraction : a run has settled once half the 68 % interval
-        of its plateau is
-        this share of it, with as many averages, on this share of the cell (a larger asperity is to
-        give a larger one).
-    max_drift_meV_atom_ps, max_warming_K : largest drift of the conserved energy, largest rise of
-        temperature.
-    latest_start : of as many parts of the averages beyond the onset, the first is the last to hold
-        the plateau's start.
-    clearly_more : times the independent averages.
-    same_shape : contact length over wavelength: runs of one shape are alike there, whatever their
-        size.
-    least_covered : share of the base below a film.
-    largest_gap_A : between film and base, less in 95 % of the columns of atoms: twice a bond of
-        metal and oxygen.
-    largest_slip_A : of a film over its base below the contact, at the end: one bond.
     """
 
     min_length_nm: float = 2.0
+    """Contact length from which stress is judged."""
+
     max_area_fraction: float = 0.5
+    """Contact area over cell area up to which stress is judged."""
+
     min_exchanges: int = 5
+    """Changed bonds above the background that witness plasticity."""
+
     min_lowering_A: float = 0.5
+    """Lasting lowering that witnesses plasticity."""
+
     min_points: int = 4
+    """Averages beyond the onset."""
+
     max_exponent: float = 0.35
+    """Largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic."""
+
     stop_interval: float = 0.04
+    """A run has settled once half the 68 % interval of its plateau is this share of it."""
+
     stop_points: int = 12
+    """With as many averages."""
+
     stop_area_fraction: float = 0.25
+    """On this share of the cell: a larger asperity is to give a larger one."""
+
     max_drift_meV_atom_ps: float = 0.2
+    """Largest drift of the conserved energy."""
+
     max_warming_K: float = 150.0
+    """Largest rise of temperature."""
+
     latest_start: int = 3
+    """Of as many parts of the averages, the first is the last to hold the plateau's start."""
+
     clearly_more: float = 1.5
+    """Times the independent averages."""
+
     same_shape: tuple[float, float] = (0.5, 0.6)
+    """Contact length over wavelength: runs of one shape are alike, whatever their size."""
+
     least_covered: float = 0.95
+    """Share of the base below a film."""
+
     largest_gap_A: float = 4.2
+    """Between film and base, less in 95 % of columns: twice a bond of metal and oxygen."""
+
     largest_slip_A: float = 2.1
+    """Of a film over its base below the contact, at the end: one bond."""
 
 
 RULES = Rules()
