@@ -1,6 +1,4 @@
-"""Covalent networks for LAMMPS: the Tersoff potential with soft cores between like atoms, and
-random starts.
-"""
+"""Covalent networks for LAMMPS: Tersoff potential, soft cores between like atoms, random starts."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -83,8 +83,7 @@ def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) ->
 
 
 def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
-    """Read a LAMMPS data file as `write_data` or the LAMMPS command `write_data ... nocoeff` makes
-    it.
+    """Read a LAMMPS data file, as `write_data` or its command `... nocoeff` makes it.
 
     Atoms come back in the order of their ids, wrapped into a cell that starts at 0.
 
@@ -121,8 +120,7 @@ def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
 
 
 def load_dump(path: str | Path) -> list[tuple[int, np.ndarray]]:
-    """Frames of a LAMMPS text dump: (step, table of shape (atoms, columns)) in the order of the
-    file.
+    """Frames of a LAMMPS text dump: (step, table (atoms, columns)) in the file's order.
 
     Raises
     ------
@@ -153,8 +151,7 @@ def load_averages(path: str | Path) -> np.ndarray:
 
 
 class LammpsFolder:
-    """A directory for what a killed run needs to go on; emptied when anything the run depends on
-    changed.
+    """A directory of what a killed run needs to go on; emptied when its inputs changed.
 
     It may have come from elsewhere.  What LAMMPS executes is therefore written anew at every start,
     restart files and data are only read, and one that holds links or special files is emptied: they
@@ -310,9 +307,7 @@ def environment() -> dict[str, str]:
 
 
 def _die_with_parent() -> None:
-    """A killed workflow must not leave a LAMMPS behind that writes into the directory of the next
-    one.
-    """
+    """A killed workflow leaves no LAMMPS that writes into the directory of the next one."""
     if sys.platform == "linux":
         pr_set_pdeathsig = 1
         ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)

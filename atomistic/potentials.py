@@ -104,8 +104,7 @@ class Source(Settings):
 
 
 class AreaCalibration(Settings):
-    """How the definition of contact area was tested on bodies of known section with a potential's
-    glass.
+    """How the contact area's definition was tested on known sections of a potential's glass.
 
     Attributes
     ----------
@@ -170,8 +169,7 @@ class Potential(Settings):
         return strength * (value - value_c + force_c * (r - r_c)), strength * (force - force_c)
 
     def table(self, elements: tuple[str, ...], energy_scale: float = 1.0) -> str:
-        """LAMMPS `pair_style table` file: a section A_B for every pair of `elements`, and `contact`
-        (`pair_table`).
+        """LAMMPS `pair_style table` file: a section A_B per pair of `elements`, and `contact`.
 
         Parameters
         ----------
@@ -185,8 +183,7 @@ class Potential(Settings):
         return pair_table(title, sections, self.cutoff_A, energy_scale)
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
-        """What LAMMPS needs by the name of its file: the table, and in `pairs` the commands that
-        use it.
+        """What LAMMPS needs, by file name: the table, and in `pairs` the commands that use it.
 
         Parameters
         ----------
@@ -201,9 +198,7 @@ class Potential(Settings):
 
 
 class ForceField(Protocol):
-    """What of a `Potential` molecular dynamics uses: a metal, and an oxide on a metal, have it
-    too.
-    """
+    """What molecular dynamics uses of a `Potential`: a metal or a stack has it too."""
 
     @property
     def masses_u(self) -> Mapping[str, float]:
@@ -221,8 +216,7 @@ EnergyAndForce = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 def pair_table(
     title: str, sections: Mapping[str, EnergyAndForce], cutoff_A: float, energy_scale: float
 ) -> str:
-    """LAMMPS `pair_style table` file of these sections and of `contact`
-    (`contact_energy_and_force`).
+    """LAMMPS `pair_style table` file of these sections and of `contact`.
 
     Parameters
     ----------

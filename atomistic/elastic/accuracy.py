@@ -247,9 +247,7 @@ def _each(
     reference: Callable[[ScannedGlass], Fitted],
     seconds: Callable[[], float],
 ) -> Callable[[], Deviations]:
-    """How far a value is off on some glasses; the misfit of each fit says how well that is
-    known.
-    """
+    """How far a value is off on some glasses; each fit's misfit says how well that is known."""
 
     def deviations() -> Deviations:
         fitted = np.array([value(glass) for glass in glasses])
@@ -281,9 +279,7 @@ def five_strains(largest: float) -> list[float]:
 
 
 def even_strains(largest: float, number: int) -> list[float]:
-    """An odd number of strains between both signs of the largest; those of the same value are equal
-    to the last bit.
-    """
+    """An odd number of strains between both signs of the largest; equal to the last bit."""
     half = number // 2
     return [round(largest * k / half, 9) for k in range(-half, half + 1)]
 

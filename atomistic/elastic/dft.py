@@ -1,5 +1,4 @@
-"""Periodic density functional theory behind ASE's calculator interface: PySCF at the Γ point of a
-supercell.
+"""Periodic density functional theory behind ASE's interface: PySCF at a supercell's Γ point.
 
 Energies in eV, lengths in Å, forces in eV/Å outside; PySCF's atomic units inside.  Pseudopotentials
 are GTH, the basis a short-ranged MOLOPT one.  The real-space mesh can be held fixed while the cell
@@ -63,9 +62,7 @@ SCF = ScfNumerics()
 
 
 class Solution(NamedTuple):
-    """What the start of the next calculation needs of a finished one: overlap of the basis,
-    occupied orbitals.
-    """
+    """What the next calculation's start needs of a finished one: overlap and occupied orbitals."""
 
     overlap: np.ndarray
     orbitals: np.ndarray
@@ -252,9 +249,7 @@ class PyscfGamma(Calculator):
         mf._numint.basis_overlap = overlap
 
     def _guess(self, cell, overlap: np.ndarray) -> Any:
-        """Density matrix of extrapolated orbitals; where none fit, that of a loose SCF on a coarse
-        mesh.
-        """
+        """Density matrix of extrapolated orbitals, else that of a loose SCF on a coarse mesh."""
         from pyscf import lib
 
         shape = (cell.nao, cell.nelectron // 2)
@@ -300,8 +295,7 @@ def make_calculator(
 
 
 def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> np.ndarray | None:
-    """Occupied orbitals where the basis functions overlap as in `overlap`, orthonormal there; None
-    without a history.
+    """Occupied orbitals, orthonormal for the basis of `overlap`; None without a history.
 
     The overlap describes the geometry: the combination of former ones, with weights that add to
     one, which comes nearest to it also combines the former orbitals, once each set is rotated onto

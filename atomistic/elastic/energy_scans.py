@@ -26,9 +26,7 @@ errors of a scene's own glasses."""
 
 @dataclass(frozen=True)
 class ScanPoint:
-    """One volume of an E(V) scan; `energy_eV` is NaN where the calculation failed, and `detail`
-    says why.
-    """
+    """One volume of an E(V) scan; `energy_eV` is NaN where it failed, and `detail` says why."""
 
     strain: float
     volume_A3: float

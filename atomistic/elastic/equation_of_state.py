@@ -1,5 +1,4 @@
-"""Equations of state: bulk modulus and equilibrium volume from E(V), with the checks that make them
-trustworthy.
+"""Equations of state: bulk modulus and equilibrium volume from E(V), with checks.
 
 Birch–Murnaghan (third order, Phys. Rev. 71, 809 (1947)),
 
@@ -145,9 +144,7 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
 def _minimum(
     coefficients: np.ndarray, centre: float, volume: np.ndarray
 ) -> tuple[float, float, float, float]:
-    """V0, E(V0), B (eV/Å³) and B' of the cubic in x = (V/centre)^(-2/3); NaN where there is no
-    minimum.
-    """
+    """V0, E(V0), B (eV/Å³) and B' of the cubic in x = (V/centre)^(-2/3); NaN without minimum."""
     a0, a1, a2, a3 = coefficients
     slope = np.polynomial.Polynomial([a1, 2 * a2, 3 * a3])
     real = [root.real for root in slope.roots() if abs(root.imag) < 1e-12 and root.real > 0]

@@ -109,9 +109,7 @@ class CachedGrid(MultiGridNumInt2):
 
     # -- density and potential
     def occupied_orbitals(self, density_matrix: Any) -> tuple[np.ndarray, np.ndarray]:
-        """Factor F (orbitals, n) and signs s with D = F diag(s) Fᵀ; from the orbitals if the matrix
-        carries them.
-        """
+        """Factor F (orbitals, n) and signs s with D = F diag(s) Fᵀ, from known orbitals."""
         coefficients = getattr(density_matrix, "mo_coeff", None)
         if coefficients is not None:
             occupation = density_matrix.mo_occ
@@ -164,9 +162,7 @@ class CachedGrid(MultiGridNumInt2):
         return float(self.weight * (rho @ energy)), functional
 
     def potential(self, xc_code: str, rho: np.ndarray) -> tuple[np.ndarray, float, float]:
-        """Whole local potential, its electrostatic energy (Hartree + local pseudopotential) and
-        E_xc.
-        """
+        """Local potential, its electrostatic energy (Hartree + local pseudopotential) and E_xc."""
         hartree = self._to_grid(self.coulomb * self._spectrum(rho))
         electrostatic = float(self.weight * (rho @ (self.local + 0.5 * hartree)))
         exc, vxc = self.exchange_correlation(xc_code, rho)
@@ -183,8 +179,7 @@ class CachedGrid(MultiGridNumInt2):
         return float(rho.sum() * self.weight), exc, veff
 
     def _matrix_of(self, density_matrix: Any, rho: np.ndarray, potential: np.ndarray) -> np.ndarray:
-        """`matrix` of a potential, which after the first one of an SCF lags behind between empty
-        orbitals.
+        """`matrix` of a potential, which lags behind between empty orbitals after the first one.
 
         With δ the change since the last full matrix and Q the projector onto empty orbitals, δ − Qᵀ
         δ Q is added to it: half the work or less.  The gradient of the orbitals is exact, so the
@@ -205,9 +200,7 @@ class CachedGrid(MultiGridNumInt2):
         return self._full[0]
 
     def _onto_waves(self, potential: np.ndarray) -> np.ndarray:
-        """Σ_r w φ_µ v ψ_i with the orbitals ψ of the last density, shape (basis functions,
-        orbitals).
-        """
+        """Σ_r w φ_µ v ψ_i with orbitals ψ of the last density, (basis functions, orbitals)."""
         weighted = (self.weight * potential).astype(self.precision)
         total = np.zeros((len(self.orbitals), len(self.waves)))
         for start in range(0, self.points, BLOCK):
@@ -259,8 +252,7 @@ class CachedGrid(MultiGridNumInt2):
 
 
 def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
-    """dE/dR of every ion of E = Σ D_µν <µ|p> h <p|ν> (Hartwigsen et al., PRB 58, 3641 (1998)),
-    (ions, 3) hartree/bohr.
+    """dE/dR of ions, E = Σ D_µν <µ|p> h <p|ν> (PRB 58, 3641 (1998)), (ions, 3) hartree/bohr.
 
     An overlap of a projector and an orbital depends on the vector between their centres alone.
 
@@ -305,8 +297,7 @@ def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
 
 
 def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
-    """Fourier transform of the local GTH pseudopotential (Goedecker et al., PRB 54, 1703 (1996),
-    eq. 5).
+    """Fourier transform of the local GTH pseudopotential (PRB 54, 1703 (1996), eq. 5).
 
     Parameters
     ----------
@@ -329,9 +320,7 @@ def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
 
 
 def _wave_vectors(cell: "Cell", mesh: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Half-spectrum wave vectors, shape (3, n0, n1, n2//2+1): for derivatives (Nyquist zeroed), and
-    as they are.
-    """
+    """Half-spectrum wave vectors, (3, n0, n1, n2//2+1): Nyquist zeroed, and as they are."""
     indices = [scipy.fft.fftfreq(mesh[0], 1 / mesh[0]), scipy.fft.fftfreq(mesh[1], 1 / mesh[1])]
     indices.append(scipy.fft.rfftfreq(mesh[2], 1 / mesh[2]))
     odd = []

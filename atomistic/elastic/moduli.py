@@ -1,5 +1,4 @@
-"""The effective modulus E* with its uncertainty, from bulk moduli by E(V) and a stated range of
-Poisson's ratio.
+"""The effective modulus E* with its uncertainty, from bulk moduli and a range of Poisson's ratio.
 
 E = 3 B (1 − 2ν),   1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂          (Kim et al. 2013, eq. 5)
 """
@@ -28,9 +27,7 @@ SAMPLES = 20_000
 
 @dataclass(frozen=True)
 class Modulus:
-    """A bulk modulus that entered or was kept out of E*; `error_GPa` is its standard error by the
-    misfit of its fit.
-    """
+    """A bulk modulus in or out of E*; `error_GPa`: standard error by its fit's misfit."""
 
     structure: str
     xc: str
@@ -117,8 +114,7 @@ def mean_and_deviation(
 def effective_modulus(
     moduli: Sequence[Modulus], material: Material, counter_body: Material, settings: ElasticSettings
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """E* as a distribution: mixture of GGA and GGA shifted by LDA − GGA, ν uniform, counter body
-    from experiment.
+    """E* as a distribution: GGA mixed with GGA + (LDA − GGA), ν uniform, counter body measured.
 
     Scans clamp the ions. Where the material states how much those that follow soften it, B is
     corrected.

@@ -1,5 +1,4 @@
-"""Structures for the elastic stage: crystals from data files, amorphous silicon nitride by melt and
-quench.
+"""Structures of the elastic stage: crystals from files, silicon nitride by melt and quench.
 
 Lengths in Å.  A glass cell is melted at the density of experiment and quenched with a Tersoff
 potential and soft cores in LAMMPS, its shape free as soon as it is stiff.  At rest it must be a
@@ -88,8 +87,7 @@ class NetworkVerdict:
 
 
 def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None) -> NetworkVerdict:
-    """Measure density, coordination, shortest distances and symmetry and hold them against
-    `criteria`.
+    """Hold density, coordination, shortest distances and symmetry against `criteria`.
 
     Parameters
     ----------
@@ -140,9 +138,7 @@ def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None
 
 
 def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
-    """Operations that map the cell onto itself within a tolerance; one, the identity, where there
-    is no symmetry.
-    """
+    """Operations that map the cell onto itself within a tolerance; 1: the identity."""
     import spglib.error
 
     spglib.error.OLD_ERROR_HANDLING = False  # it shall raise
@@ -157,8 +153,7 @@ def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
 
 
 def same_network(atoms: Atoms, accepted: Mapping[str, Atoms]) -> str | None:
-    """Name of the first of `accepted` that is this cell again: turned, mirrored or shifted.
-    by other edges.
+    """Name of the first of `accepted` that is this cell again; None of a new one.
 
     A small cell has few good networks, so that independent quenches end in the same one.
     """
@@ -172,9 +167,7 @@ def same_network(atoms: Atoms, accepted: Mapping[str, Atoms]) -> str | None:
 
 
 def no_insulator(gap_eV: float, criteria: NetworkGlass) -> list[str]:
-    """Why a cell with this gap is no insulator; nothing where it is one or the engine does not tell
-    its gap (NaN).
-    """
+    """Why a cell with this gap is no insulator; nothing where it is one, or without a gap (NaN)."""
     if gap_eV >= criteria.gap_eV:
         return []
     return [f"gap {gap_eV:.2f} eV: no insulator"]
@@ -187,9 +180,7 @@ def random_structure(
     seed: int,
     edges: Sequence[float] = (1, 1, 1),
 ) -> Atoms:
-    """Formula units at random in a box of the given density and ratio of edges, no two atoms closer
-    than 1.4 Å.
-    """
+    """Formula units at random in a box of a density and edge ratio, none closer than 1.4 Å."""
     symbols = [element for element, n in formula.items() for _ in range(n * units)]
     atoms = Atoms(symbols, pbc=True)
     shape = np.asarray(edges, float)

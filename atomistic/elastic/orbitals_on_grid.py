@@ -1,5 +1,4 @@
-"""Contracted Gaussian orbitals on a uniform periodic grid: values, and the force a potential exerts
-on them.
+"""Contracted Gaussian orbitals on a periodic grid: values, and the force of a potential.
 
 Atomic units throughout (bohr, hartree).  The orbitals are PySCF's: real solid harmonics times
 contracted Gaussians, in PySCF's order, summed over all periodic images within `radius`.  Along a
@@ -109,9 +108,7 @@ def collocate(
     n_orbitals: int,
     precision: type[np.floating] = np.float64,
 ):
-    """Values of all orbitals on the grid, shape (orbitals, grid points), grid in C order of
-    `mesh`.
-    """
+    """Values of all orbitals on the grid, (orbitals, grid points), grid in C order of `mesh`."""
     values = np.zeros((n_orbitals, int(np.prod(mesh))), dtype=precision)
     for atom in orbitals:
         _collocate_atom(values, lattice, np.array(mesh), *_arguments(atom, lattice, mesh))
@@ -159,9 +156,7 @@ def _arguments(atom: AtomOrbitals, lattice: np.ndarray, mesh: tuple[int, int, in
 
 @numba.njit(cache=True, error_model="numpy")
 def _closest(centre, lattice, mesh, i, j, radius):
-    """First point of grid line (i, j) relative to the atom, its step, and the index range inside
-    the sphere.
-    """
+    """First point of grid line (i, j) relative to the atom, its step, indices in the sphere."""
     step = lattice[2] / mesh[2]
     in_plane = lattice[0] * (i / mesh[0]) + lattice[1] * (j / mesh[1])
     origin = in_plane - centre
@@ -272,9 +267,7 @@ def _collocate_atom(
 
 @numba.njit(cache=True, fastmath=FAST, error_model="numpy", forceinline=True)
 def _harmonic_times(out, degree, m, x, y, z, f, n):
-    """out = S_lm(x, y, z) f, the real solid harmonic in PySCF's order (x, y, z; xy, yz, z², xz,
-    x²-y²).
-    """
+    """out = S_lm(x, y, z) f, real solid harmonic (x, y, z; xy, yz, z², xz, x²-y²)."""
     if degree == 0:
         for k in range(n):
             out[k] = S0 * f[k]

@@ -50,8 +50,7 @@ def relaxed_structure(
     refused: str = "",
     progress: Progress | None = None,
 ) -> Structure:
-    """Relax the ions of a quenched cell and judge the result; a cell that no quench made right is
-    not relaxed at all.
+    """Relax the ions of a quenched cell and judge it; a cell that no quench made right stays.
 
     The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left
     in it.
@@ -87,8 +86,7 @@ def relaxed_structure(
 def trusted_moduli(
     fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[str, Any]]
 ) -> list[Modulus]:
-    """The bulk moduli of the ensemble, each trusted if its fit has no flag and its structure passed
-    its gate.
+    """Bulk moduli of the ensemble, trusted if a fit has no flag and its structure passed.
 
     Parameters
     ----------
@@ -114,9 +112,7 @@ NESTED = ("relaxation", "gate", "provenance")
 def structure_rows(
     reports: Sequence[Mapping[str, Any]], quenches: Sequence[int]
 ) -> list[dict[str, Any]]:
-    """Rows of elastic/structures.csv from the structures' reports and the number of quenches each
-    one took.
-    """
+    """Rows of elastic/structures.csv from the structures' reports and numbers of quenches."""
     rows = []
     for report, count in zip(reports, quenches, strict=True):
         row = {key: value for key, value in report.items() if key not in NESTED}

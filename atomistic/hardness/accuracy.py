@@ -78,9 +78,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Pressed:
-    """A pressed cut: pressure (GPa) and force (nN) at the end of its travel, and processor
-    seconds.
-    """
+    """A pressed cut: pressure (GPa) and force (nN) at the end of its travel, processor seconds."""
 
     pressure_GPa: float
     force_nN: float
@@ -139,17 +137,13 @@ class SmallClosings:
         return float(np.mean([self.pressed(cut, choice).cpu_s for cut in CUTS]))
 
     def noise_percent(self) -> np.ndarray:
-        """Standard deviation of a run's pressure and force by the motion of its atoms, from one
-        repeat of each cut.
-        """
+        """Standard deviation of a run's pressure and force by its atoms' motion, from repeats."""
         first = self.outputs(Choice())
         again = self.outputs(Choice(reversed_velocities=True))
         return 100 * np.sqrt(np.mean((again / first - 1) ** 2, axis=0) / 2)
 
     def cutoff_nm(self, cut: int, iterations: int) -> tuple[float, float]:
-        """D0 of the top below a contact after so many steps of the minimiser, and its processor
-        seconds.
-        """
+        """D0 of the top below a contact after so many minimiser steps, and processor seconds."""
         run = self.pressed(cut, Choice())
         variables = {"pairs": "pairs", "segment": 1, "iterations": iterations}
         _, cpu_s = _timed(lambda: run_lammps("relax.in", run.folder, variables))
@@ -272,9 +266,7 @@ def _against(closings: SmallClosings, choice: Choice, best: Choice) -> Deviation
 
 
 def _minimisers(closings: SmallClosings) -> Variation:
-    """The steps of the minimiser, by what they leave of D0: the same contact is relaxed each
-    time.
-    """
+    """Steps of the minimiser, by what they leave of D0: the same contact is relaxed each time."""
     best: list[float] = []
 
     def deviations(iterations: int) -> Deviations:

@@ -8,9 +8,7 @@ TOP_ATOMS = 8  # the highest atoms, whose height is that of the top
 
 
 def profile(x: np.ndarray, y: np.ndarray, wavelength: float, amplitude: float) -> np.ndarray:
-    """Height Z = min[A sin(2πx/λ), A sin(2πy/λ)] (eq. 6), in the unit of `amplitude`; its peak is
-    at (λ/4, λ/4).
-    """
+    """Height Z = min[A sin(2πx/λ), A sin(2πy/λ)] (eq. 6), unit of `amplitude`; peak (λ/4, λ/4)."""
     k = 2 * np.pi / wavelength
     return amplitude * np.minimum(np.sin(k * x), np.sin(k * y))
 
@@ -68,9 +66,7 @@ def neutralise(atoms: Atoms, formula: np.ndarray) -> Atoms:
 
 
 def remove_strays(atoms: Atoms, formula: np.ndarray) -> Atoms:
-    """Remove atoms more than 2.5 Å above the eighth-highest one, keeping the sample neutral: they
-    are no surface.
-    """
+    """Remove atoms over 2.5 Å above the eighth-highest, neutrally: they are no surface."""
     height = atoms.positions_A[:, 2]
     eighth = float(np.partition(height, -TOP_ATOMS)[-TOP_ATOMS])
     return neutralise(atoms.take(height <= eighth + 2.5), formula)

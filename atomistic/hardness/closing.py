@@ -72,8 +72,7 @@ def run_closing(
     progress: Progress | None = None,
     base: tuple[Base, Atoms] | None = None,
 ) -> ClosedAsperity:
-    """Carry out a run, or go on with it if `work` holds its restart files; `work` is deleted at the
-    end.
+    """Carry out a run, or go on from `work`'s restart files; `work` is deleted at the end.
 
     Parameters
     ----------
@@ -159,9 +158,7 @@ def run_closing(
 
 @dataclass(frozen=True)
 class CutBody:
-    """What is annealed and pressed: atoms, those of each type in a unit of its formula, and their
-    forces.
-    """
+    """What is annealed and pressed: atoms, those of each type in a formula unit, forces."""
 
     atoms: Atoms
     formula: np.ndarray
@@ -239,9 +236,7 @@ def _read(
 
 
 def attraction_row(readout: Readout, segment: int, cell: PressedCell) -> dict[str, float]:
-    """What `attract_top` says of the top after a segment, as columns of the witness; NaN while the
-    contact is small.
-    """
+    """What `attract_top` says of the top after a segment; NaN while the contact is small."""
     if (
         segment
         and (sample := readout.last_sample(segment)).area_A2 >= (10 * RULES.min_length_nm) ** 2

@@ -1,5 +1,4 @@
-"""Contact area: one definition, used for every run, calibrated on bodies of known section (study
-`hardness.area`).
+"""Contact area: one definition for every run, calibrated on known sections (`hardness.area`).
 
 Atoms nearer to the counterface than a depth (or beyond it) touch.  The space between touching atoms
 counts as contact where a disc of the closing radius does not fit; enclosed holes do too.  The rim
@@ -17,8 +16,7 @@ from atomistic.potentials import Potential
 
 @dataclass(frozen=True)
 class Area:
-    """Definition of the contact area, fixed by bodies of known section before any hardness was
-    looked at; in Å.
+    """Definition of the contact area, fixed by known sections before any hardness; in Å.
 
     Attributes
     ----------
@@ -106,8 +104,7 @@ def shares_in_contact(
 
 
 def _reach(places_A: np.ndarray, reach_A: float, spacing_A: float, cells: int) -> slice:
-    """Cells within reach of the places and one more on either side, since a small contact need not
-    cost a whole map.
+    """Cells within reach of the places and one more on either side: small contacts cost less.
 
     All cells where the reach crosses the edge.
     """

@@ -1,5 +1,4 @@
-"""How the body below changes the hardness of a film, H = H_base + (H_film - H_base) / (1 + k
-(L/t)^m), fitted to runs.
+"""Hardness of a film on a body, H = H_base + (H_film - H_base) / (1 + k (L/t)^m), from runs.
 
 L is the contact length and t the thickness of the film. Runs of oxide throughout are films of
 infinite thickness, runs of the base by itself films of none. Beside it stand the two laws that know
@@ -68,8 +67,7 @@ LawOfHardness = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 class FilmPoints(NamedTuple):
-    """Mean stress of the contact at its length, by seed and thickness (0: base by itself, inf:
-    oxide throughout).
+    """Mean stress of contacts at a length, by seed and thickness (0: base, inf: oxide alone).
 
     Attributes
     ----------
@@ -122,9 +120,7 @@ def points_of(
 def mean_stresses(
     curve: Sequence[Mapping[str, float]], wavelength_nm: float
 ) -> list[tuple[float, float]]:
-    """Mean contact length (nm) and stress (GPa) in every bin of length, while the contact is
-    judged.
-    """
+    """Mean contact length (nm) and stress (GPa) per bin of length, while it is judged."""
     length = np.array([row["contact_length_nm"] for row in curve])
     stress = np.array([row["contact_stress_GPa"] for row in curve])
     widest = RULES.max_area_fraction**0.5 * wavelength_nm
@@ -206,8 +202,7 @@ def fit(name: str, points: FilmPoints) -> np.ndarray:
 
 
 def left_out(name: str, points: FilmPoints) -> float:
-    """Root mean square error of a law, of ln H, at the films of a thickness that its fit had not,
-    one at a time.
+    """Root mean square error of ln H of a law at films that its fit had not, one at a time.
 
     The laws without film are fitted to the other films, `film` to oxide and base besides. Seeds are
     averaged."""
@@ -240,8 +235,7 @@ def error_left_out(
 
 
 def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
-    """H_film, H_base, k and m by their likelihood, shape (draws, 4); the prior is flat in the
-    logarithms and in m.
+    """H_film, H_base, k and m by their likelihood, (draws, 4); prior flat in logarithms and m.
 
     The mean misfit of a run is one error, so that N runs of unknown scatter have the likelihood
     S^(-N/2), S the sum of squares (the scatter's own prior is Jeffreys's): seeds are too few for a
@@ -261,9 +255,7 @@ def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
 
 
 def _weighed(points: FilmPoints, drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Draws of ln H_film, ln H_base, ln k and m, shape (n, 4), with their likelihoods over the
-    largest.
-    """
+    """Draws of ln H_film, ln H_base, ln k and m, (n, 4), with likelihoods over the largest."""
     runs = np.column_stack([points.seed, points.thickness_nm])
     _, run = np.unique(runs, axis=0, return_inverse=True)
     run = run.ravel()

@@ -66,8 +66,7 @@ def _formula(material: Material, potential: Potential) -> Mapping[str, int]:
 def write_forcefield(
     workspace: LammpsFolder, potential: ForceField, elements: tuple[str, ...], energy_scale: float
 ) -> None:
-    """Write the tables of a potential and the commands that use them (file `pairs`) into a
-    workspace.
+    """Write a potential's tables and the commands that use them (file `pairs`).
 
     They are written at every start, since LAMMPS executes `pairs`: one that came with a received
     folder must not run.
@@ -140,8 +139,7 @@ def run_segments(
     doing: str,
     progress: Progress | None,
 ) -> Atoms:
-    """Carry out the segments of a periodic cell (glass.in), or go on after a kill; deletes the
-    workspace at the end.
+    """Carry out segments of a periodic cell (glass.in), or go on; deletes the workspace at the end.
 
     Parameters
     ----------
@@ -210,8 +208,7 @@ def density_g_cm3(atoms: Atoms, force: ForceField) -> float:
 def unlike_neighbours(
     atoms: Atoms, kind: np.ndarray, reach_A: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of atoms of different kinds within a distance, shape (pairs, 2), and their distances
-    (Å).
+    """Pairs of unlike atoms within a distance, shape (pairs, 2), and their distances (Å).
 
     Parameters
     ----------
@@ -226,9 +223,7 @@ def unlike_neighbours(
 
 
 def glass_properties(material: Material, potential: Potential, atoms: Atoms) -> dict:
-    """Density, coordination and bond length of a glass, with the gate that compares them to its
-    material file.
-    """
+    """Density, coordination, bond length of a glass, and the gate of its material file."""
     reference: OxideGlass = material.part("oxide_glass")
     formula = material.formula_text
     sources = "; ".join(material.sources[name] for name in reference.sources)

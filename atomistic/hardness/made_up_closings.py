@@ -1,6 +1,4 @@
-"""Made-up curves and witnesses of closings, of which the hardness is known: for hard cases and
-tests.
-"""
+"""Made-up curves and witnesses of closings of known hardness, for hard cases and tests."""
 
 from collections.abc import Callable
 from typing import Any

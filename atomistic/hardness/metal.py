@@ -1,5 +1,4 @@
-"""A metal below an oxide film: its embedded-atom potential for LAMMPS, and dense bodies of many
-grains.
+"""A metal below an oxide film: its embedded-atom potential, and dense bodies of grains.
 
 The functions are those of X. W. Zhou, R. A. Johnson and H. N. G. Wadley, Phys. Rev. B 69, 144113
 (2004)."""
@@ -135,8 +134,7 @@ class Metal(Base):
     def make(
         self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None
     ) -> Atoms:
-        """A cube of grains as wide as the asperity, annealed at zero pressure and cooled to 300 K
-        in the same time.
+        """A cube of grains as wide as the asperity, annealed at zero pressure, cooled to 300 K.
 
         Grain boundaries are cut too wide and close in the anneal, so that the cube starts wider
         than it comes out.
@@ -185,8 +183,7 @@ def crystal(metal: Metal, repeats: tuple[int, int, int]) -> Atoms:
 
 
 def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms:
-    """A cube of grains of random places and orientations (Voronoi cells); dense only after
-    `annealed`.
+    """A cube of grains of random place and orientation (Voronoi); dense after `annealed`.
 
     Parameters
     ----------

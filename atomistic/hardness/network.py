@@ -1,5 +1,4 @@
-"""A covalent glass below an oxide film: silicon nitride by its Tersoff potential, melted and
-quenched.
+"""A covalent glass below an oxide film: silicon nitride by Tersoff, melted and quenched.
 
 The schedule is that of the elastic stage (`atomistic/elastic/networks.py`), in cells as wide as
 those of the oxide."""
@@ -72,8 +71,7 @@ class Network(Base):
     def make(
         self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None
     ) -> Atoms:
-        """A cell as wide as one of the oxide's glass, its height at zero pressure and 300 K;
-        resumes in `work`.
+        """A cell as wide as the oxide's glass, at zero pressure and 300 K; resumes in `work`.
 
         Raises
         ------
@@ -116,9 +114,7 @@ class Network(Base):
         return Atoms(self.elements, types, places, cell)
 
     def properties(self, glass: Atoms) -> dict[str, float]:
-        """Density (g/cm3), median bond of unlike atoms (Å), and the mean coordination of each
-        element by them.
-        """
+        """Density (g/cm3), median unlike bond (Å), and mean coordination of each element."""
         bonds, lengths_A = unlike_neighbours(glass, glass.types, self.network.cutoff_A)
         neighbours = np.bincount(bonds.ravel(), minlength=len(glass))
         measured = {
@@ -143,9 +139,7 @@ class Network(Base):
 
 
 def _segments() -> list[dict[str, Any]]:
-    """Melt and quench, as `run_segments` takes them: at constant volume, then the height is
-    free.
-    """
+    """Melt and quench for `run_segments`: at constant volume, then the height is free."""
     melt, free, end = QUENCH.melt_K, QUENCH.free_below_K, QUENCH.final_K
     stages = [
         ("nvt", 1.5 * melt, melt, 0.2 * QUENCH.melt_ps),

@@ -78,8 +78,7 @@ RULES = Rules()
 
 @dataclass(frozen=True)
 class Hardness:
-    """What a run says about hardness; stresses in GPa, lengths in nm, NaN where there is nothing to
-    say.
+    """What a run says about hardness; GPa and nm, NaN where there is nothing to say.
 
     Attributes
     ----------
@@ -133,8 +132,7 @@ class Onset:
 def plastic_onset(
     witness: Rows, apart_nm: float, rules: Rules = RULES, by_bonds: bool = True
 ) -> Onset:
-    """First witness of plasticity among the relaxed snapshots; the bodies are apart for the first
-    `apart_nm` of travel.
+    """First witness of plasticity among relaxed snapshots; apart for `apart_nm` of travel.
 
     The top must stay `min_lowering_A` lower than in the last snapshot before contact, from then on.
     Where a metal lies below this is all (`by_bonds` False): its grain boundaries change neighbours
@@ -299,8 +297,7 @@ def may_stop(
     rules: Rules = RULES,
     on_base: bool = False,
 ) -> bool:
-    """Is a run complete: has the contact left its window, or is the interval of its plateau narrow
-    enough?
+    """Is a run complete: did it leave its window, or is its plateau's interval narrow enough?
 
     Parameters
     ----------
@@ -377,8 +374,7 @@ def _exponent(length: np.ndarray, stress: np.ndarray) -> float:
 
 
 def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
-    """68 % interval of the mean of correlated values: Student's t with the effective number of a
-    first-order process.
+    """68 % interval of the mean of correlated values: Student's t, effective number (AR(1)).
 
     The correlation of neighbours is corrected for its bias in short series (Kendall 1954).  How
     often the interval holds the truth, also after stopping on its width, is tested (study

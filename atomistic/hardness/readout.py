@@ -31,9 +31,7 @@ class PressedCell:
 
 @dataclass(frozen=True)
 class OxideBond:
-    """What joins cation and anion, by their types in a body; `length_A` is the first minimum of
-    their g(r).
-    """
+    """What joins cation and anion, by type; `length_A` is the first minimum of their g(r)."""
 
     cation: int
     anion: int
@@ -58,9 +56,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class Relaxed:
-    """A snapshot relaxed without its counterface, with its bonds shorter than 0.9 and 1.2 of
-    `OxideBond.length_A`.
-    """
+    """A snapshot relaxed without its counterface, with bonds below 0.9 and 1.2 `length_A`."""
 
     step: int
     frame: Frame
@@ -98,9 +94,7 @@ class Readout:
         self._relaxed: dict[int, Relaxed] = {}
 
     def curve(self, segments: range) -> Rows:
-        """Averages over some samples of force, contact area and temperature, with the energy
-        balance.
-        """
+        """Averages over samples of force, contact area and temperature, with the energy balance."""
         samples: dict[int, Sample] = {}
         for n in (
             segments
@@ -265,9 +259,7 @@ def _exchanges(before: tuple[Bonds, Bonds], after: tuple[Bonds, Bonds]) -> int:
 
 
 def bonds_of(frame: Frame, bond: OxideBond | None, factor: float, wavelength_A: float) -> Bonds:
-    """Pairs of cation and anion nearer to each other than `factor` times the length of a bond, as
-    rows of the frame.
-    """
+    """Pairs of cation and anion nearer than `factor` bond lengths, as rows of the frame."""
     if bond is None:
         return set()
     box = np.array([wavelength_A, wavelength_A, 0.0])  # 0: not periodic

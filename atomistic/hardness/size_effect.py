@@ -180,8 +180,7 @@ def refused_runs(points: Sequence[PointRow]) -> list[dict[str, str]]:
 
 
 def twins(points: Sequence[PointRow]) -> list[dict[str, Any]]:
-    """Hardness of runs with scaled energies over that of their twins with full ones, by energy
-    scale.
+    """Hardness of runs with scaled energies over that of their full twins, by energy scale.
 
     A pair has the same asperity and glass. Both of its runs scatter by `RUN_SCATTER`, which makes
     the 68 % interval.
@@ -223,8 +222,7 @@ def twins(points: Sequence[PointRow]) -> list[dict[str, Any]]:
 
 
 def free_fit(used: Sequence[PointRow]) -> dict[str, Any] | None:
-    """Least squares of both parameters of eq. 4, as the paper fits them, and whether the runs tell
-    both.
+    """Least squares of both parameters of eq. 4 as in the paper; whether runs tell both.
 
     The runs at full energies count alike: they scatter by more than each one's own interval.
 
@@ -262,8 +260,7 @@ def energy_ways(
     slopes: Mapping[str, Sequence[float]],
     indentation_GPa: tuple[float, float] | None,
 ) -> dict[Energies, tuple[list[PointRow], tuple[float, float]]]:
-    """Both ways to bound the energies: the defended runs that count, and the range of the factor on
-    their hardness.
+    """Both ways to bound the energies: the runs that count, and the range of their factor.
 
     The second is left out where no run has scaled energies, the first where none with full ones is
     defended."""
@@ -289,8 +286,7 @@ def energy_bounds(
     scales: Sequence[float],
     indentation_GPa: tuple[float, float] | None,
 ) -> tuple[float, float]:
-    """Factors on the energies of a potential that bound the measured hardness of its glass, and 1
-    between them.
+    """Factors on a potential's energies that bound its glass's measured hardness; 1 between.
 
     Hardness is proportional to the energies (`twins`).
 

@@ -1,5 +1,4 @@
-"""A film of oxide glass on another body: its force field, how it is laid and welded, and what it
-must look like.
+"""A film of oxide glass on another body: force field, how it is laid, how it must look.
 
 Nobody published how atoms of the two potentials act on each other. The file of the base states an
 assumption (`film_base`): Morse bonds of some pairs and a short-range repulsion of the others."""
@@ -24,9 +23,7 @@ GAP_A = 1.6  # between the surfaces that are laid on each other
 
 @dataclass(frozen=True)
 class Stack:
-    """Oxide on a base, as a force field: the types of the base come first, those of the oxide
-    follow.
-    """
+    """Oxide on a base, as a force field: the base's types come first, then the oxide's."""
 
     oxide: Potential
     base: Base
@@ -37,8 +34,7 @@ class Stack:
         return {**self.oxide.masses_u, **self.base.masses_u}
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
-        """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds, the
-        base keeps its own.
+        """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds.
 
         Raises
         ------
@@ -75,9 +71,7 @@ class Stack:
         )
 
     def bond(self, pair: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Energy (eV) and force (eV/Å) of an atom of the base and an ion, shifted to vanish at the
-        cut-off.
-        """
+        """Energy (eV) and force (eV/Å) of a base atom and an ion, zero at the cut-off."""
         below = self.base.below_films
         end = np.array([self.oxide.cutoff_A])
         parameters = below.bonds[pair].model_dump()
@@ -88,8 +82,7 @@ class Stack:
 
 
 def base_of(material: Material) -> Base:
-    """The body below a film, by what its material's file holds: a metal, or a glass of covalent
-    bonds.
+    """The body below a film, by its material's file: a metal, or a glass of covalent bonds.
 
     Raises
     ------
@@ -102,8 +95,7 @@ def base_of(material: Material) -> Base:
 
 
 def check_ions(base: Material, ions: Iterable[str]) -> None:
-    """Refuse a film with an ion of which the base's file does not say how it acts on each of its
-    atoms.
+    """Refuse a film with an ion whose action on the base's atoms its file does not state.
 
     Raises
     ------

@@ -1,5 +1,4 @@
-"""How strongly a top made of atoms attracts a smooth body, as the cut-off D0 of the law of
-attraction.
+"""How strongly a top of atoms attracts a smooth body, as the cut-off D0 of the law.
 
 Every atom of the top attracts a smooth rigid half-space by a 9-3 potential
 (Steele 1973, doi:10.1016/0039-6028(73)90264-1)
@@ -118,8 +117,7 @@ def tops_of(witness: Sequence[Mapping[str, float]]) -> list[TopAttraction]:
 def mean_over_glasses(
     values: np.ndarray, glasses: Sequence[int], count: int, rng: np.random.Generator
 ) -> np.ndarray:
-    """Samples of the mean over all glasses, of which a few were made and each was used for several
-    runs.
+    """Samples of the mean over all glasses, of which a few were made and used repeatedly.
 
     Runs scatter within a glass, and glasses differ. Two glasses leave open by how much. So all
     standard deviations count, each by its restricted likelihood; that of glasses over that of runs
@@ -151,8 +149,7 @@ def mean_over_glasses(
 
 
 def combined_cutoffs_nm(tops: Iterable[TopAttraction]) -> tuple[float, float]:
-    """Cut-offs D0 of several contacts that pull side by side, nm: by their forces, and by their
-    works.
+    """Cut-offs D0 of contacts that pull side by side, nm: by their forces, and by works.
 
     Forces, works and areas add up, so that each contact counts with its area.
     """
@@ -225,9 +222,7 @@ def contact_distance_A(density_per_A3: float) -> float:
 
 
 def bulk_density_per_A3(positions_A: np.ndarray, area_A2: float) -> float:
-    """Atoms a volume of the base, from positions of shape (atoms, 3) over a cell of the area
-    `area_A2`.
-    """
+    """Atoms a volume of the base, from positions (atoms, 3) over a cell of `area_A2`."""
     heights = positions_A[:, 2] - positions_A[:, 2].min()
     low, high = 6.0, 18.0  # above the frozen bottom's lowest atom: glass without a surface
     inside = (heights >= low) & (heights < high)
