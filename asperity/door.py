@@ -120,7 +120,7 @@ def scene_lines(
     """The text of a scene; without a film its roughness is the paper's, by numbers to replace."""
     yield f"# yaml-language-server: $schema={ROOT / 'config' / 'scene.schema.json'}"
     yield f"# Every key with its default: {ROOT / 'config' / 'config.yaml'}"
-    yield "tails: [pad]  # the switch; law: the law of one cell as in the paper, too"
+    yield "tails: [switch]  # the switch on a pad; law: the law of one cell as in the paper, too"
     if film is not None:
         yield "topography:"
         yield f"  scans: {json.dumps(list(film.settings.scans), ensure_ascii=False)}"

@@ -29,7 +29,7 @@ def _probability(value):
 
 
 def _pad(stuck=0.02, cells=0.1, explained=0.9, **more):
-    """As device/pad_switch.json with an answer for the inputs, D0 and geometry; the release's
+    """As answer/pad_switch.json with an answer for the inputs, D0 and geometry; the release's
     variance is 4 V².
     """
     rows = [("bow_nm", "each", 0.5), ("rms", "common", 0.25), ("gap_cutoff_nm", "common", 0.1)]

@@ -44,7 +44,7 @@ def first_screen(results: Results, gates: Any) -> First | None:
             f" switch {by_this} by this law; by the other one, with {work} the work of adhesion, it"
             f" {by_other}."
         )
-    answer = results.json("device/pad_switch.json").get("answer") or {}
+    answer = results.json("answer/pad_switch.json").get("answer") or {}
     named = bool(said.causes)
     causes = [(head, _largest(answer, kind)) for kind, head in KINDS.items()] if named else []
     bands = {kind: answer["known"][f"{kind}_V"] for kind in BANDS} if named else {}

@@ -12,7 +12,6 @@ POINT_CHUNKS = {"central": (0, 1)} | {
 
 # what jobs that use the pad read, and the settings that they have
 PRESSED = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv", "model": f"{RESULTS}/pad/model.h5"}
-EFFECTS = str(CONFIG / "effects.yaml")
 ON_PADS = {section: settings(section) for section in ("contact", "device", "pad")}
 if SPREAD_FILES:
     ON_PADS["departures"] = contents(*SPREAD_FILES)
@@ -60,30 +59,6 @@ rule pad:
         "../scripts/assemble_pad.py"
 
 
-rule device:
-    """the switch on the pads: release, sticking and what they hang on"""
-    input:
-        **PRESSED,
-        hardness=INPUT_STAGES.get("hardness", []),
-        effects=EFFECTS,
-    output:
-        switch=f"{RESULTS}/device/pad_switch.json",
-        budget=f"{RESULTS}/device/budget.csv",
-        errors=f"{RESULTS}/device/errors.csv",
-        verilog=f"{RESULTS}/device/rough_pad.va",
-        spice=f"{RESULTS}/device/rough_pad.sub",
-    log:
-        f"{RESULTS}/logs/device.log",
-    priority: 2
-    params:
-        **ON_PADS,
-        contents=contents(EFFECTS),
-    message:
-        "say what the switch does"
-    script:
-        "../scripts/answer_switch.py"
-
-
-if "pad" in SCENE.tails:
-    SHOWN += [*rules.pad.output, *rules.device.output]
+if "switch" in SCENE.tails:
+    SHOWN += rules.pad.output
     KEPT += rules.pad.input.chunks

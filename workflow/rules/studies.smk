@@ -15,12 +15,12 @@ OF_STAGE = {
     "topography": ({}, needed("topography")),
     "contact": (OF_CELL, bool(SCENE.tails)),
     "uncertainty": (OF_CELL, "law" in SCENE.tails),
-    "pad": (PRESSED, "pad" in SCENE.tails),
-    "answer": (PRESSED, "pad" in SCENE.tails),
-    "circuit": (PRESSED, "pad" in SCENE.tails),
-    "failure": (PRESSED, "pad" in SCENE.tails and SCENE.failure.probability is not None),
+    "pad": (PRESSED, "switch" in SCENE.tails),
+    "answer": (PRESSED, "switch" in SCENE.tails),
+    "circuit": (PRESSED, "switch" in SCENE.tails),
+    "failure": (PRESSED, "switch" in SCENE.tails and SCENE.failure.probability is not None),
 }
-IN_VOLTS = PRESSED if "pad" in SCENE.tails else {}
+IN_VOLTS = PRESSED if "switch" in SCENE.tails else {}
 ALSO_READ = {  # by one study alone
     "accuracy/hardness": IN_VOLTS,
     "accuracy/elastic": {
@@ -35,7 +35,7 @@ ALSO_READ = {  # by one study alone
     "accuracy/contact": IN_VOLTS,
     "accuracy/uncertainty": {
         "direct": DIRECT,
-        "again": rules.uq.input.again,
+        "again": rules.uncertainty.input.again,
         "parameters": f"{RESULTS}/law/parameters.csv",
     },
 }

@@ -22,7 +22,7 @@ LITTLE_V = 0.1
 
 
 @stage(
-    "What the budget leaves small, and its sources", "device/budget.csv", "device/pad_switch.json"
+    "What the budget leaves small, and its sources", "answer/budget.csv", "answer/pad_switch.json"
 )
 def describe(results: Results) -> Iterator[Block]:
     """The effects, the largest first: what the interval holds, then what it leaves out; what is not
@@ -52,13 +52,13 @@ def describe(results: Results) -> Iterator[Block]:
 def _rows(results: Results) -> list[CsvRow]:
     """The budget, with what the target `humidity` computed where it ran."""
     computed = {"humid air": _by_humidity(results)}
-    rows = [{**row, **computed.get(row["effect"], {})} for row in results.csv("device/budget.csv")]
+    rows = [{**row, **computed.get(row["effect"], {})} for row in results.csv("answer/budget.csv")]
     return sorted(rows, key=lambda row: -np.nan_to_num(number(row["volts"]), nan=-1.0))
 
 
 def _by_humidity(results: Results) -> CsvRow:
     """From the least to the largest release of the humidities that were computed."""
-    rows = results.csv("device/humidity.csv") if results.has("device/humidity.csv") else []
+    rows = results.rows("humidity/humidity.csv")
     if len(solved := [row for row in rows if row["release_V"]]) < 2:
         return {}
     release, humidity = column(solved, "release_V"), column(solved, "humidity")
@@ -70,7 +70,7 @@ def _by_humidity(results: Results) -> CsvRow:
         "volts": str(np.ptp(release)),
         "about": about,
         "how": "computed",
-        "source": "device/humidity.csv",
+        "source": "humidity/humidity.csv",
     }
 
 
@@ -107,7 +107,7 @@ def _caption(results: Results, rows: list[CsvRow]) -> str:
         f" at central inputs. Together they are {show(float(np.sqrt(np.nansum(np.square(held)))))}"
         " V, added in quadrature"
     )
-    if answer := results.json("device/pad_switch.json").get("answer"):
+    if answer := results.json("answer/pad_switch.json").get("answer"):
         ends = [answer["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]
         return f"{said}; the interval is {show(ends[1] - ends[0])} V wide"
     return said

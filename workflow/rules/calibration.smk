@@ -79,7 +79,7 @@ use rule press_pads as press_prior_pads with:
         f"press pads {{wildcards.chunk}} over the prior (central, 000 to {len(POINT_CHUNKS) - 2:03})"
 
 
-rule calibrate:
+rule calibration:
     """inputs narrowed by your measurements of contacts"""
     input:
         required(
@@ -97,7 +97,7 @@ rule calibrate:
         predictive=f"{RESULTS}/calibration/predictive.csv",
         posterior=f"{RESULTS}/calibration/posterior.json",
     log:
-        f"{RESULTS}/logs/calibrate.log",
+        f"{RESULTS}/logs/calibration.log",
     resources:
         mem_mb=CONTACT_MB,
     params:
@@ -111,5 +111,5 @@ rule calibrate:
 
 
 if SCENE.measurements.tables:
-    SHOWN += rules.calibrate.output
-    KEPT += rules.calibrate.input.cycles
+    SHOWN += rules.calibration.output
+    KEPT += rules.calibration.input.cycles
