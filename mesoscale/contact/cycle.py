@@ -181,17 +181,16 @@ def run_cycle(
     if hold is not None:
         closing.rows += hold(contact, closing.rows[-1])
     last = closing.rows[-1]
-    changed, remarks = contact.changed_sites, contact.remarks()
+    changed = contact.changed_sites
+    remarks = contact.remarks()
     if contact.adhesion and contact.adhesion.menisci:
         remarks["filled_share"] = contact.filled_share(last.separation)
     repeated, unconverged = closing.repeated, closing.unconverged
     if not contact.REVERSIBLE:
         path = reopen(contact, numerics.force_steps, last)
-        opening, repeated, unconverged = (
-            path.rows,
-            repeated + path.repeated,
-            unconverged + path.unconverged,
-        )
+        opening = path.rows
+        repeated = repeated + path.repeated
+        unconverged = unconverged + path.unconverged
         departure = [
             row for gap in _gaps(contact) for row in contact.way(path.rows[-1].separation + gap)
         ]

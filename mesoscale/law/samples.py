@@ -32,10 +32,8 @@ def band_rows(columns: Mapping[str, Array], points: int = 301) -> Iterator[dict[
         law = Law(
             *every[:, usable][:, :4000, None]
         )  # quantiles are then known to 1 % in probability
-        touch, decay = (
-            float(np.median(np.asarray(law.d_c_nm))),
-            float(np.median(np.asarray(law.rho_r_nm))),
-        )
+        touch = float(np.median(np.asarray(law.d_c_nm)))
+        decay = float(np.median(np.asarray(law.rho_r_nm)))
         for gap in np.linspace(
             max(touch - 8.0 * decay, 0.0), touch + law.rho_a_nm + 8.0 * decay, points
         ):

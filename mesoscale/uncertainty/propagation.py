@@ -47,7 +47,8 @@ def to_paper_outputs(parameters: Array) -> Array:
     """Closing and opening parameters (..., len(FITTED)) to closing parameters and their change,
     same shape.
     """
-    closing, opening = parameters[..., CLOSING], parameters[..., OPENING]
+    closing = parameters[..., CLOSING]
+    opening = parameters[..., OPENING]
     return np.concatenate([closing, opening - closing], axis=-1)
 
 
@@ -79,7 +80,8 @@ def exported_responses(
     responses: list[Response | None] = [
         _regression(x, y[:, k], ranges, any_sign) for k, any_sign in enumerate(signs)
     ]
-    first, last = FITTED.index("closing_d_c_nm"), FITTED.index("opening_d_c_nm")
+    first = FITTED.index("closing_d_c_nm")
+    last = FITTED.index("opening_d_c_nm")
     above = responses[first]
     if settings.opening_contact == "below_closing" and isinstance(above, Surrogate):
         # at least 0.01 nm, so that there is a logarithm
@@ -201,7 +203,8 @@ def output_rows(
     mean and dev are the paper's method; response_* are those of the exported responses, averaged
     over random surfaces; cell_* those of the direct runs, each a cell of its own."""
     y = nodes.paper_outputs
-    propagated, cells = to_paper_outputs(result.outputs), to_paper_outputs(direct[1])
+    propagated = to_paper_outputs(result.outputs)
+    cells = to_paper_outputs(direct[1])
     rows = []
     for k, output in enumerate(LAW_OUTPUTS):
         complete = np.isfinite(result.by_seed[:, 0, k])

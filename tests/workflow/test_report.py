@@ -123,7 +123,7 @@ def test_only_what_exists_is_shown(made_up):
     root, paths = made_up
     few = [path for path in paths if path.name in ("inputs.csv", "scene.yaml")]
     page = render(Results(root, few, "few"))
-    assert re.findall(r'<section id="([^"]+)"', page) == ["answer", "part-from", "part-trust"]
+    assert re.findall(r'<section id="([^"]+)"', page) == ["first", "part-from", "part-trust"]
 
 
 def test_gates_tell_what_failed_and_text_is_escaped(made_up, page):

@@ -170,7 +170,7 @@ def test_the_page_before_the_end_brings_no_warning():
             f"Warning: the following output files of rule {rule} were not present when the DAG was"
             " created:"
         )
-    assert [" of rule device " in record.getMessage() for record in heard] == [True]
+    assert [" of rule answer " in record.getMessage() for record in heard] == [True]
 
 
 def test_nothing_to_do_names_the_report(capsys):

@@ -61,7 +61,7 @@ rule observe_cycles:
         contact=settings("contact"),
         bounds=lambda wildcards: MEASUREMENT_CHUNKS[wildcards.chunk],
     message:
-        f"compute what can be measured of contact cycles, chunk {{wildcards.chunk}} of {len(MEASUREMENT_CHUNKS)}"
+        f"observe contact cycles, chunk {{wildcards.chunk}} of {len(MEASUREMENT_CHUNKS)}"
     script:
         "../scripts/observe_cycles.py"
 
@@ -76,7 +76,7 @@ use rule press_pads as press_prior_pads with:
     log:
         f"{RESULTS}/logs/press_prior_pads_{{chunk}}.log",
     message:
-        f"press pads {{wildcards.chunk}} over the prior (central, 000 to {len(POINT_CHUNKS) - 2:03})"
+        f"press pads {{wildcards.chunk}} over the prior ({ALL_CHUNKS})"
 
 
 rule calibration:

@@ -6,7 +6,8 @@ rule failure:
     input:
         required(
             SCENE.failure.probability is not None,
-            "failure.probability = null: give the share of the switches that may fail, such as 1e-6",
+            "failure.probability = null: give the share of the switches that may fail,"
+            " such as 1e-6",
         ),
         **PRESSED,
     output:

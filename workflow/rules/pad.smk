@@ -8,6 +8,7 @@ POINT_CHUNKS = {"central": (0, 1)} | {
         SCENE.pad.points, POINTS_PER_JOB[SCENE.contact.mechanics]
     ).items()
 }
+ALL_CHUNKS = f"central, 000 to {len(POINT_CHUNKS) - 2:03}"
 
 
 # what jobs that use the pad read, and the settings that they have
@@ -25,7 +26,8 @@ rule press_pads:
         f"{RESULTS}/pad/points/chunk_{{chunk}}.h5",
     log:
         f"{RESULTS}/logs/press_pads_{{chunk}}.log",
-    # first of all: the rest then fills the other cores while the pad is assembled; the central point has the first answer
+    # first of all: the rest then fills the other cores while the pad is assembled;
+    # the central point has the first answer
     priority: lambda wildcards: 3 if wildcards.chunk == "central" else 2
     resources:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
@@ -33,7 +35,7 @@ rule press_pads:
         **ON_PADS,
         bounds=lambda wildcards: POINT_CHUNKS[wildcards.chunk],
     message:
-        f"press pads {{wildcards.chunk}} (central, 000 to {len(POINT_CHUNKS) - 2:03})"
+        f"press pads {{wildcards.chunk}} ({ALL_CHUNKS})"
     script:
         "../scripts/press_pads.py"
 

@@ -1,4 +1,5 @@
-# Error against run time (accuracy) and stiff and extreme cases (stability) of every stage that the scene uses
+# Error against run time (accuracy), and stiff and extreme cases (stability), of every stage that
+# the scene uses
 
 OF_CELL = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"}
 # what both studies of a stage read beside settings, and whether the scene uses the stage
@@ -49,7 +50,10 @@ def studies_of(kind):
 def files_of_study(wildcards):
     """As named inputs: what a study reads; a stage that the scene does not use is refused."""
     files, used = OF_STAGE[wildcards.stage]
-    words = f"target accuracy or stability: the scene does not use the stage {wildcards.stage}; nothing to study"
+    words = (
+        f"target accuracy or stability: the scene does not use the stage {wildcards.stage};"
+        " nothing to study"
+    )
     return {
         "used": required(used, words),
         **files,

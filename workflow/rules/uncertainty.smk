@@ -3,7 +3,7 @@ from mesoscale.uncertainty.chunks import MOST_REPEATED, full_chunks
 DIRECT_CHUNKS = full_chunks(SCENE.uncertainty.direct_runs)
 # more runs add files and leave these as they are
 DIRECT = [f"{RESULTS}/uncertainty/direct/chunk_{chunk}.csv" for chunk in DIRECT_CHUNKS]
-# the first ones once more on other surfaces, for the scatter between these apart from what the inputs explain
+# the first ones once more on other surfaces: scatter between surfaces is no effect of the inputs
 AGAIN = (0, min(MOST_REPEATED, SCENE.uncertainty.direct_runs))
 
 
