@@ -146,7 +146,7 @@ class OneLoad:
             if bind(*state, self.load / kept, self.change) > UNSEEN * tolerance * largest:
                 self._step_ahead(sites, uniform, length)
                 self.gap += self._moved(self.change)
-                self.drift += size(self.change) / self.load
+                self.drift += np.abs(self.change).sum(dtype=float) / self.load
             goal = GOAL_SHARE * tolerance * largest * self.base.spring
             share = FACE_SHARE if moved else 0.0
             length = self._close_gaps(sites, uniform, goal, share)
@@ -194,7 +194,7 @@ class OneLoad:
             length = gained / work
             left = advance(sites, length, unit, change, moved, misfit, self.pressure)
             add(length * unit, moved, self.gap)
-            self.drift += length * unit * size(change) / self.load
+            self.drift += length * unit * size(sites, change) / self.load
         return length
 
     def pressed(self, settled: bool) -> Pressed:
@@ -245,7 +245,7 @@ def classify(pressure, gap, separation, stiffness):
         wanted = max(here - stiffness * (gap[k] + separation), 0.0)
         worst = max(worst, abs(here - wanted))
         largest = max(largest, here)
-        moved += (wanted > 0.0) != (here > 0.0)
+        moved += (wanted > 0.0) != (here != 0.0)
         if wanted > 0.0:
             sites[count] = k
             count += 1
@@ -324,11 +324,11 @@ def product(sites, change, moved):
 
 
 @njit(cache=True)
-def size(change):
-    """Sum of the sizes of all changes."""
+def size(sites, change):
+    """Sum of the sizes of the changes of some sites."""
     total = 0.0
-    for value in change:
-        total += abs(value)
+    for site in sites:
+        total += abs(change[site])
     return total
 
 
