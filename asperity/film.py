@@ -347,7 +347,7 @@ class Switch(Shown):
 
     Attributes
     ----------
-    content : as device/pad_switch.json of a scene without points.
+    content : as answer/pad_switch.json of a scene without points.
     """
 
     content: dict[str, Any]

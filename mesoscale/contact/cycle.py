@@ -145,7 +145,7 @@ def run_cycle(
     keep_surface
         Return the surface as it is after the cycle.
     hold
-        What happens between closing and opening (`mesoscale.contact.history`): takes the contact
+        What happens between closing and opening (`mesoscale.history.creep`): takes the contact
         and its last row, returns the rows that follow at the end of the closing branch.
     numerics
         How finely the contact is computed; the default is what every scene uses.

@@ -15,13 +15,12 @@ QUANTILES = {"pressure_q05_GPa": 0.05, "pressure_q50_GPa": 0.5, "pressure_q95_GP
 
 
 def band_rows(columns: Mapping[str, Array], points: int = 301) -> Iterator[dict[str, Any]]:
-    """Rows of uq/law.csv: the pressure over samples of the law, branch by branch; positive:
-    repulsive.
+    """Rows of uncertainty/law.csv: pressure over samples of the law by branch; positive: repulsive.
 
     Parameters
     ----------
-    columns : of uq/samples.csv, shape (samples,) each; samples without a positive C_r and rho_r are
-        left out."""
+    columns : of uncertainty/samples.csv, shape (samples,) each; samples without a positive C_r and
+        rho_r are left out."""
     for branch in BRANCHES:
         every = np.array(
             [*(columns[f"{branch}_{name}"] for name in PARAMETERS), columns["hamaker"]], float

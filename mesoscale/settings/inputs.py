@@ -160,7 +160,7 @@ def _key(row: InputDefinition) -> Any:
 class InputsSettings(
     create_model("InputsSettings", __base__=Settings, **{row.name: _key(row) for row in INPUTS})
 ):
-    """Origin and distribution of the uncertain inputs (docs/uncertainty.md)."""
+    """Origin and distribution of the uncertain inputs (docs/inputs.md)."""
 
     hardness: HardnessLawName = key(
         "paper",

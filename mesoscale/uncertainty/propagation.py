@@ -111,7 +111,9 @@ def _regression(x: Array, y: Array, ranges: Array, any_sign: bool) -> Surrogate 
 
     try:
         return sparse_chaos(x, y, ranges, transform="identity" if any_sign else "log")
-    except ValueError:  # too few usable runs; the count of missing ones is in uq/validation.csv
+    except (
+        ValueError
+    ):  # too few usable runs; the count of missing ones is in uncertainty/validation.csv
         return None
 
 
@@ -195,8 +197,8 @@ def output_rows(
     paper: Mapping[str, tuple[float, float]],
     paper_exchanged: Mapping[str, tuple[float, float]],
 ) -> list[dict[str, Any]]:
-    """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of
-    seeds.
+    """Rows of uncertainty/outputs.csv: Table 2 beside the paper's; differences in units of the
+    scatter of seeds.
 
     mean and dev are the paper's method; response_* are those of the exported responses, averaged
     over random surfaces; cell_* those of the direct runs, each a cell of its own."""
@@ -256,7 +258,7 @@ def _center_and_scatter(values: Array) -> tuple[float, float]:
 def surrogate_json(
     result: Propagation, table: InputTable, law: Mapping[str, float]
 ) -> dict[str, Any]:
-    """Content of uq/surrogate.json: usable without this code (docs/uncertainty.md)."""
+    """Content of uncertainty/surrogate.json: usable without this code (docs/uncertainty.md)."""
     inputs = [
         {
             "name": row.name,

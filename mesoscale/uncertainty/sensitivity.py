@@ -86,7 +86,7 @@ def sensitivity_rows(
     paper_as_printed: Mapping[str, Mapping[str, float]],
     direct: Direct,
 ) -> list[dict[str, Any]]:
-    """Rows of uq/sensitivity.csv: every output with every input.
+    """Rows of uncertainty/sensitivity.csv: every output with every input.
 
     mu* is the mean over seeds of every seed's own value on the nodes of level 1 (the paper's one
     star), beside its scatter. Sobol' indices are those of the exported responses, averaged over

@@ -67,7 +67,7 @@ def validation_rows(
     again: Array,
     most_GPa: float,
 ) -> list[dict[str, Any]]:
-    """Rows of uq/validation.csv, one per output of Table 2.
+    """Rows of uncertainty/validation.csv, one per output of Table 2.
 
     Parameters
     ----------
