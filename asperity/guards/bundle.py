@@ -39,7 +39,7 @@ def bind_workflow() -> None:
         name = f"workflow.{file.parent.name}"
         if name in sys.modules:
             raise SystemExit(
-                f"ERROR {name}: the host workflow has imported a module of this name, which is one of"
-                " Asperity's, too; give it another name"
+                f"ERROR {name}: the host workflow has imported a module of this name, which"
+                " Asperity has, too; give it another name"
             )
     package.__path__ = [str(folder), *package.__path__]
