@@ -176,7 +176,7 @@ class Film(Shown):
         """The first map, levelled, and all spectra with their trusted parts, as a Matplotlib
         figure.
         """
-        with needs("run"):
+        with needs("plot"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
         maps = self.maps
@@ -295,7 +295,7 @@ class FilmContact(Shown):
 
     def plot(self) -> Any:
         """The map of pressure and force against separation, as a Matplotlib figure."""
-        with needs("run"):
+        with needs("plot"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
         side = self.settings.length_nm / 1000

@@ -118,6 +118,11 @@ def build_cell(
 class PyscfGamma(Calculator):
     """ASE calculator: closed-shell Kohn–Sham DFT of a supercell at its Γ point.
 
+    The potential is that of `atomistic.elastic.gamma_scf`. Each calculation starts from the
+    occupied orbitals of the last ones, extrapolated to the new geometry (`extrapolated_orbitals`),
+    which saves more than half of the cycles. They are part of the key in `store`, so a series that
+    is interrupted and replayed gives the same numbers to the last bit.
+
     Parameters
     ----------
     xc : "GGA" (PBE) or "LDA" (Teter–Padé, the functional of the GTH-PADE pseudopotentials)
@@ -128,11 +133,7 @@ class PyscfGamma(Calculator):
     tolerance_Ha : SCF convergence of the energy per cell, hartree
     max_cycles : SCF cycles before giving up
     store : finished calculations; one found there is not repeated
-
-    The potential is that of `atomistic.elastic.gamma_scf`. Each calculation starts from the
-    occupied orbitals of the last ones, extrapolated to the new geometry (`extrapolated_orbitals`),
-    which saves more than half of the cycles.  They are part of the key in `store`, so a series that
-    is interrupted and replayed gives the same numbers to the last bit."""
+    """
 
     parameters: Any  # a dictionary with attributes (ASE)
 

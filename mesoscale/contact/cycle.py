@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from mesoscale.contact.path import reopen, trace
 from mesoscale.contact.pressed import Contact, Row
 from mesoscale.contact.surface import ContactAt, given_surface, random_surface
 from mesoscale.errors import InputError
+from mesoscale.extras import needs
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
@@ -44,6 +46,14 @@ class Branch:
     def net_nN(self) -> np.ndarray:
         """Repulsion and attraction together, nN; negative where the contact pulls."""
         return self.repulsive_nN + self.attractive_nN
+
+    def to_frame(self) -> Any:
+        """A pandas DataFrame with a row a step, and the units in `attrs["units"]`."""
+        with needs("plot"):
+            import pandas as pd
+        frame = pd.DataFrame({name: getattr(self, name) for name in BRANCH_COLUMNS})
+        frame.attrs["units"] = {name: unit for name, (unit, _) in BRANCH_COLUMNS.items()}
+        return frame
 
 
 BRANCH_COLUMNS = {
@@ -90,6 +100,15 @@ class Cycle:
         if self.flags.get("full_contact"):
             return f"{text}; NOT CONVERGED: full contact"
         return f"{text}; NOT CONVERGED"
+
+    def to_frame(self) -> Any:
+        """Both branches as one pandas DataFrame; the column `branch` is closing or opening."""
+        with needs("plot"):
+            import pandas as pd
+        branches = {"closing": self.closing.to_frame(), "opening": self.opening.to_frame()}
+        frame = pd.concat(branches, names=["branch", "step"]).reset_index(level="branch")
+        frame.attrs["units"] = branches["closing"].attrs["units"]
+        return frame
 
     @property
     def cell_area_nm2(self) -> float:

@@ -1,7 +1,7 @@
 """Persson's theory of the elastic contact of a rough surface, without adhesion.
 
 The theory takes the surface as Gaussian and of small slopes. It knows the surface by its RMS
-gradient alone: the square root of the mean of |grad h|^2 over the area. It is exact at full
+gradient alone: the square root of the mean of (grad h)^2 over the area. It is exact at full
 contact. At light loads computed contacts have 15 to 40 % more area, by grid and spectrum.
 
 Sources: B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840, doi 10.1063/1.1388626; W. Manners and J.

@@ -19,7 +19,7 @@ import asperity as asp
 from asperity.__main__ import COMMANDS as DOORS
 from asperity.__main__ import _parser as parser
 from asperity.__main__ import targets as stages
-from asperity.door import device_of, material_of
+from asperity.words import device_of, material_of
 from mesoscale.inputs.table import collect
 from mesoscale.law.parameters import FITTED
 from mesoscale.settings import UncertaintySettings

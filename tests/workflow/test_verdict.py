@@ -199,7 +199,7 @@ def test_the_bar_has_the_zone_of_sticking_apart_from_the_axis_of_volts():
     bar = release_bar(said(_pad()))
     assert 'class="zone"' in bar
     assert 'class="interval"' in bar
-    assert " 2%" in bar
+    assert " 2\u202f%" in bar
     assert 'class="other"' in bar
     assert 'class="interval"' not in release_bar(said({**_pad(), "answer": None}))
 

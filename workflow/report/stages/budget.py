@@ -7,8 +7,9 @@ import numpy as np
 
 from mesoscale.settings import DeviceSettings
 from workflow.report.available import CsvRow, Results
+from workflow.report.drawing import BLUE, draw
 from workflow.report.numbers import column, number, show
-from workflow.report.page import Block, stage, table
+from workflow.report.page import Block, Figure, stage, table
 from workflow.report.verdict import NAMES, in_words
 
 HOW = {
@@ -40,6 +41,11 @@ def describe(results: Results) -> Iterator[Block]:
     large = [row for row in rows if not number(row["volts"]) < LITTLE_V]
     held = [row for row in large if row["held"] == "True"]
     if held:
+        yield Figure(
+            bars(held),
+            "Volts by which each effect moves the release.",
+            front=True,
+        )
         yield table(_caption(results, rows), held, HELD, front=True)
     left_out = "What the interval leaves out, by the volts that the release moves"
     yield table(left_out, [row for row in large if row["held"] != "True"], LEFT_OUT, front=True)
@@ -47,6 +53,22 @@ def describe(results: Results) -> Iterator[Block]:
         "Effects below 0.1 V", [row for row in rows if number(row["volts"]) < LITTLE_V], LEFT_OUT
     )
     yield table("Sources", rows, {"effect": _effect, "source": "source"})
+
+
+def bars(rows: list[CsvRow]) -> str:
+    """A bar an effect, the largest on top, with its volts at its end."""
+    names = [_effect(row) for row in rows]
+    moved_V = column(rows, "volts")
+
+    def plot(axis):
+        places = np.arange(len(rows))[::-1]
+        drawn = axis.barh(places, moved_V, color=BLUE, height=0.62)
+        axis.bar_label(drawn, [f"{show(value, 2)} V" for value in moved_V], padding=4)
+        axis.set_yticks(places, names)
+        axis.set(xlabel="release moves by (V)", xlim=(0.0, 1.12 * np.nanmax(moved_V)))
+        axis.grid(False, axis="y")
+
+    return draw("budget-bars", "Volts by effect", plot, (5.0, 0.6 + 0.3 * len(rows)))
 
 
 def _rows(results: Results) -> list[CsvRow]:
