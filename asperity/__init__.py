@@ -54,7 +54,10 @@ def __getattr__(name: str) -> Any:
     """
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    globals()[name] = value = getattr(importlib.import_module(_MODULES[name]), name)
+    home = importlib.import_module(_MODULES[name])
+    if not hasattr(home, name):  # a module of a package, such as `theory`
+        importlib.import_module(f"{_MODULES[name]}.{name}")
+    globals()[name] = value = getattr(home, name)
     return value
 
 

@@ -3,6 +3,7 @@ from asperity.film import FilmContact as FilmContact
 from asperity.film import Switch as Switch
 from asperity.press import PressedMap as PressedMap
 from asperity.press import press as press
+from mesoscale import theory as theory
 from mesoscale.contact import Branch as Branch
 from mesoscale.contact import ContactInputs as ContactInputs
 from mesoscale.contact import Cycle as Cycle

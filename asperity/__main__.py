@@ -120,11 +120,14 @@ def _parser() -> argparse.ArgumentParser:
         "--detrend", choices=("plane", "quadratic", "none"), help="tilt and form to take off"
     )
     words = (
-        "e_star=75, h_macro=1:1.6, e_star=75+-4 (GPa), hamaker=0.2 (1e-18 J); default: the paper's"
-        " films"
+        "e_star=75, h_macro=1:1.6, e_star=75+-4 (GPa), e_star=gold/silica, hamaker=0.2 (1e-18 J),"
+        " humidity=40%%; default: the paper's films"
     )
     film.add_argument("--material", nargs="+", default=[], metavar="NAME=VALUE", help=words)
-    words = "gap_um=2, length_um=300, …; default: a published beam"
+    words = (
+        "gap_um=2, ends=cantilever, electrode=0.2:0.8, material=aluminium, …; default: a published"
+        " beam"
+    )
     film.add_argument("--device", nargs="+", default=[], metavar="NAME=VALUE", help=words)
     film.add_argument("--scene", help="file to write; default: named like the first file")
     for name in ("run", "plan", "film", "demo"):
@@ -202,8 +205,9 @@ def _film(given: argparse.Namespace) -> int:
         "MKL",
     ):  # on small matrices threads wait for each other, three times as long
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
-    from asperity.door import device_of, material_of, readable, scene_lines, topography_of
+    from asperity.door import readable, scene_lines, topography_of
     from asperity.film import Film
+    from asperity.words import assumed_lines, device_of, material_of
     from mesoscale.errors import InputError
     from mesoscale.extras import MissingExtra
 
@@ -222,13 +226,9 @@ def _film(given: argparse.Namespace) -> int:
         status := _write(scene, text)
     ):
         return status
-    defaults = [
-        f"--{name}"
-        for name in ("tip-nm", "material", "device")
-        if not getattr(given, name.replace("-", "_"))
-    ]
-    assumed = f"; put your own in place of its defaults: {', '.join(defaults)}" if defaults else ""
-    print(wrapped(f"{scene} is the scene of this film{assumed}"))
+    print(wrapped(f"{scene} is the scene of this film"))
+    for line in assumed_lines(material, device):
+        print(wrapped(shown(line)))
     if not film.description["gate"]["passed"]:
         return _refuse(
             f"{scene}: not run because of the doubts above; mend it, then: asperity run {scene}"

@@ -11,7 +11,7 @@ from typing import Any, get_args
 
 from asperity.film import MATERIAL, Film, pixels_for
 from asperity.guards.bundle import ROOT
-from asperity.guards.foreign_text import did_you_mean
+from asperity.words import NUMBER, SCALAR_KEYS
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import PAPER_ROWS
 from mesoscale.settings import DeviceSettings, InputRow, InstrumentSettings, TopographySettings
@@ -19,13 +19,6 @@ from mesoscale.settings.definitions import definition
 from mesoscale.settings.topography import LengthUnit
 from mesoscale.topography.measurements import check_count, files_in
 from mesoscale.topography.measurements.loading import load_measurements
-
-NUMBERS_OF_DEVICE = [
-    name
-    for name, field in DeviceSettings.model_fields.items()
-    if field.annotation in (float, float | None)
-]
-NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 
 
 def topography_of(given: Namespace) -> dict[str, Any]:
@@ -121,64 +114,13 @@ def readable(
     return files
 
 
-def material_of(given: Sequence[str]) -> dict[str, InputRow]:
-    """Rows of inputs from words such as e_star=75, h_macro=1:1.6 (range) and e_star=75+-4
-    (deviation).
-
-    Raises
-    ------
-    InputError : none of these forms, or an unknown input.
-    """
-    rows = {}
-    for word in given:
-        name, _, value = word.partition("=")
-        definition(name)
-        if name in rows:
-            raise InputError(f"{word}: {name} is given twice; leave one of them out")
-        numbers = re.fullmatch(rf"({NUMBER})(?:(:|\+-)({NUMBER}))?", value)
-        if numbers is None:
-            raise InputError(
-                f"{word}: accepted are {name}=75, {name}=70:80 (from, to) and {name}=75+-4"
-                " (deviation)"
-            )
-        first, sign, second = numbers.groups()
-        kind = {None: "fixed", ":": "uniform", "+-": "normal"}[sign]
-        values = tuple(float(number) for number in (first, second) if number)
-        stated: Any = {"distribution": kind, "values": values, "source": "command line"}
-        rows[name] = InputRow(**stated)
-    return rows
-
-
-def device_of(given: Sequence[str]) -> dict[str, float]:
-    """Keys of the section `device` from words such as gap_um=2.
-
-    Raises
-    ------
-    InputError : an unknown key, or no number.
-    """
-    keys = {}
-    for word in given:
-        name, _, value = word.partition("=")
-        if name not in NUMBERS_OF_DEVICE or not re.fullmatch(NUMBER, value):
-            listed, meant = ", ".join(NUMBERS_OF_DEVICE), did_you_mean(name, NUMBERS_OF_DEVICE)
-            raise InputError(
-                f"{word}: accepted is KEY=NUMBER with a key of {listed} (others: in the"
-                f" scene){meant}"
-            )
-        if name in keys:
-            raise InputError(f"{word}: {name} is given twice; leave one of them out")
-        keys[name] = float(value)
-    DeviceSettings(**keys)
-    return keys
-
-
 def scene_lines(
-    film: Film | None, material: Mapping[str, InputRow], device: Mapping[str, float]
+    film: Film | None, material: Mapping[str, InputRow], device: Mapping[str, Any]
 ) -> Iterator[str]:
     """The text of a scene; without a film its roughness is the paper's, by numbers to replace."""
     yield f"# yaml-language-server: $schema={ROOT / 'config' / 'scene.schema.json'}"
     yield f"# Every key with its default: {ROOT / 'config' / 'config.yaml'}"
-    yield "tails: [pad]  # the switch; law: the law of one cell as in the paper, too"
+    yield "tails: [switch]  # the switch on a pad; law: the law of one cell as in the paper, too"
     if film is not None:
         yield "topography:"
         yield f"  scans: {json.dumps(list(film.settings.scans), ensure_ascii=False)}"
@@ -219,7 +161,15 @@ def scene_lines(
         " elastic half-space"
     )
     yield "device:  # a published beam, where you gave nothing else"
-    defaults = {key: getattr(DeviceSettings(), key) for key in NUMBERS_OF_DEVICE}
-    for name, value in (defaults | dict(device)).items():
+    defaults = DeviceSettings()
+    for name in SCALAR_KEYS:
+        value = device.get(name, getattr(defaults, name))
         about = DeviceSettings.model_fields[name].description
-        yield f"  {name}: {'null' if value is None else f'{value:g}'}  # {about}"
+        yield f"  {name}: {_as_yaml(value)}  # {about}"
+
+
+def _as_yaml(value: float | str | tuple[float, float] | None) -> str:
+    """A value of the device as a scene has it."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    return json.dumps(value)

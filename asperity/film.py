@@ -170,7 +170,7 @@ class Film(Shown):
         """The first map, levelled, and all spectra with their trusted parts, as a Matplotlib
         figure.
         """
-        with needs("run"):
+        with needs("plot"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
         maps = self.maps
@@ -289,7 +289,7 @@ class FilmContact(Shown):
 
     def plot(self) -> Any:
         """The map of pressure and force against separation, as a Matplotlib figure."""
-        with needs("run"):
+        with needs("plot"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
         side = self.settings.length_nm / 1000
@@ -341,7 +341,7 @@ class Switch(Shown):
 
     Attributes
     ----------
-    content : as device/pad_switch.json of a scene without points.
+    content : as answer/pad_switch.json of a scene without points.
     """
 
     content: dict[str, Any]

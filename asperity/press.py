@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
+from scipy import ndimage
 
 from asperity.film import Shown
 from mesoscale.checks import (
@@ -14,7 +15,9 @@ from mesoscale.checks import (
     checked_array,
     checked_heights,
 )
-from mesoscale.contact.attraction import attracting
+from mesoscale.contact.attraction import all_attracting
+from mesoscale.contact.coupled import one_load, validity
+from mesoscale.contact.coupled.base import Alone, Repeated
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.coupled.free import FreeContact
 from mesoscale.contact.cycle import (
@@ -35,6 +38,8 @@ PressureOfGaps = Callable[[np.ndarray], Any]
 
 MAP_MB = 16e-6
 """Of a site at a load: its pressure and its gap."""
+FEW_LOADS = 4
+"""Elastic loads up to which each is found without the way there; of more the way costs less."""
 STRONGEST_GPA = 1e3
 """Of an attraction: 0.25 aJ across 0.1 nm make 13 GPa, the cohesion of diamond is some 100 GPa."""
 ATTRACTION = (
@@ -85,11 +90,49 @@ class PressedMap(Shown):
                 f" GPa, {self.separation_nm[k]:.4g} nm from the mean plane"
             )
 
+    def to_frame(self) -> Any:
+        """A pandas DataFrame with a row a load."""
+        with needs("plot"):
+            import pandas as pd
+        names = ("loads_nN", "separation_nm", "approach_nm", "attraction_nN", "area_share")
+        return pd.DataFrame({name: getattr(self, name) for name in names})
+
+    def to_xarray(self) -> Any:
+        """An xarray Dataset of the maps, with coordinates load (nN), x and y (nm)."""
+        with needs("plot"):
+            import xarray as xr
+        sites = self.pressure_GPa.shape[1:]
+        x, y = (
+            (np.arange(count) + 0.5) * length / count
+            for count, length in zip(sites, self.lengths_nm, strict=True)
+        )
+        coordinates = {
+            "load": ("load", self.loads_nN, {"units": "nN"}),
+            "x": ("x", x, {"units": "nm"}),
+            "y": ("y", y, {"units": "nm"}),
+        }
+        maps = {
+            "pressure": (("load", "x", "y"), self.pressure_GPa, {"units": "GPa"}),
+            "gap": (("load", "x", "y"), self.gap_nm, {"units": "nm"}),
+        }
+        return xr.Dataset(maps, coordinates)
+
+    def spot_areas_nm2(self, load: int = -1) -> np.ndarray:
+        """Areas of the contact spots at one of the loads, the largest first.
+
+        Sites that touch at an edge or a corner are one spot; spots do not go on across the edges of
+        the map.
+        """
+        spots, count = ndimage.label(self.pressure_GPa[load] > 0.0, np.ones((3, 3)))
+        sizes = np.bincount(spots.ravel(), minlength=count + 1)[1:]
+        site_nm2 = np.prod(self.lengths_nm) / spots.size
+        return np.sort(sizes)[::-1] * site_nm2
+
     def plot(self, load: int = -1) -> Any:
         """Pressure and gap at one of the loads, by its place in `loads_nN`, as a Matplotlib
         figure.
         """
-        with needs("run"):
+        with needs("plot"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(
             1, 2, figsize=(9, 3.8), layout="constrained", sharex=True, sharey=True
@@ -178,37 +221,21 @@ def press(
     )
     check_hardness(inputs, settings)
     offset, lowest = float(surface.mean()), float(surface.min())
-    contact = (
-        CoupledContact(surface, inputs, settings)
-        if periodic
-        else FreeContact(surface, inputs, settings)
-    )
-    if by_load:
-        _refuse_beyond(contact, steps[-1])
+    if by_load and h_macro is None and steps.size <= FEW_LOADS:
+        states = _each_load(surface, periodic, steps, inputs, settings)
+    else:
+        states = _way(surface, periodic, steps, by_load, inputs, settings)
     forces, separations, pulls = (np.zeros(steps.size) for _ in range(3))
     pressures, gaps = (np.empty((steps.size, *surface.shape)) for _ in range(2))
-    row, converged = None, True
-    for number, step in enumerate(steps):
-        ends = {"stop_force": step} if by_load else {"stop_separation": -lowest - step}
-        path = trace(
-            contact, NUMERICS.force_steps if h_macro else 1, h_macro is not None, **ends, start=row
-        )
-        row = path.rows[-1]
-        if not np.isfinite(contact.separation):  # it stays where the highest site just touches
-            what = f"loads_nN = {step:g}" if by_load else f"approach_nm = {step:g}"
-            raise InputError(
-                f"{what}: too little to press one site of this map; give more, or check its units"
-            )
-        if by_load:
-            converged &= abs(row.force / step - 1.0) <= MAX_FORCE_MISS
-        else:
-            _refuse_beyond(contact, row.force)
-        converged &= path.reached and path.unconverged == 0
-        forces[number] = row.force
-        separations[number] = row.separation
-        pressures[number], gaps[number] = contact.fields()
+    converged = True
+    for number, state in enumerate(states):
+        forces[number] = state.force
+        separations[number] = state.separation
+        pressures[number] = state.pressure
+        gaps[number] = state.gap
+        converged &= state.settled
         if attraction is not None:
-            pulls[number] = _pull(attraction, gaps[number], contact)
+            pulls[number] = _pull(attraction, gaps[number], pressures[number], spacing**2)
     sides = (spacing * surface.shape[0], spacing * surface.shape[1])
     from_mean, approach = separations + offset, -lowest - separations
     return PressedMap(
@@ -221,6 +248,70 @@ def press(
         lengths_nm=sides,
         converged=bool(converged),
     )
+
+
+class _State(NamedTuple):
+    """The map at a load or approach; separation from the plane that heights are measured from."""
+
+    force: float
+    separation: float
+    pressure: np.ndarray
+    gap: np.ndarray
+    settled: bool
+
+
+def _each_load(
+    surface: np.ndarray,
+    periodic: bool,
+    loads: np.ndarray,
+    inputs: ContactInputs,
+    settings: ContactSettings,
+) -> Iterator[_State]:
+    """The elastic map at each load, by itself."""
+    spacing = settings.length_nm / settings.pixels
+    base = (Repeated if periodic else Alone)(surface.shape, spacing, float(inputs.e_star))
+    for number, load in enumerate(loads.tolist()):
+        pressed = one_load.press(surface, load, base)
+        if periodic and pressed.pressure.all():
+            roughness = validity.roughness(surface, settings.length_nm)
+            full = inputs.e_star * roughness.flattening * settings.length_nm**2
+            raise _beyond("full contact", full)
+        if not pressed.settled:
+            yield from _way(surface, periodic, loads[number:], True, inputs, settings)
+            return
+        yield _State(load, pressed.separation, pressed.pressure, pressed.gap, True)
+
+
+def _way(
+    surface: np.ndarray,
+    periodic: bool,
+    steps: np.ndarray,
+    by_load: bool,
+    inputs: ContactInputs,
+    settings: ContactSettings,
+) -> Iterator[_State]:
+    """The map at each load or approach, from one to the next in steps of separation."""
+    lowest = float(surface.min())
+    contact = (CoupledContact if periodic else FreeContact)(surface, inputs, settings)
+    flows = contact.flows
+    if by_load:
+        _refuse_beyond(contact, steps[-1])
+    row = None
+    for step in steps.tolist():
+        end = {"stop_force": step} if by_load else {"stop_separation": -lowest - step}
+        path = trace(contact, NUMERICS.force_steps if flows else 1, flows, **end, start=row)
+        row = path.rows[-1]
+        if not np.isfinite(contact.separation):  # it stays where the highest site just touches
+            what = f"loads_nN = {step:g}" if by_load else f"approach_nm = {step:g}"
+            raise InputError(
+                f"{what}: too little to press one site of this map; give more, or check its units"
+            )
+        settled = path.reached and path.unconverged == 0
+        if by_load:
+            settled &= abs(row.force / step - 1.0) <= MAX_FORCE_MISS
+        else:
+            _refuse_beyond(contact, row.force)
+        yield _State(row.force, row.separation, *contact.fields(), settled)
 
 
 def _steps(loads_nN: Any, approach_nm: Any) -> np.ndarray:
@@ -292,17 +383,18 @@ def _surface(
 def _refuse_beyond(contact: CoupledContact, force: float) -> None:
     """Refuse what the map does not carry."""
     if force > contact.capacity:
-        what = "the hardness" if contact.flows else "full contact"
-        raise InputError(
-            f"press: too far, {what} ends contacts of this map at {contact.capacity:.4g} nN"
-        )
+        raise _beyond("the hardness" if contact.flows else "full contact", contact.capacity)
 
 
-def _pull(attraction: PressureOfGaps, gap: np.ndarray, contact: CoupledContact) -> float:
+def _beyond(what: str, capacity_nN: float) -> InputError:
+    return InputError(f"press: too far, {what} ends contacts of this map at {capacity_nN:.4g} nN")
+
+
+def _pull(
+    attraction: PressureOfGaps, gap: np.ndarray, pressure: np.ndarray, site_area: float
+) -> float:
     """Force (nN, negative) of a law on all sites that do not touch, with their gaps."""
-    sites = np.arange(contact.heights.size, dtype=np.int32)
-    weight = attracting(sites, contact.place, contact.pressure, contact.n, False)
-    weight = weight.reshape(contact.n, contact.n)[: gap.shape[0], : gap.shape[1]]
+    weight = _attracting(pressure)
     try:
         stress = attraction(gap.copy())
     except Exception as error:  # of a function that is not ours
@@ -322,4 +414,16 @@ def _pull(attraction: PressureOfGaps, gap: np.ndarray, contact: CoupledContact) 
         raise InputError(
             f"attraction(gap): {least:.4g} .. {most:.4g} GPa where sites do not touch; {ATTRACTION}"
         )
-    return -float(weight[pulled] @ stress[pulled]) * contact.site_area
+    return -float(weight[pulled] @ stress[pulled]) * site_area
+
+
+def _attracting(pressure: np.ndarray) -> np.ndarray:
+    """Sites' areas that attract with each gap of a map (nx, ny); pressed ones do not."""
+    side = max(pressure.shape) + (len(pressure) != pressure.shape[1])
+    square = np.zeros((side, side))
+    square[: pressure.shape[0], : pressure.shape[1]] = pressure
+    sites = np.flatnonzero(square).astype(np.int32)
+    place = np.full(square.size, -1, np.int32)
+    place[sites] = np.arange(sites.size, dtype=np.int32)
+    weight = all_attracting(square.size, sites, place, square.reshape(-1)[sites], False)
+    return weight.reshape(square.shape)[: pressure.shape[0], : pressure.shape[1]]

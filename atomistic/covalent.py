@@ -49,8 +49,11 @@ def tersoff_table(parameters: Tersoff) -> str:
     chi = {frozenset(pair.split("-")): value for pair, value in parameters.chi.items()}
     lines = ["# m gamma lambda3 c d costheta0 n beta lambda2 B R D lambda1 A"]
     for i, j, k in product(elements, repeat=3):
-        p, q, r = elements[i], elements[j], elements[k]
-        inner, outer = np.sqrt(p.R * r.R), np.sqrt(p.S * r.S)
+        p = elements[i]
+        q = elements[j]
+        r = elements[k]
+        inner = np.sqrt(p.R * r.R)
+        outer = np.sqrt(p.S * r.S)
         attraction = np.sqrt(p.B * q.B) * chi.get(frozenset((i, j)), 1.0)
         numbers = [3, 1, 0, p.c, p.d, p.h, p.n, p.beta, (p.mu + q.mu) / 2, attraction]
         numbers += [(inner + outer) / 2, (outer - inner) / 2]

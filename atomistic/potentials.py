@@ -68,7 +68,8 @@ class Buckingham(_Sourced):
     C_eV_A6: float = Field(ge=0)
 
     def energy_and_slope(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        repulsion, dispersion = self.A_eV * np.exp(-r / self.rho_A), self.C_eV_A6 / r**6
+        repulsion = self.A_eV * np.exp(-r / self.rho_A)
+        dispersion = self.C_eV_A6 / r**6
         return repulsion - dispersion, -repulsion / self.rho_A + 6 * dispersion / r
 
 

@@ -119,6 +119,11 @@ def build_cell(
 class PyscfGamma(Calculator):
     """ASE calculator: closed-shell Kohn–Sham DFT of a supercell at its Γ point.
 
+    The potential is that of `atomistic.elastic.gamma_scf`. Each calculation starts from the
+    occupied orbitals of the last ones, extrapolated to the new geometry (`extrapolated_orbitals`),
+    which saves more than half of the cycles. They are part of the key in `store`, so a series that
+    is interrupted and replayed gives the same numbers to the last bit.
+
     Parameters
     ----------
     xc : "GGA" (PBE) or "LDA" (Teter–Padé, the functional of the GTH-PADE pseudopotentials)
@@ -129,11 +134,7 @@ class PyscfGamma(Calculator):
     tolerance_Ha : SCF convergence of the energy per cell, hartree
     max_cycles : SCF cycles before giving up
     store : finished calculations; one found there is not repeated
-
-    The potential is that of `atomistic.elastic.gamma_scf`. Each calculation starts from the
-    occupied orbitals of the last ones, extrapolated to the new geometry (`extrapolated_orbitals`),
-    which saves more than half of the cycles.  They are part of the key in `store`, so a series that
-    is interrupted and replayed gives the same numbers to the last bit."""
+    """
 
     parameters: Any  # a dictionary with attributes (ASE)
 
@@ -261,10 +262,8 @@ class PyscfGamma(Calculator):
             return lib.tag_array(2 * c @ c.T, mo_coeff=c, mo_occ=np.full(c.shape[1], 2.0))
         coarse = self._mean_field(tuple(int(np.ceil(SCF.coarse * n)) for n in cell.mesh))
         self._keep_overlap(coarse, overlap)
-        coarse.conv_tol, coarse.conv_tol_grad = (
-            SCF.coarse_tolerance_Ha,
-            10 * np.sqrt(SCF.coarse_tolerance_Ha),
-        )
+        coarse.conv_tol = SCF.coarse_tolerance_Ha
+        coarse.conv_tol_grad = 10 * np.sqrt(SCF.coarse_tolerance_Ha)
         coarse.kernel()  # where it does not converge the fine mesh goes on from where it ended
         return coarse.make_rdm1()
 

@@ -52,7 +52,8 @@ def scan_volumes(
         trial = strained(atoms, strain)
         trial.calc = calculator
         start = time.perf_counter()
-        energy, detail = float("nan"), ""
+        energy = float("nan")
+        detail = ""
         try:
             energy = float(trial.get_potential_energy())
         except (

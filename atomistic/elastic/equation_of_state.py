@@ -73,7 +73,8 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
     """
     from scipy.optimize import least_squares
 
-    volume, energy = np.asarray(volumes_A3, float), np.asarray(energies_eV, float)
+    volume = np.asarray(volumes_A3, float)
+    energy = np.asarray(energies_eV, float)
     if len(np.unique(volume)) < MIN_POINTS:
         raise InputError(
             f"equation of state: {len(np.unique(volume))} different volumes, at least {MIN_POINTS}"
@@ -154,8 +155,12 @@ def _minimum(
     x = min(candidates, key=lambda root: abs(root - middle))
     V = float(centre * x**-1.5)
     # derivatives in V by the chain rule, x = (V/centre)^(-2/3)
-    d1, d2, d3 = a1 + 2 * a2 * x + 3 * a3 * x * x, 2 * a2 + 6 * a3 * x, 6 * a3
-    x1, x2, x3 = -2 / 3 * x / V, 10 / 9 * x / V**2, -80 / 27 * x / V**3
+    d1 = a1 + 2 * a2 * x + 3 * a3 * x * x
+    d2 = 2 * a2 + 6 * a3 * x
+    d3 = 6 * a3
+    x1 = -2 / 3 * x / V
+    x2 = 10 / 9 * x / V**2
+    x3 = -80 / 27 * x / V**3
     second = d2 * x1**2 + d1 * x2
     third = d3 * x1**3 + 3 * d2 * x1 * x2 + d1 * x3
     return (

@@ -125,7 +125,8 @@ class CachedGrid(MultiGridNumInt2):
     def density(self, density_matrix: np.ndarray) -> np.ndarray:
         """ρ on the grid, shape (grid points,); `waves` then holds the orbitals it is made of."""
         factor, sign = self.occupied_orbitals(density_matrix)
-        rows, sign = factor.T.astype(self.precision), sign.astype(self.precision)
+        rows = factor.T.astype(self.precision)
+        sign = sign.astype(self.precision)
         if self.waves.shape != (len(rows), self.points):
             self.waves = np.empty((len(rows), self.points), self.precision)
         rho = np.empty(self.points)

@@ -87,7 +87,8 @@ def mean_and_deviation(
     (normal), functional (GGA or GGA + shift, equal weights), ions that follow the strain (a normal
     factor on B), ν (uniform), E of the other body (normal).  Gauss quadrature makes a weighted grid
     of them."""
-    B, B_error = np.asarray(B_GPa, float), np.asarray(B_error_GPa, float)
+    B = np.asarray(B_GPa, float)
+    B_error = np.asarray(B_error_GPa, float)
     normal, normal_weights = np.polynomial.hermite_e.hermegauss(5)
     nodes_nu, weights_nu = np.polynomial.legendre.leggauss(12)
     nodes_E, weights_E = np.polynomial.hermite_e.hermegauss(9)
@@ -239,7 +240,9 @@ def _notes(
 
 def _gate(structures: int, shift: Mapping[str, Any]) -> dict[str, Any]:
     """Whether E* is to be trusted, and why not."""
-    reasons, needed = [], 4  # fewer say too little about their scatter
+    # fewer say too little about their scatter
+    reasons = []
+    needed = 4
     if structures < needed:
         reasons.append(
             f"{structures} amorphous structures with a trusted clamped-ion GGA bulk modulus,"

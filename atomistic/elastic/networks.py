@@ -216,7 +216,8 @@ def make_glass(
     The first cell that passes, or the last one tried, and one row per attempt with its numbers and
     verdict."""
     attempts: list[dict[str, Any]] = []
-    atoms, network = Atoms(), material.part("network_glass")
+    atoms = Atoms()
+    network = material.part("network_glass")
     for attempt in range(QUENCH.attempts):
         if progress:
             progress(attempt / QUENCH.attempts, f"melt and quench, attempt {attempt + 1}")

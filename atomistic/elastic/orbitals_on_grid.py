@@ -70,7 +70,9 @@ def atom_orbitals(cell: "Cell", precision: float | None = None) -> list[AtomOrbi
     for atom in range(cell.natm):
         shells = [shell for shell in range(cell.nbas) if cell.bas_atom(shell) == atom]
         exponents = np.unique(np.concatenate([cell.bas_exp(shell) for shell in shells]))
-        angular, first, rows = [], [], []
+        angular = []
+        first = []
+        rows = []
         for shell in shells:
             degree = cell.bas_angular(shell)
             if degree > 2:

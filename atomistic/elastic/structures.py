@@ -64,8 +64,10 @@ def relaxed_structure(
     """
     if refused:
         return Structure(quenched, None, examine(quenched, criteria), Relaxation(), (refused,))
-    calculator, atoms = make_calculator(), strained(quenched, 0.0)
-    atoms.calc, done = calculator, Relaxation()
+    calculator = make_calculator()
+    atoms = strained(quenched, 0.0)
+    atoms.calc = calculator
+    done = Relaxation()
     if progress:
         progress(0.0, f"relaxing ions, at most {max_steps} steps")
     if max_steps:

@@ -185,8 +185,11 @@ def cut_body(
     ------
     InputError : of `check_film`, or of a film without a base.
     """
-    of, seed = run.asperity, lammps_seed(*place, 3)
-    amplitude_A, base_A, film_nm = 10 * of.amplitude_nm, 10 * base_nm, of.film_nm
+    of = run.asperity
+    seed = lammps_seed(*place, 3)
+    amplitude_A = 10 * of.amplitude_nm
+    base_A = 10 * base_nm
+    film_nm = of.film_nm
     if film_nm is None:
         cut = cut_asperity(glass, of.tiles, amplitude_A, base_A, seed)
         return CutBody(cut, formula_of(glass), potential)

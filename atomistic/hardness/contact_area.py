@@ -59,7 +59,8 @@ def contact_map(
 
     Discs of `closing_A` about the touching atoms, holes filled, cut back to `rim_A`; cells that the
     rim crosses count in part, so that the area does not jump with the grid."""
-    spacing, cell = _spacing(cell_A, area), np.asarray(cell_A, dtype=float)
+    spacing = _spacing(cell_A, area)
+    cell = np.asarray(cell_A, dtype=float)
     shape = np.round(cell / spacing).astype(int)
     if len(touching_A) == 0:
         return np.zeros(shape)

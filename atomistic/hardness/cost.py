@@ -29,7 +29,8 @@ def closing_seconds(
     ------
     InputError : a film that its asperity does not allow.
     """
-    density, seconds = material.part("oxide_glass").quenched.atoms_per_nm3, {}
+    density = material.part("oxide_glass").quenched.atoms_per_nm3
+    seconds = {}
     for run in planned_runs(settings):
         film, protocol = run.asperity.film_nm, PROTOCOL
         wavelength = run.asperity.tiles * glass_edge_A(settings, material) / 10

@@ -123,7 +123,8 @@ def mean_stresses(
     length, stress = (
         np.array([row[f"contact_{key}"] for row in curve]) for key in ("length_nm", "stress_GPa")
     )
-    widest, means = RULES.max_area_fraction**0.5 * wavelength_nm, []
+    widest = RULES.max_area_fraction**0.5 * wavelength_nm
+    means = []
     for low in np.arange(RULES.min_length_nm, widest, FILM_FIT.bin_nm):
         here = (length >= low) & (length < min(low + FILM_FIT.bin_nm, widest)) & (stress > 0)
         if here.any():
@@ -133,7 +134,8 @@ def mean_stresses(
 
 def too_few(points: FilmPoints) -> str | None:
     """Why no law of films can be fitted; None where it can."""
-    films, thicknesses = int(points.film.sum()), len(np.unique(points.thickness_nm[points.film]))
+    films = int(points.film.sum())
+    thicknesses = len(np.unique(points.thickness_nm[points.film]))
     if films < FILM_FIT.least_points or thicknesses < FILM_FIT.least_thicknesses:
         return (
             f"{films} mean stresses of films of {thicknesses} thicknesses: a law of films needs"
@@ -241,7 +243,8 @@ def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
     where those of this likelihood hold 88 to 91 %. A second round draws where the first found a
     likelihood that counts."""
     low, high = np.array(FILM_FIT.prior).T
-    low, high = np.array([*np.log(low[:3]), low[3]]), np.array([*np.log(high[:3]), high[3]])
+    low = np.array([*np.log(low[:3]), low[3]])
+    high = np.array([*np.log(high[:3]), high[3]])
     drawn, weights = _weighed(points, rng.uniform(low, high, (FILM_FIT.trials, 4)))
     counts = drawn[weights > FILM_FIT.negligible]
     drawn, weights = _weighed(
@@ -335,7 +338,8 @@ def fit_films(
         low, high = energy_bounds(float(np.median(h_film)), slopes, scales, indentation_GPa)
         h_film *= rng.uniform(low, high, len(h_film))
     else:
-        low, high = scales[0], scales[-1]
+        low = scales[0]
+        high = scales[-1]
         h_film *= rng.choice(scales, len(h_film))
     result["energies"] = [low, high]
     result["inputs"] = {

@@ -230,10 +230,8 @@ def glass_properties(material: Material, potential: Potential, atoms: Atoms) -> 
     material file.
     """
     reference: OxideGlass = material.part("oxide_glass")
-    formula, sources = (
-        material.formula_text,
-        "; ".join(material.sources[name] for name in reference.sources),
-    )
+    formula = material.formula_text
+    sources = "; ".join(material.sources[name] for name in reference.sources)
     density = density_g_cm3(atoms, potential)
     is_cation = np.isin(
         atoms.types, [atoms.elements.index(ion) + 1 for ion in cations(material, potential)]

@@ -113,10 +113,8 @@ class Metal(Base):
         """The potential for LAMMPS's `pair_style eam/alloy`."""
         eam = self.eam
         count, end_A = METAL.points, METAL.cutoff_A
-        density, r = (
-            np.linspace(0, METAL.most_density * eam.rho, count),
-            np.linspace(0, end_A, count),
-        )
+        density = np.linspace(0, METAL.most_density * eam.rho, count)
+        r = np.linspace(0, end_A, count)
         text = io.StringIO()
         text.write(f"{self.material.name}\n{eam.source}\n\n1 {self.elements[0]}\n")
         text.write(
@@ -140,7 +138,8 @@ class Metal(Base):
         ------
         InputError : the material has no potential or no grains, or its cube came out of another
             width than foreseen."""
-        wide_A, segments = tiles * edge_A, _segments()
+        wide_A = tiles * edge_A
+        segments = _segments()
         identity = {
             "metal": self.material.model_dump(),
             "edge": wide_A,
@@ -222,11 +221,10 @@ def _segments() -> list[dict[str, Any]]:
 def _wide_enough(metal: Metal, edge_A: float, seed: int) -> Atoms:
     """Grains in a cube whose atoms fill one of `edge_A` once they are dense."""
     assert metal.below_films.grain_nm is not None  # of a Material
-    grain_A, volume_A3 = (
-        10 * metal.below_films.grain_nm,
-        1e3 / (metal.atoms_per_nm3 * METAL.annealed_density),
-    )
-    start_A, atoms = edge_A, polycrystal(metal, edge_A, grain_A, seed)
+    grain_A = 10 * metal.below_films.grain_nm
+    volume_A3 = 1e3 / (metal.atoms_per_nm3 * METAL.annealed_density)
+    start_A = edge_A
+    atoms = polycrystal(metal, edge_A, grain_A, seed)
     for _ in range(METAL.widenings):
         start_A *= edge_A / (len(atoms) * volume_A3) ** (1 / 3)
         atoms = polycrystal(metal, start_A, grain_A, seed)

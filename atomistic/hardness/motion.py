@@ -35,10 +35,8 @@ def free_motion(
         "every": max(1, steps // 50),
     }
     run_lammps("nve.in", workspace, variables)
-    record, end = (
-        load_averages(workspace / "energy.dat"),
-        load_data(workspace / "end.data", atoms.elements),
-    )
+    record = load_averages(workspace / "energy.dat")
+    end = load_data(workspace / "end.data", atoms.elements)
     workspace.remove()
     return record, end
 

@@ -135,7 +135,8 @@ class Network(Base):
 
     def faults(self, glass: Atoms) -> list[str]:
         """What of a glass is not as its material's file says."""
-        measured, accepted = self.properties(glass), {"density_g_cm3": self.network.density_g_cm3}
+        measured = self.properties(glass)
+        accepted = {"density_g_cm3": self.network.density_g_cm3}
         accepted |= {
             f"coordination_{element}": of for element, of in self.network.coordination.items()
         }

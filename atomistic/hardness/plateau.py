@@ -199,11 +199,9 @@ def find_hardness(
             f"rejected: a curve of {len(curve)} averages; {rules.min_points} are needed"
         )
     column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
-    length, stress, travel = (
-        column["contact_length_nm"],
-        column["contact_stress_GPa"],
-        column["displacement_nm"],
-    )
+    length = column["contact_length_nm"]
+    stress = column["contact_stress_GPa"]
+    travel = column["displacement_nm"]
     elapsed_ps = column["time_ps"][-1] - column["time_ps"][0]
     drift = float(np.max(np.abs(column["energy_drift_meV_per_atom"])) / elapsed_ps)
     temperature = column["temperature_K"]
@@ -258,7 +256,8 @@ def find_hardness(
             "rejected: too few averages between onset and the end of the window", **measured
         )
     first = 0 if on_base else settled(stress[beyond])
-    plateau, lengths = stress[beyond][first:], length[beyond][first:]
+    plateau = stress[beyond][first:]
+    lengths = length[beyond][first:]
     exponent = _exponent(lengths, plateau)
     low, high = interval_of_mean(plateau)
     measured |= {
@@ -407,7 +406,8 @@ def settled(stress: np.ndarray) -> int:
 
 def _effective_number(values: np.ndarray) -> float:
     """Independent values that a series of a first-order process is worth, at least two."""
-    count, apart = len(values), values - np.mean(values)
+    count = len(values)
+    apart = values - np.mean(values)
     variance = float(np.sum(apart**2))
     if count < 2 or variance == 0:
         return float(max(2, count))

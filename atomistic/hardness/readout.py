@@ -127,7 +127,8 @@ class Readout:
         """The relaxed snapshot after a segment; 0: before the first."""
         if segment not in self._relaxed:
             [(step, table)] = load_dump(self._workspace / f"relaxed.{segment}")
-            frame, wavelength = table[:, 1:5], self._cell.wavelength_A
+            frame = table[:, 1:5]
+            wavelength = self._cell.wavelength_A
             near, far = (bonds_of(frame, self._bond, factor, wavelength) for factor in (0.9, 1.2))
             self._relaxed[segment] = Relaxed(step, frame, (near, far))
         return self._relaxed[segment]
@@ -138,7 +139,8 @@ def load_samples(
 ) -> dict[int, Sample]:
     """What a segment measured, by step."""
     near = dict(load_dump(workspace / f"near.{segment}"))
-    side, axis = (cell.wavelength_A, cell.wavelength_A), (cell.axis_A, cell.axis_A)
+    side = (cell.wavelength_A, cell.wavelength_A)
+    axis = (cell.axis_A, cell.axis_A)
     samples = {}
     for step, *averages in load_averages(workspace / f"averages.{segment}"):
         atoms = near[int(step)]  # id, type, x, y, z, and how far beyond the flat
@@ -200,14 +202,10 @@ def curve_rows(
     gained = np.interp(steps, list(drift), list(drift.values()))
     curve = []
     for k in range(0, len(steps) - per_average + 1, per_average):
-        part, averaged = (
-            slice(k, k + per_average),
-            [samples[step] for step in steps[k : k + per_average]],
-        )
-        contact, push = (
-            float(np.mean([sample.area_A2 for sample in averaged])),
-            float(np.mean(force[part])),
-        )
+        part = slice(k, k + per_average)
+        averaged = [samples[step] for step in steps[k : k + per_average]]
+        contact = float(np.mean([sample.area_A2 for sample in averaged]))
+        push = float(np.mean(force[part]))
         curve.append(
             {
                 "step": steps[k + per_average - 1],

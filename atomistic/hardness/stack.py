@@ -44,7 +44,8 @@ class Stack:
         ------
         InputError : an ion without cross terms to the base.
         """
-        below, end = len(self.base.elements), self.oxide.cutoff_A
+        below = len(self.base.elements)
+        end = self.oxide.cutoff_A
         ions = elements[below:]
         check_ions(self.base.material, ions)
         lines = [
@@ -77,14 +78,13 @@ class Stack:
         """Energy (eV) and force (eV/Å) of an atom of the base and an ion, shifted to vanish at the
         cut-off.
         """
-        below, end = self.base.below_films, np.array([self.oxide.cutoff_A])
+        below = self.base.below_films
+        end = np.array([self.oxide.cutoff_A])
         morse = Morse(
             term="morse", **below.bonds[pair].model_dump(), source=below.source, confidence="low"
         )
-        (energy, slope), (energy_end, slope_end) = (
-            morse.energy_and_slope(r),
-            morse.energy_and_slope(end),
-        )
+        (energy, slope) = morse.energy_and_slope(r)
+        (energy_end, slope_end) = morse.energy_and_slope(end)
         return energy - energy_end - slope_end * (r - end), slope_end - slope
 
 
@@ -198,8 +198,10 @@ def film_properties(
     number = max(1, int(wavelength_A // 4.0))  # columns of 4 Å map the gaps
     places = (np.mod(start[:, 1:3] / wavelength_A, 1) * number).astype(int)
     column = places[:, 0] + number * places[:, 1]
-    z, film = start[:, 3], start[:, 0] > below
-    low, top = np.full(number**2, np.inf), np.full(number**2, -np.inf)
+    z = start[:, 3]
+    film = start[:, 0] > below
+    low = np.full(number**2, np.inf)
+    top = np.full(number**2, -np.inf)
     np.minimum.at(low, column[film], z[film])
     np.maximum.at(top, column[~film], z[~film])
     both = np.isfinite(low) & np.isfinite(top)

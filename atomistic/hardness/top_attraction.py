@@ -90,7 +90,8 @@ def gap_cutoff(
         return None
     by_run = np.array([combined_cutoffs_nm(tops) for tops in runs.values()])
     by_work = combined_cutoffs_nm(top for tops in runs.values() for top in tops)[1]
-    logs, rng = np.log(by_run[:, 1]), np.random.default_rng(0)
+    logs = np.log(by_run[:, 1])
+    rng = np.random.default_rng(0)
     errors = (
         mean_over_glasses(logs, [glasses[run] for run in runs], FIT_RULES.samples, rng)
         - logs.mean()
@@ -138,7 +139,8 @@ def mean_over_glasses(
     of_glass = np.unique(glasses, return_inverse=True)[1]
     runs = np.bincount(of_glass)
     means = np.bincount(of_glass, values) / runs
-    within, freedom = np.sum((values - means[of_glass]) ** 2), len(values) - len(runs)
+    within = np.sum((values - means[of_glass]) ** 2)
+    freedom = len(values) - len(runs)
     scale = max(float(values.std()), np.finfo(float).eps)
     of_runs, ratio = (grid[..., None] for grid in np.meshgrid(scale * SCATTERS, SCATTERS))
     weights = 1 / (of_runs**2 * (ratio**2 + 1 / runs))
@@ -162,7 +164,8 @@ def combined_cutoffs_nm(tops: Iterable[TopAttraction]) -> tuple[float, float]:
     """
     tops = list(tops)
     area = sum(top.area_A2 for top in tops)
-    force, work = sum(top.force_per_A for top in tops), sum(top.work for top in tops)
+    force = sum(top.force_per_A for top in tops)
+    work = sum(top.work for top in tops)
     by_force = (area / (6 * np.pi * force)) ** (1 / 3)
     by_work = (area / (12 * np.pi * work)) ** 0.5
     return by_force / 10, by_work / 10
@@ -187,7 +190,8 @@ def attract_top(
     if not shares.any() or area_A2 <= 0:
         raise InputError("the top has no atoms below its contact: its attraction cannot be told")
     counted = shares > 0
-    depths, shares = heights_A[counted].max() - heights_A[counted], shares[counted]
+    depths = heights_A[counted].max() - heights_A[counted]
+    shares = shares[counted]
     contact = contact_distance_A(density_per_A3)
 
     def energy(gap: float) -> float:
@@ -207,7 +211,9 @@ def attract_top(
 @lru_cache
 def contact_distance_A(density_per_A3: float) -> float:
     """Distance r at which an atom rests above a half-space, Å; see the module's docstring."""
-    spacing, layers = density_per_A3 ** (-1 / 3), 400  # what lies deeper enters as a continuum
+    # what lies deeper enters as a continuum
+    spacing = density_per_A3 ** (-1 / 3)
+    layers = 400
     work = 0.5 / (DENSE_CUTOFF_A**2 * spacing)  # of one atom of the uppermost layer, in units of C
 
     def excess(contact: float) -> float:

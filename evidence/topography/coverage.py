@@ -298,7 +298,7 @@ def set_row(kind: str, number: int) -> dict[str, Any]:
         name: (item.value, *item.interval) for name, item in pooled.topography.estimates.items()
     }
     true = {"q0": truth.q0, "slope": truth.slope, "rms": _rms(spectrum, pooled.topography.cutoff)}
-    one = pooled.one
+    one = pooled.merged
     if "rms" in pooled.film:
         low, high = pooled.film["rms"]["a"], pooled.film["rms"].get("b", pooled.film["rms"]["a"])
         found["cell"] = (np.sqrt(low * high), low, high)

@@ -119,14 +119,14 @@ def budget(
     by_hardness: Mapping[float, float] | None = None,
     errors_V: Mapping[str, float] | None = None,
 ) -> list[dict[str, Any]]:
-    """Rows of device/budget.csv, the most volts first; without a release there is nothing to move,
+    """Rows of answer/budget.csv, the most volts first; without a release there is nothing to move,
     and no row.
 
     Parameters
     ----------
-    switch : content of device/pad_switch.json.
+    switch : content of answer/pad_switch.json.
     by_hardness : of `release_by_hardness`; None: effects on the hardness have no row.
-    errors_V : errors of the release by numerical choice, as device/errors.csv has them; None: not
+    errors_V : errors of the release by numerical choice, as answer/errors.csv has them; None: not
         known."""
     if central.pad is None or central.states is None or central.states.release_V == 0.0:
         return []
@@ -163,7 +163,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
                 + "; it may stick" * (min(by_law) == 0.0)
             ),
             "held": False,
-            "settle": "pull-off of the contact (target calibrate)",
+            "settle": "pull-off of the contact (target calibration)",
             **here,
         }
     if answer := switch["answer"]:
@@ -211,7 +211,7 @@ def _numerical(errors_V: Mapping[str, float]) -> dict[str, Any]:
         "how": "computed",
         "held": False,
         "settle": "a finer grid; target accuracy tells which",
-        "source": "device/errors.csv",
+        "source": "answer/errors.csv",
     }
 
 

@@ -2,7 +2,7 @@
 uncertain.
 
 Two limits hold what menisci do while the switch opens: in balance with the vapour, or with a volume
-that stays (docs/humid_air.md)."""
+that stays (docs/humidity.md)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -41,7 +41,7 @@ def humidity_rows(
     point_cells: int,
     progress: Callable[[float, str], None] | None = None,
 ) -> list[dict[str, Any]]:
-    """Rows of device/humidity.csv: one for each humidity and limit of opening, by rising humidity.
+    """Rows of humidity/humidity.csv: one a humidity and limit of opening, by rising humidity.
 
     Further humidities halve the step in which the switch begins to stick.
 

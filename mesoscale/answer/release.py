@@ -174,7 +174,7 @@ def _probability(stuck: int, solved: int, refused: int) -> dict[str, float]:
 
 
 def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
-    """Content of device/pad_switch.json; without points there is no answer."""
+    """Content of answer/pad_switch.json; without points there is no answer."""
     central = model.central
     settings = central.point.device
     cells = central.pad.cells if central.pad else None

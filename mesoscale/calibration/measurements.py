@@ -181,7 +181,8 @@ def _check(data: Measurements) -> None:
                 columns["force"][points],
             )
     elif data.kind == "sticking":
-        stuck, switches = columns["stuck"], columns["switches"]
+        stuck = columns["stuck"]
+        switches = columns["switches"]
         wrong = (
             (switches < 1) | (stuck < 0) | (stuck > switches) | (stuck % 1 > 0) | (switches % 1 > 0)
         )

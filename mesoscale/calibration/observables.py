@@ -78,9 +78,11 @@ def separations_at(branch: "Branch", forces_nN: Array) -> Array:
     positive = net > 0
     if positive.sum() < 2:
         return np.full(len(forces_nN), np.nan)
-    net, separation = net[positive], separation[positive]
+    net = net[positive]
+    separation = separation[positive]
     keep = np.concatenate([[True], np.diff(net) > 0])
-    log_net, separation = np.log(net[keep]), separation[keep]
+    log_net = np.log(net[keep])
+    separation = separation[keep]
     return np.interp(np.log(forces_nN), log_net, separation, left=separation[0], right=np.nan)
 
 

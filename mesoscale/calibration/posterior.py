@@ -115,7 +115,8 @@ class Model:
             return StickingData(
                 data.columns["stuck"], data.columns["switches"], data.discrepancy, release
             )
-        values, errors = data.columns[column], data.columns[f"{column}_error"]
+        values = data.columns[column]
+        errors = data.columns[f"{column}_error"]
         if column in ("release", "pull_in"):
             volts = self.voltages[column]
             return ValueData(
@@ -157,7 +158,8 @@ class Model:
                 )
             return
         model = part.model(self.prior.sample(2000, 1))
-        low, high = model.min(axis=0), model.max(axis=0)
+        low = model.min(axis=0)
+        high = model.max(axis=0)
         reach = 0.5 * (high - low) + 3 * np.hypot(part.errors, np.hypot(part.shared, part.single))
         wrong = np.flatnonzero((part.values > high + reach) | (part.values < low - reach))
         if wrong.size:
@@ -213,7 +215,9 @@ def calibrate(
     for data in tables:
         model.check_range(data)
     rng = np.random.default_rng(np.random.SeedSequence([Sampling.seed, 0xCB]))
-    turn, rounds, more = 0, 3, round(0.375 * len(model.cycles.x))
+    turn = 0
+    rounds = 3
+    more = round(0.375 * len(model.cycles.x))
     while True:
         posterior = model.posterior(tables)
         chain = posterior.draw(progress=progress)
@@ -223,7 +227,8 @@ def calibrate(
             return Calibration(
                 tuple(tables), model, posterior, chain, posterior.inputs(chain.z), shares
             )
-        picks, centre = rng.integers(len(chain.z), size=more), chain.z.mean(axis=0)
+        picks = rng.integers(len(chain.z), size=more)
+        centre = chain.z.mean(axis=0)
         x = posterior.inputs(
             centre + 1.3 * (chain.z[picks] - centre)
         )  # wider, so that its tails are known, too

@@ -108,11 +108,13 @@ def fit_responses(names: Sequence[str], cycles: Cycles, table: InputTable) -> Re
     ------
     InputError : too few cycles give all of these observables.
     """
-    ranges, rms_column = table.ranges(), table.names.index("rms")
+    ranges = table.ranges()
+    rms_column = table.names.index("rms")
     shift, unit = _units(names, cycles.x[:, rms_column])
     target = (cycles.of(names) - shift) / unit
     usable = np.isfinite(target).all(axis=1)
-    u, target = np.clip(scaled(cycles.x[usable], ranges), -1.0, 1.0), target[usable]
+    u = np.clip(scaled(cycles.x[usable], ranges), -1.0, 1.0)
+    target = target[usable]
     degrees = _terms(np.ptp(ranges, axis=1) > 0, len(u) // FEWEST_PER_TERM)
     if FEWEST_PER_TERM * len(degrees) > len(u):
         words = ", ".join(names) if len(names) < 4 else "the observables"

@@ -96,7 +96,8 @@ def sample(
         [log_likelihood(part) for part in np.array_split(pool, numbers.prior_draws // 500)]
     )
     walkers = max(numbers.walkers, 4 * dimensions)
-    samplers, states = [], []
+    samplers = []
+    states = []
     for ensemble in range(numbers.ensembles):
         jumps = [
             (emcee.moves.DEMove(), 0.3),
@@ -180,10 +181,8 @@ def diagnose(chains: Array) -> tuple[float, float]:
     from emcee.autocorr import integrated_time
     from scipy.stats import rankdata  # slow to import
 
-    half, chains = (
-        chains.shape[1] // 2,
-        rankdata(chains.reshape(-1, chains.shape[-1]), axis=0).reshape(chains.shape),
-    )
+    half = chains.shape[1] // 2
+    chains = rankdata(chains.reshape(-1, chains.shape[-1]), axis=0).reshape(chains.shape)
     variance = chains.var(axis=(0, 1, 2))
     means = np.concatenate([chains[:, :half].mean(axis=(1, 2)), chains[:, half:].mean(axis=(1, 2))])
     r_hat = np.sqrt(1 + means.var(axis=0, ddof=1) / variance)

@@ -63,7 +63,8 @@ def predictive_rows(result: Calibration) -> list[dict[str, Any]]:
     """
     if not result.chain.converged:
         return []
-    rng, model = np.random.default_rng(np.random.SeedSequence([0xCE])), result.model
+    rng = np.random.default_rng(np.random.SeedSequence([0xCE]))
+    model = result.model
     states = {
         "prior": model.prior.sample(1000, 2),
         "posterior": result.x[rng.integers(len(result.x), size=1000)],

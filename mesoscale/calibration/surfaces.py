@@ -57,9 +57,12 @@ class SurfaceData:
     def log_likelihood(self, x: Array) -> Array:
         """Logarithm of the likelihood at inputs x (m, n), shape (m,)."""
         prediction = self.responses(x)
-        mean, eye = prediction.mean[:, None, :, None], np.eye(len(self.responses.names))
-        scatter, common = prediction.scatter[:, None], self._common(prediction)
-        precision, information = self.precision, self.information[..., None]
+        mean = prediction.mean[:, None, :, None]
+        eye = np.eye(len(self.responses.names))
+        scatter = prediction.scatter[:, None]
+        common = self._common(prediction)
+        precision = self.precision
+        information = self.information[..., None]
         off = information - precision @ mean  # (m, s, k, 1)
         spread = eye + precision @ scatter
         pulled = np.linalg.solve(
@@ -96,7 +99,8 @@ class SurfaceData:
 
     def simulated(self, x: Array, rng: np.random.Generator) -> "SurfaceData":
         """Data of the same specimens with the same errors, drawn at inputs x (1, n)."""
-        prediction, zero = self.responses(x), np.zeros(len(self.responses.names))
+        prediction = self.responses(x)
+        zero = np.zeros(len(self.responses.names))
         shared = rng.multivariate_normal(zero, self._common(prediction)[0], method="svd")
         single = rng.multivariate_normal(
             zero, prediction.scatter[0], len(self.specimens), method="svd"
@@ -145,7 +149,9 @@ def _pseudo_inverse(matrices: Array) -> tuple[Array, Array]:
     """
     diagonal = np.einsum("skk->sk", matrices)
     unit = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
-    units, smallest = unit[:, :, None] * unit[:, None, :], 1e-9  # smaller eigenvalues are rounding
+    # smaller eigenvalues are rounding
+    units = unit[:, :, None] * unit[:, None, :]
+    smallest = 1e-9
     inverse = np.linalg.pinv(matrices / units, rcond=smallest, hermitian=True) / units
     return inverse, np.linalg.matrix_rank(matrices / units, tol=smallest, hermitian=True)
 
@@ -172,7 +178,8 @@ def surface_data(
     ]
     names = [name for some in by_table for name in some]
     parts: dict[str, list[Part]] = {}
-    model_error, left_out = np.zeros((len(names), len(names))), 0
+    model_error = np.zeros((len(names), len(names)))
+    left_out = 0
     for table, seen in zip(tables, by_table, strict=True):
         first = names.index(seen[0])
         block = slice(first, first + len(seen))
@@ -231,7 +238,8 @@ def _points(
     """
     if table.kind in CURVES:
         return _curve(table, specimen, rows, max_force_nN)
-    values, errors = table.columns[table.kind][rows], table.columns[f"{table.kind}_error"][rows]
+    values = table.columns[table.kind][rows]
+    errors = table.columns[f"{table.kind}_error"][rows]
     if (errors > 0.5 * values).any():
         raise InputError(
             f"{table.file}: row {rows[np.argmax(errors / values)] + 1}: {table.kind}_error is more"
@@ -248,7 +256,8 @@ def _curve(
     would be biased.
     """
     levels = force_levels_nN(max_force_nN)
-    force, separation = table.columns["force"][rows], table.columns["separation"][rows]
+    force = table.columns["force"][rows]
+    separation = table.columns["separation"][rows]
     force_error = table.columns.get("force_error", np.zeros(len(table)))[rows]
     own_error = table.columns.get("separation_error", np.zeros(len(table)))[rows]
     usable = (force >= levels[0]) & (force <= levels[-1]) & (force > 3.0 * force_error)
@@ -276,7 +285,8 @@ def _separations(names: Sequence[str], f: Array) -> tuple[Array, Array]:
     """Observables f (..., k) with each curve as separations at its forces, and their derivatives
     (..., k, k).
     """
-    values, slopes = f.copy(), np.broadcast_to(np.eye(len(names)), (*f.shape, len(names))).copy()
+    values = f.copy()
+    slopes = np.broadcast_to(np.eye(len(names)), (*f.shape, len(names))).copy()
     for branch in CURVES.values():
         begin = curve_names(branch)[0]
         if begin not in names:

@@ -39,7 +39,8 @@ class ValueData:
 
     def simulated(self, x: Array, rng: np.random.Generator) -> "ValueData":
         """Data with the same errors, drawn at inputs x (1, n)."""
-        model, noise = self.model(x), rng.standard_normal(self.values.shape)
+        model = self.model(x)
+        noise = rng.standard_normal(self.values.shape)
         drawn = (
             model
             + self._common(model) * rng.standard_normal()

@@ -48,7 +48,8 @@ def fit_voltages(model: PadModel, prior: InputTable) -> dict[str, Voltage]:
     ------
     InputError : too few of the switches have an answer, or let go.
     """
-    design, solved = model.design, [model.points[k] for k in model.solved]
+    design = model.design
+    solved = [model.points[k] for k in model.solved]
     others = [k for k in design.varying if design.names[k] not in prior.names]
     of_device = np.array([design.varies[k] == "each" for k in others], bool)
     inputs = np.array([[point.point.values[name] for name in prior.names] for point in solved])
@@ -56,7 +57,8 @@ def fit_voltages(model: PadModel, prior: InputTable) -> dict[str, Voltage]:
         [inputs.reshape(len(solved), -1), design.probability[model.solved][:, others]]
     )
     ranges = np.vstack([prior.ranges(), np.tile([0.0, 1.0], (len(others), 1))])
-    x, release = np.clip(drawn, *ranges.T), model.states("release_V")
+    x = np.clip(drawn, *ranges.T)
+    release = model.states("release_V")
     if (release > 0).sum() < 2 * len(ranges):
         raise InputError(
             f"pad.points: {(release > 0).sum()} of {len(model.points)} switches over the prior let"
@@ -102,7 +104,9 @@ class StickingData:
 
     def log_likelihood(self, x: Array) -> Array:
         """Logarithm of the likelihood at inputs x (m, n), shape (m,)."""
-        margin, stuck, total = self._margin(x), self.stuck.sum(), self.switches.sum()
+        margin = self._margin(x)
+        stuck = self.stuck.sum()
+        total = self.switches.sum()
         ways = gammaln(total + 1) - gammaln(stuck + 1) - gammaln(total - stuck + 1)
         return ways + stuck * log_ndtr(-margin) + (total - stuck) * log_ndtr(margin)
 
@@ -115,7 +119,8 @@ class StickingData:
 
     def _margin(self, x: Array) -> Array:
         """Release in standard deviations above sticking."""
-        release, volts = self.release(x), self.release
+        release = self.release(x)
+        volts = self.release
         return release / np.sqrt(
             (self.discrepancy * release) ** 2 + volts.shared_V**2 + volts.each_V**2 + 1e-6
         )

@@ -1,4 +1,4 @@
-"""Numerical choices of the circuit models, fixed by their measured errors (docs/switch.md); no
+"""Numerical choices of the circuit models, fixed by their measured errors (docs/circuit.md); no
 scene sets them.
 """
 

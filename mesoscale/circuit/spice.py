@@ -63,7 +63,7 @@ Blonger{k} 0 longer I = {0.5 * slope:g} * (V(bent{k}) + {-heights[k]:.9g}) * V(s
     electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
     film = f"max({{rest}} - V(moved), {CIRCUIT.least_film_nm:g})"
     dense = f"max(1 + V(excess), {CIRCUIT.least_density:g})"
-    return f"""* An electrostatic switch on a rough contact (Asperity, docs/switch.md).
+    return f"""* An electrostatic switch on a rough contact (Asperity, docs/circuit.md).
 * the electrode: {lumps.count} pairs of lumps; beside finite elements pull-in differs by {errors.pull_in:.2%},
 * release by {errors.release:.2%}, capacitance by {errors.capacitance:.2%}; these err by {errors.reference:.2%}
 * top, bottom: the electrodes; middle: by how much (nm) mid-span has come down, 1 V = 1 nm.

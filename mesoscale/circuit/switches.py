@@ -44,7 +44,7 @@ class CircuitSwitch:
 
     Attributes
     ----------
-    row : its name, inputs, D0 and properties, pull-in and release, for device/circuit.csv.
+    row : its name, inputs, D0 and properties, pull-in and release, for circuit/circuit.csv.
     settings, pad : its properties, without tilt, and its pad.
     """
 
@@ -131,7 +131,7 @@ def _by_lumps(
 
 
 def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, float]]:
-    """Rows of device/loop.csv: capacitance against voltage, up and down, central and of 90 % of the
+    """Rows of circuit/loop.csv: capacitance against voltage, up and down, central and of 90 % of the
     draws.
     """
     top = CIRCUIT.loop_top * max(switch.row["pull_in_V"] for switch in (central, *drawn))

@@ -126,7 +126,7 @@ def verilog_lump(lumps: Lumps, pad: PadCurves, cells: int) -> str:
     """Verilog-A module `rough_lump`."""
     tables, width = tables_of(pad, cubic=True), f"{lumps.width_m:.9g}"
     names = LUMP.replace(" ", ", ")
-    return f"""// A pair of lumps of an electrostatic switch on a rough contact (Asperity, docs/switch.md).
+    return f"""// A pair of lumps of an electrostatic switch on a rough contact (Asperity, docs/circuit.md).
 // {note(tables, cells)}
 // It takes the place of the SPICE subcircuit rough_lump: same nodes, same units. hamaker in 1e-18 J, follow in s.
 `include "disciplines.vams"

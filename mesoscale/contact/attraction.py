@@ -165,7 +165,8 @@ class Attraction:
         """Force (nN, negative) on all sites with their displacements (nm), (N^2,), around those
         under pressure.
         """
-        walls, touching = (self.least, self.offset, self.rate), self.touching
+        walls = (self.least, self.offset, self.rate)
+        touching = self.touching
         force = -self.strength * inverse_cubes_around(
             heights, separation, displacement, sites, place, pressure, touching, *walls
         )
@@ -186,10 +187,8 @@ class Attraction:
         """Force (nN, negative) on a surface that nothing deforms; see `inverse_cubes` for the order
         of its sites.
         """
-        walls, bins = (
-            (self.least, self.offset, self.touching),
-            (self.lowest, self.bin_width, self.moments),
-        )
+        walls = (self.least, self.offset, self.touching)
+        bins = (self.lowest, self.bin_width, self.moments)
         flowed = (changed, changes.sites, changes.used[0])
         return -self.strength * inverse_cubes(
             heights, separation, *walls, order, order_heights, *flowed, *bins, self.rate
@@ -221,12 +220,12 @@ def attracting(sites, place, pressure, pixels, touching):
 @njit(cache=True, inline="always")
 def _beside(site, pixels):
     """The four neighbours of a site in its periodic cell."""
-    col, size = site % pixels, pixels * pixels
-    up, down = site - pixels, site + pixels
-    left, right = (
-        site - 1 if col else site + pixels - 1,
-        site + 1 if col < pixels - 1 else site - pixels + 1,
-    )
+    col = site % pixels
+    size = pixels * pixels
+    up = site - pixels
+    down = site + pixels
+    left = site - 1 if col else site + pixels - 1
+    right = site + 1 if col < pixels - 1 else site - pixels + 1
     return up if up >= 0 else up + size, down if down < size else down - size, left, right
 
 
@@ -309,10 +308,8 @@ def far_inverse_cubes(separation, far, lowest, width, moments, rate):
             )
         )
         if rate > 0.0:
-            near, beyond = (
-                _inverse_squares(u, moments[b]),
-                _inverse_squares(1.0 / (gap + 1.0 / rate), moments[b]),
-            )
+            near = _inverse_squares(u, moments[b])
+            beyond = _inverse_squares(1.0 / (gap + 1.0 / rate), moments[b])
             rest -= 0.5 * rate * (near - beyond)
     return rest
 

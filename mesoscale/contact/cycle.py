@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from mesoscale.contact.path import reopen, trace
 from mesoscale.contact.pressed import Contact, Row
 from mesoscale.contact.surface import ContactAt, given_surface, random_surface
 from mesoscale.errors import InputError
+from mesoscale.extras import needs
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
@@ -45,6 +47,14 @@ class Branch:
     def net_nN(self) -> np.ndarray:
         """Repulsion and attraction together, nN; negative where the contact pulls."""
         return self.repulsive_nN + self.attractive_nN
+
+    def to_frame(self) -> Any:
+        """A pandas DataFrame with a row a step, and the units in `attrs["units"]`."""
+        with needs("plot"):
+            import pandas as pd
+        frame = pd.DataFrame({name: getattr(self, name) for name in BRANCH_COLUMNS})
+        frame.attrs["units"] = {name: unit for name, (unit, _) in BRANCH_COLUMNS.items()}
+        return frame
 
 
 BRANCH_COLUMNS = {
@@ -88,6 +98,15 @@ class Cycle:
             f" {self.first_contact_nm:.4g} nm, last at {self.last_contact_nm:.4g}"
             f" nm{'' if self.converged else f'; NOT CONVERGED{why}'}"
         )
+
+    def to_frame(self) -> Any:
+        """Both branches as one pandas DataFrame; the column `branch` is closing or opening."""
+        with needs("plot"):
+            import pandas as pd
+        branches = {"closing": self.closing.to_frame(), "opening": self.opening.to_frame()}
+        frame = pd.concat(branches, names=["branch", "step"]).reset_index(level="branch")
+        frame.attrs["units"] = branches["closing"].attrs["units"]
+        return frame
 
     @property
     def cell_area_nm2(self) -> float:
@@ -145,7 +164,7 @@ def run_cycle(
     keep_surface
         Return the surface as it is after the cycle.
     hold
-        What happens between closing and opening (`mesoscale.contact.history`): takes the contact
+        What happens between closing and opening (`mesoscale.history.creep`): takes the contact
         and its last row, returns the rows that follow at the end of the closing branch.
     numerics
         How finely the contact is computed; the default is what every scene uses.
@@ -181,17 +200,16 @@ def run_cycle(
     if hold is not None:
         closing.rows += hold(contact, closing.rows[-1])
     last = closing.rows[-1]
-    changed, remarks = contact.changed_sites, contact.remarks()
+    changed = contact.changed_sites
+    remarks = contact.remarks()
     if contact.adhesion and contact.adhesion.menisci:
         remarks["filled_share"] = contact.filled_share(last.separation)
     repeated, unconverged = closing.repeated, closing.unconverged
     if not contact.REVERSIBLE:
         path = reopen(contact, numerics.force_steps, last)
-        opening, repeated, unconverged = (
-            path.rows,
-            repeated + path.repeated,
-            unconverged + path.unconverged,
-        )
+        opening = path.rows
+        repeated = repeated + path.repeated
+        unconverged = unconverged + path.unconverged
         departure = [
             row for gap in _gaps(contact) for row in contact.way(path.rows[-1].separation + gap)
         ]

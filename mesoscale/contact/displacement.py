@@ -78,7 +78,8 @@ class Closing:
         ----------
         attraction : whether it is wanted, too; it takes half of the time.
         """
-        flat, repulsive = separation_nm - self._contact.offset, 0.0
+        flat = separation_nm - self._contact.offset
+        repulsive = 0.0
         if flat < self._touching or not self._contact.REVERSIBLE:
             moved = _bring_down(self._contact, self._flats[-1] if self._flats else flat, flat)
             self.settled &= moved.settled and not moved.stuck

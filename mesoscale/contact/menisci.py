@@ -1,4 +1,4 @@
-"""Liquid that condenses from humid air between two walls, and how it pulls (docs/humid_air.md).
+"""Liquid that condenses from humid air between two walls, and how it pulls (docs/humidity.md).
 
 In equilibrium with the vapour a meniscus has Kelvin's radius r_K = -gamma V_m / (R T ln RH). Liquid
 fills every gap below d_c = r_K (cos theta1 + cos theta2) + 2 t_w, where each wall has an adsorbed

@@ -149,7 +149,8 @@ def solve_force(
     those above it are undone. Where the force jumps over the wanted one, the closer side is taken,
     unless flow is stuck there."""
     high, low = start, beyond  # force below, above the wanted one
-    short, excess = wanted - start_force, beyond_force - wanted
+    short = wanted - start_force
+    excess = beyond_force - wanted
     weight_high = weight_low = 1.0
     last_side = 0
     for trial in range(60):
@@ -165,15 +166,19 @@ def solve_force(
         )
         if reached or (moved.force < wanted and not moved.stuck):
             accept(middle, moved)
-            high, short = middle, wanted - moved.force
+            high = middle
+            short = wanted - moved.force
             if reached:
                 return
-            weight_high, weight_low = 1.0, weight_low * 0.5 if last_side == 1 else weight_low
+            weight_high = 1.0
+            weight_low = weight_low * 0.5 if last_side == 1 else weight_low
             last_side = 1
         else:
             contact.back()
-            low, excess = middle, math.inf if moved.stuck else moved.force - wanted
-            weight_low, weight_high = 1.0, weight_high * 0.5 if last_side == -1 else weight_high
+            low = middle
+            excess = math.inf if moved.stuck else moved.force - wanted
+            weight_low = 1.0
+            weight_high = weight_high * 0.5 if last_side == -1 else weight_high
             last_side = -1
     if excess < short:
         accept(low, contact.move_to(low, with_flow))

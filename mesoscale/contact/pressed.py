@@ -222,7 +222,8 @@ class Contact(ABC):
         if self.adhesion is not None:
             self.adhesion.adopt(self.changes, values)
         kept = self.changed[self.order] == 0
-        order, order_heights = self.order[kept], self.order_heights[kept]
+        order = self.order[kept]
+        order_heights = self.order_heights[kept]
         low = np.flatnonzero(values < self.sorted_to)
         low = low[np.argsort(values[low])]
         places = np.searchsorted(order_heights, values[low])

@@ -59,16 +59,18 @@ def stiffness_of(branch: Branch) -> Stiffness:
     has the same area, the chord to it is the slope; elsewhere that of a parabola through three
     steps stands for it."""
     up = np.argsort(branch.separation_nm)[::-1]
-    force, approach, area = (
-        branch.repulsive_nN[up],
-        -branch.separation_nm[up],
-        branch.contact_area_nm2[up],
-    )
+    force = branch.repulsive_nN[up]
+    approach = -branch.separation_nm[up]
+    area = branch.contact_area_nm2[up]
     kept = (force > 0) & (np.diff(approach, prepend=-np.inf) > 0)
-    force, approach, area = force[kept], approach[kept], area[kept]
+    force = force[kept]
+    approach = approach[kept]
+    area = area[kept]
     slope = np.gradient(force, approach, edge_order=2)
-    chords, same = np.diff(force) / np.diff(approach), np.diff(area) == 0
-    slope[:-1][same], slope[1:][same] = chords[same], chords[same]
+    chords = np.diff(force) / np.diff(approach)
+    same = np.diff(area) == 0
+    slope[:-1][same] = chords[same]
+    slope[1:][same] = chords[same]
     return Stiffness(force, area, approach, slope)
 
 

@@ -89,11 +89,9 @@ def surface_spectrum(
         slope_from_hurst,
     )
 
-    wanted, cutoff, convention = (
-        settings.surface,
-        shortest_wave(settings),
-        settings.reading.convention,
-    )
+    wanted = settings.surface
+    cutoff = shortest_wave(settings)
+    convention = settings.reading.convention
     slope = slope_from_hurst(inputs.hurst, convention)
     if wanted.spectrum is None:
         return RoughSpectrum.from_rms(inputs.rms, inputs.q0, slope, cutoff).psd

@@ -269,7 +269,7 @@ def least_spring(
 def failure_rate(
     population: Population, allowed: float, tell: Callable[[float, str], None]
 ) -> tuple[dict[str, Any], list[dict[str, float]]]:
-    """Content of device/failure.json and rows of device/failure.csv.
+    """Content of failure/failure.json and rows of failure/failure.csv.
 
     Parameters
     ----------

@@ -49,7 +49,8 @@ class Distribution:
 
         if self.b == 0:
             return np.full_like(p, self.a)
-        below, above = ndtr((self.low - self.a) / self.b), ndtr((self.high - self.a) / self.b)
+        below = ndtr((self.low - self.a) / self.b)
+        above = ndtr((self.high - self.a) / self.b)
         return np.clip(self.a + self.b * ndtri(below + p * (above - below)), self.low, self.high)
 
     def scaled(self, factor: float) -> "Distribution":
@@ -154,7 +155,8 @@ def correlation_matrix(names: list[str], pairs: dict[tuple[str, str], float]) ->
     """
     matrix = np.eye(len(names))
     for (first, second), rank in pairs.items():
-        i, j = names.index(first), names.index(second)
+        i = names.index(first)
+        j = names.index(second)
         matrix[i, j] = matrix[j, i] = rank
     if (
         np.linalg.eigvalsh(

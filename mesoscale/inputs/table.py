@@ -48,16 +48,15 @@ def collect(
     ------
     InputError : a stage's gate failed and is not accepted, a stage lacks an input, or a range
         crosses a physical bound."""
-    rows, pairs = [], dict(settings.pairs)
+    rows = []
+    pairs = dict(settings.pairs)
     for names, rank in joint_samples(settings.rows(law)).items():
         pairs.setdefault(names, rank)
     for name, row in settings.rows(law).items():
         if row.origin == "literature":
-            given, source, where = (
-                stated_distribution(name, row),
-                row.source or "scene",
-                f"inputs.{name}",
-            )
+            given = stated_distribution(name, row)
+            source = row.source or "scene"
+            where = f"inputs.{name}"
         else:
             source = files[row.origin]
             accepted = row.origin in settings.accepted_gates
@@ -106,7 +105,8 @@ def film_table(
         )
         for row in table.rows
     ]
-    rms, name = rows[table.names.index("rms")], RMS_SCATTER.name
+    rms = rows[table.names.index("rms")]
+    name = RMS_SCATTER.name
     if scatter is not None:
         stated = Distribution("uniform", a=scatter[0], b=scatter[1])
         rows.append(UncertainInput(name, "1", stated, "literature", "pad.rms_scatter"))
@@ -132,7 +132,8 @@ def check_literature(settings: InputsSettings) -> dict[str, tuple[float, float]]
     ------
     InputError : as `collect` does for these rows.
     """
-    rows, spans = settings.priors().rows(), {}
+    rows = settings.priors().rows()
+    spans = {}
     for name, row in rows.items():
         if row.origin == "literature":
             spans[name] = _check_range(name, stated_distribution(name, row), f"inputs.{name}")
@@ -348,7 +349,8 @@ def to_rows(table: InputTable) -> list[dict[str, Any]]:
 
 def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
     """The table from the rows of inputs.csv."""
-    inputs, pairs = [], {}
+    inputs = []
+    pairs = {}
     for row in rows:
         kind, _, samples = row["distribution"].partition(" ")
         numbers: dict[str, Any] = {key: float(row[key]) for key in NUMBERS if row.get(key)}

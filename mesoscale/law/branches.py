@@ -91,6 +91,7 @@ def stored_rows(
         fit = NO_FIT
         if curve := curves.get(f"{name}/{branch}"):
             forces = curve["repulsive_nN"], curve["attractive_nN"]
-            hamaker, touched = float(attributes["hamaker"]), attributes.get(touch)
+            hamaker = float(attributes["hamaker"])
+            touched = attributes.get(touch)
             fit = fit_branch(curve["separation_nm"], *forces, cell_area_nm2, hamaker, touched)
         yield {"branch": branch, **row_of(fit), "curve_status": attributes.get("status", "")}

@@ -87,7 +87,8 @@ def contact_separation(
     touch_nm : the engine's exact value, if it is known for this branch; else that of the nearest
         point outside."""
     order = np.argsort(separation_nm)[::-1]
-    h, f = np.asarray(separation_nm, float)[order], np.asarray(repulsive_nN, float)[order]
+    h = np.asarray(separation_nm, float)[order]
+    f = np.asarray(repulsive_nN, float)[order]
     touching = np.flatnonzero(f > 0)
     if touching.size == 0:
         return np.nan
@@ -145,11 +146,9 @@ def fit_branch(
             f"{attractive.shape}; one value of each per point is needed"
         )
     order = np.argsort(h, kind="stable")
-    h, repulsive, attractive = (
-        h[order],
-        repulsive[order] / cell_area_nm2,
-        attractive[order] / cell_area_nm2,
-    )
+    h = h[order]
+    repulsive = repulsive[order] / cell_area_nm2
+    attractive = attractive[order] / cell_area_nm2
 
     d_c_nm = contact_separation(h, repulsive, d_c_nm)
     if not np.isfinite(d_c_nm) or repulsive.max(initial=0.0) <= 0:
@@ -161,7 +160,8 @@ def fit_branch(
 
     C_a, C_a_var, misfit_a = _fit_attraction(h, attractive, d_c_nm, hamaker)
     h_r = np.linspace(h.min(), d_c_nm, FIT.points, endpoint=False)
-    depth, f_r = d_c_nm - h_r, np.interp(h_r, h, repulsive)
+    depth = d_c_nm - h_r
+    f_r = np.interp(h_r, h, repulsive)
     rho, at_bound = _best_rho(depth, f_r)
     C_r = float(_prefactor(depth, f_r, np.array([rho]))[0][0])
     covariance = _covariance(
@@ -227,17 +227,20 @@ def _best_rho(depth: Array, f: Array) -> tuple[float, int]:
     range.
     """
     span = depth.max()
-    low, high = np.log(span / FIT.deepest), np.log(span / FIT.shallowest)
+    low = np.log(span / FIT.deepest)
+    high = np.log(span / FIT.shallowest)
     grid = np.linspace(low, high, 48)
     misfit = _prefactor(depth, f, np.exp(grid))[1]
     best = int(np.argmin(misfit))
     if best in (0, len(grid) - 1):
         return float(np.exp(grid[best])), -1 if best == 0 else 1
-    left, right = grid[best - 1], grid[best + 1]
+    left = grid[best - 1]
+    right = grid[best + 1]
     for _ in range(9):  # each round shrinks the bracket 5-fold: 2e6 in all
         trial = np.linspace(left, right, 11)
         k = int(np.argmin(_prefactor(depth, f, np.exp(trial))[1]))
-        left, right = trial[max(k - 1, 0)], trial[min(k + 1, 10)]
+        left = trial[max(k - 1, 0)]
+        right = trial[min(k + 1, 10)]
     return float(np.exp((left + right) / 2)), 0
 
 

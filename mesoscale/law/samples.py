@@ -15,13 +15,12 @@ QUANTILES = {"pressure_q05_GPa": 0.05, "pressure_q50_GPa": 0.5, "pressure_q95_GP
 
 
 def band_rows(columns: Mapping[str, Array], points: int = 301) -> Iterator[dict[str, Any]]:
-    """Rows of uq/law.csv: the pressure over samples of the law, branch by branch; positive:
-    repulsive.
+    """Rows of uncertainty/law.csv: pressure over samples of the law by branch; positive: repulsive.
 
     Parameters
     ----------
-    columns : of uq/samples.csv, shape (samples,) each; samples without a positive C_r and rho_r are
-        left out."""
+    columns : of uncertainty/samples.csv, shape (samples,) each; samples without a positive C_r and
+        rho_r are left out."""
     for branch in BRANCHES:
         every = np.array(
             [*(columns[f"{branch}_{name}"] for name in PARAMETERS), columns["hamaker"]], float
@@ -33,10 +32,8 @@ def band_rows(columns: Mapping[str, Array], points: int = 301) -> Iterator[dict[
         law = Law(
             *every[:, usable][:, :4000, None]
         )  # quantiles are then known to 1 % in probability
-        touch, decay = (
-            float(np.median(np.asarray(law.d_c_nm))),
-            float(np.median(np.asarray(law.rho_r_nm))),
-        )
+        touch = float(np.median(np.asarray(law.d_c_nm)))
+        decay = float(np.median(np.asarray(law.rho_r_nm)))
         for gap in np.linspace(
             max(touch - 8.0 * decay, 0.0), touch + law.rho_a_nm + 8.0 * decay, points
         ):

@@ -142,7 +142,8 @@ def height_maps(scans: Sequence[Scan], count: int = 10) -> Iterator[tuple[float,
     """Maps of heights that few grains allow: from blocks of the scans drawn anew (bootstrap over
     places).
     """
-    blocks, cuts = [], 4
+    blocks = []
+    cuts = 4
     for scan in scans:
         standard = (scan.heights_nm - scan.heights_nm.mean()) / scan.rms_nm
         blocks += [

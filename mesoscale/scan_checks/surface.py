@@ -35,7 +35,8 @@ def contacting_heights(scan: Scan) -> tuple[np.ndarray, float]:
         )
     nx, ny = scan.heights_nm.shape
     n = min(nx, ny)
-    i, j = (nx - n) // 2, (ny - n) // 2
+    i = (nx - n) // 2
+    j = (ny - n) // 2
     square = scan.heights_nm[i : i + n, j : j + n]
     return -periodic_part(square - square.mean()), n * px
 

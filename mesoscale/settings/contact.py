@@ -81,7 +81,7 @@ def base_modulus(bodies: Sequence[Body]) -> float:
 
 
 class AirSettings(Settings):
-    """Humid air around the contact, whose vapour condenses in narrow gaps (docs/humid_air.md)."""
+    """Humid air around the contact, whose vapour condenses in narrow gaps (docs/humidity.md)."""
 
     humidity: float = key(0.0, "relative humidity of the liquid's vapour; 0: dry", "[0, 1)")
     temperature_C: float = key(20.0, "temperature of air and liquid", "[-100, 2000] C")

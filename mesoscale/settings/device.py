@@ -35,7 +35,7 @@ def _normal(deviation: float, source: str = ASSUMED, **what: Any) -> SpreadRow:
 
 
 class SpreadSettings(Settings):
-    """Departures of a device from its stated properties, uncertain inputs (docs/pad.md)."""
+    """Departures of a device from its stated properties, uncertain inputs (docs/answer.md)."""
 
     thickness_um: SpreadRow | None = _departs("thickness_um", _normal(0.02, relative=True))
     gap_um: SpreadRow | None = _departs("gap_um", _normal(0.02, relative=True))
@@ -89,7 +89,7 @@ DESIGNED: dict[Kind, tuple[str, ...]] = {
 
 
 class DeviceSettings(Settings):
-    """Switch driven by the force-separation law (docs/device.md).
+    """Switch driven by the force-separation law (docs/switch.md).
 
     The defaults are the published fixed-fixed beam of the PRISM capacitive switch.
     """

@@ -160,7 +160,7 @@ def _key(row: InputDefinition) -> Any:
 class InputsSettings(
     create_model("InputsSettings", __base__=Settings, **{row.name: _key(row) for row in INPUTS})
 ):
-    """Origin and distribution of the uncertain inputs (docs/uncertainty.md)."""
+    """Origin and distribution of the uncertain inputs (docs/inputs.md)."""
 
     hardness: HardnessLawName = key(
         "paper",
@@ -199,7 +199,8 @@ class InputsSettings(
     @model_validator(mode="after")
     def _inputs_of_the_hardness(self) -> "InputsSettings":
         for row in INPUTS:
-            given, default = getattr(self, row.name), type(self).model_fields[row.name].default
+            given = getattr(self, row.name)
+            default = type(self).model_fields[row.name].default
             if row.hardness == self.hardness and given is None:
                 raise ValueError(
                     f"hardness: {row.hardness} needs {row.name}, {row.label} ({row.unit}); give"

@@ -214,9 +214,9 @@ def check_files(case: FileCase) -> tuple[bool, str]:
         except InputError as error:
             text = str(error).replace(f"{name}/", "")
             return bool(case.word) and case.word in text and "\n" not in text, text
-    if case.word or pooled.one is None:
+    if case.word or pooled.merged is None:
         return False, "was not refused" if case.word else "no spectrum"
-    rms = float(np.sqrt(pooled.one.moment(0)))
+    rms = float(np.sqrt(pooled.merged.moment(0)))
     error = rms / TRUTH.rms_nm - 1
     # a single line of 4 um knows the RMS height of its surface to a fifth
     allowed = WITHIN if len(arrays) > 1 else 0.3

@@ -1,6 +1,4 @@
-"""The curves of figure 10: all spectra pooled, what is fitted to them, and the one spectrum with
-its band.
-"""
+"""The curves of figure 10: all spectra pooled, the fits, and the one spectrum with its band."""
 
 from collections.abc import Sequence
 
@@ -28,24 +26,16 @@ Curves = dict[str, np.ndarray]
 
 
 def result_curves(pooled: Pooled, typical: RoughSpectrum | None) -> dict[str, Curves]:
-    """Groups of curves over q for spectra.h5; `typical` is the truth of synthetic scans, which need
-    no band.
-    """
-    groups = {
-        "pooled": _pooled([item.spectrum for item in pooled.spectra]),
-        "fits": _fits(pooled, typical),
-    }
-    one = pooled.one
-    if one is not None and typical is None:
-        low, high = one.band()
-        curves = {
-            "q": one.q,
-            "psd": one.psd,
-            "band_low": low,
-            "band_high": high,
-            "measurements": one.count,
-        }
-        groups["one_spectrum"] = {key: values[one.q >= one.first] for key, values in curves.items()}
+    """Groups of curves over q for spectra.h5; `typical` is the truth of synthetic scans."""
+    groups = {"pooled": _pooled([item.spectrum for item in pooled.spectra])}
+    groups["fits"] = _fits(pooled, typical)
+    merged = pooled.merged
+    if merged is not None and typical is None:
+        low, high = merged.band()
+        curves = {"q": merged.q, "psd": merged.psd, "band_low": low, "band_high": high}
+        curves["measurements"] = merged.count
+        seen = merged.q >= merged.first
+        groups["one_spectrum"] = {key: values[seen] for key, values in curves.items()}
     return groups
 
 
@@ -53,29 +43,31 @@ def _pooled(spectra: Sequence[Spectrum]) -> Curves:
     """Geometric mean C of all scans on common bins of log q."""
     per_decade = 12
     binned = [log_bins(spectrum, per_decade) for spectrum in spectra]
-    q, psd = (np.concatenate([getattr(item, key) for item in binned]) for key in ("q", "psd"))
-    _, index, count = np.unique(
-        np.floor(np.log10(q) * per_decade), return_inverse=True, return_counts=True
-    )
-    return {
-        key: np.exp(np.bincount(index, np.log(values)) / count)
-        for key, values in (("q", q), ("psd", psd))
-    }
+    q = np.concatenate([item.q for item in binned])
+    psd = np.concatenate([item.psd for item in binned])
+    bins = np.floor(np.log10(q) * per_decade)
+    _, index, count = np.unique(bins, return_inverse=True, return_counts=True)
+    mean_log_q = np.bincount(index, np.log(q)) / count
+    mean_log_psd = np.bincount(index, np.log(psd)) / count
+    return {"q": np.exp(mean_log_q), "psd": np.exp(mean_log_psd)}
 
 
 def _fits(pooled: Pooled, typical: RoughSpectrum | None) -> Curves:
     """The fits on a common grid of q (1/nm), C in nm^4; bounds are those of the line fits."""
-    lowest, end = min(item.spectrum.q[0] for item in pooled.spectra), pooled.topography.cutoff
+    lowest = min(item.spectrum.q[0] for item in pooled.spectra)
+    end = pooled.topography.cutoff
     q = np.geomspace(lowest, max(end, 2 * lowest), 200)
-    curves, line = {"q": q}, pooled.topography.line_fit
+    curves = {"q": q}
+    line = pooled.topography.line_fit
     if pooled.topography.likelihood is not None:
         curves["likelihood"] = pooled.topography.likelihood.spectrum(end).psd(q)
     if line is not None:
-        for name, slope in (
-            ("lines", line.slope),
-            ("shallow_bound", line.slope_low),
-            ("steep_bound", line.slope_high),
-        ):
+        slopes = {
+            "lines": line.slope,
+            "shallow_bound": line.slope_low,
+            "steep_bound": line.slope_high,
+        }
+        for name, slope in slopes.items():
             curves[name] = RoughSpectrum(line.plateau, line.q0, slope, end).psd(q)
         curves["plateau_low"] = np.where(q <= line.q0, line.plateau_low, np.nan)
         curves["plateau_high"] = np.where(q <= line.q0, line.plateau_high, np.nan)

@@ -30,8 +30,7 @@ def synthesize_heights(
     seed: int,
     q1: float | None = None,
 ) -> Array:
-    """Periodic surface of an isotropic spectrum C(q), nm^4 of 1/nm, whose heights are distributed
-    as stated.
+    """Periodic surface of an isotropic spectrum C(q), nm^4, with a height distribution.
 
     Parameters
     ----------
@@ -49,54 +48,47 @@ def synthesize_heights(
     InputError : as `synthesize_spectrum`, or heights that are no distribution.
     """
     table = np.asarray(heights, dtype=float)
-    if (
-        table.shape != Z.shape
-        or not np.isfinite(table).all()
-        or np.any(np.diff(table) < 0)
-        or table[0] == table[-1]
-    ):
+    rises = np.isfinite(table).all() and not np.any(np.diff(table) < 0)
+    if table.shape != Z.shape or not rises or table[0] == table[-1]:
         raise InputError(
             f"heights: accepted are {len(Z)} values that do not fall, in units of the RMS height"
         )
     squared, step = squared_waves(pixels, length_nm, q1)
-    wanted = np.concatenate([[0.0], psd(step * np.sqrt(squared))])
-    if not np.isfinite(wanted).all() or not wanted.any():
+    power = np.concatenate([[0.0], psd(step * np.sqrt(squared))])
+    if not np.isfinite(power).all() or not power.any():
         raise InputError(
             "the spectrum has no power on this surface; accepted are spectra between its waves"
         )
-    amplitude = np.sqrt(_gaussian_power(pixels, wanted, tuple(map(float, heights))))
+    amplitude = np.sqrt(_gaussian_power(pixels, power, tuple(map(float, heights))))
     gaussian = filtered_noise(pixels, amplitude, 1.0, seed)
     surface = np.interp(gaussian, Z, table)
-    beyond = gaussian > Z[-1]
-    if beyond.any():
-        surface[beyond] = table[-1] + (gaussian[beyond] - Z[-1]) * (table[-1] - table[-2]) / (
-            Z[-1] - Z[-2]
-        )
+    outside = gaussian > Z[-1]
+    if outside.any():
+        # beyond the table the heights rise as its last two do
+        rise = table[-1] - table[-2]
+        surface[outside] = table[-1] + (gaussian[outside] - Z[-1]) * rise / (Z[-1] - Z[-2])
     surface -= surface.mean()
     return surface * (rms / np.sqrt(np.mean(surface**2)))
 
 
-def _gaussian_power(pixels: int, wanted: Array, heights: tuple[float, ...]) -> Array:
-    """Spectrum by squared wave number of the Gaussian surface that F carries to the wanted one;
-    scale arbitrary.
-    """
-    number = (
-        np.fft.fftfreq(pixels, 1 / pixels)[:, None] ** 2 + np.arange(pixels // 2 + 1)[None, :] ** 2
-    )
-    number = np.rint(number).astype(np.int64)
-    inside = number < len(wanted)
+def _gaussian_power(pixels: int, target: Array, heights: tuple[float, ...]) -> Array:
+    """Spectrum by squared wave number of the Gaussian that F carries to `target`."""
+    number_x = np.fft.fftfreq(pixels, 1 / pixels)[:, None]
+    number_y = np.arange(pixels // 2 + 1)[None, :]
+    number = np.rint(number_x**2 + number_y**2).astype(np.int64)
+    inside = number < len(target)
     grid = np.zeros(number.shape)
-    grid[inside] = wanted[number[inside]]
+    grid[inside] = target[number[inside]]
     correlation = np.asarray(fft.irfft2(grid, s=(pixels, pixels)))
     correlation /= correlation[0, 0]
     r, carried = _carried_correlation(heights)
     power = np.real(np.asarray(fft.rfft2(np.interp(correlation, carried, r))))
     # the mean over the waves of one number: the noise is filtered by it
-    total = np.bincount(number[inside], power[inside], len(wanted))
-    count = np.bincount(number[inside], minlength=len(wanted))
+    total = np.bincount(number[inside], power[inside], len(target))
+    count = np.bincount(number[inside], minlength=len(target))
     mean = np.maximum(total / np.maximum(count, 1), 0.0)
     mean[0] = 0.0
-    return np.where(wanted > 0, mean, 0.0)
+    return np.where(target > 0, mean, 0.0)
 
 
 @lru_cache(maxsize=8)
@@ -105,15 +97,18 @@ def _carried_correlation(heights: tuple[float, ...]) -> tuple[Array, Array]:
     x, weight = np.polynomial.hermite_e.hermegauss(160)
     weight = weight / weight.sum()
     values = np.interp(x, Z, np.asarray(heights))
-    previous, current = (
-        np.zeros_like(x),
-        np.ones_like(x),
-    )  # normalised Hermite polynomials by recursion
-    squares, terms = [], 24
+    # normalised Hermite polynomials by recursion
+    previous = np.zeros_like(x)
+    current = np.ones_like(x)
+    squares = []
+    terms = 24
     for n in range(terms):
-        previous, current = current, (x * current - np.sqrt(n) * previous) / np.sqrt(n + 1)
+        following = (x * current - np.sqrt(n) * previous) / np.sqrt(n + 1)
+        previous = current
+        current = following
         squares.append(float(np.sum(weight * values * current)) ** 2)
     share = np.array(squares) / np.sum(squares)
     r = np.linspace(-1, 1, 2001)
-    carried = np.sum(share[:, None] * r[None, :] ** np.arange(1, terms + 1)[:, None], axis=0)
+    powers = r[None, :] ** np.arange(1, terms + 1)[:, None]
+    carried = np.sum(share[:, None] * powers, axis=0)
     return r, np.maximum.accumulate(carried)

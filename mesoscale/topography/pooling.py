@@ -1,6 +1,4 @@
-"""From the records of all measurements to the parameters, the description and the curves of the
-surface.
-"""
+"""From the records of all measurements to parameters, description and curves of the surface."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -53,7 +51,7 @@ class Pooled:
     Attributes
     ----------
     spectra : of each measurement, without what tips added to grainy maps.
-    one : the spectrum over all scales; None where there is not enough for one.
+    merged : the spectrum over all scales; None where there is not enough for one.
     pairs : measurements that see common bands.
     surface, rows : entries of `contact.surface`, distributions of q0, hurst, rms and q1.
     film : distributions of q0, hurst and rms of the typical place, and of the scatter of ln RMS
@@ -64,7 +62,7 @@ class Pooled:
 
     spectra: list[TrustedSpectrum]
     topography: Topography
-    one: OneSpectrum | None
+    merged: OneSpectrum | None
     pairs: list[Overlap]
     choice: Choice
     surface: dict[str, Any]
@@ -104,15 +102,12 @@ def pool(
     arrays = {name: data for name, data in arrays.items() if name not in alike}
     attributes = {name: values for name, values in attributes.items() if name not in alike}
     images = [trusted_record(name, data, attributes[name]) for name, data in arrays.items()]
-    tests = [
-        compare_heights(
-            name,
-            data["heights"],
-            (float(attributes[name]["length_x_nm"]), float(attributes[name]["length_y_nm"])),
-        )
-        for name, data in arrays.items()
-        if not is_profile(attributes[name]) and np.ptp(data["heights"]) > 0
-    ]
+    tests = []
+    for name, data in arrays.items():
+        record = attributes[name]
+        if not is_profile(record) and np.ptp(data["heights"]) > 0:
+            lengths_nm = (float(record["length_x_nm"]), float(record["length_y_nm"]))
+            tests.append(compare_heights(name, data["heights"], lengths_nm))
     pairs = overlaps(images)
     if settings.scans:
         refuse_different_films(pairs)
@@ -121,13 +116,14 @@ def pool(
         images, quantiles if not_gaussian(tests) else {}, settings
     )
     grows = cell_nm is None and cut_off
-    cell_nm = suited_cell(spectra, electrode_nm) if cell_nm is None else cell_nm
+    if cell_nm is None:
+        cell_nm = suited_cell(spectra, electrode_nm)
     refuse_coarse_measurements(spectra, cell_nm)
-    one = merge(spectra, lifted)
+    merged = merge(spectra, lifted)
     if settings.scans:  # synthetic scans know their tip
-        one = spectrum_with_radius_error(one, spectra)
-    choice = choose(topography, one, tests, settings)
-    used = None if choice.name == "power_law" else one
+        merged = spectrum_with_radius_error(merged, spectra)
+    choice = choose(topography, merged, tests, settings)
+    used = None if choice.name == "power_law" else merged
     cutoff = cutoff_row(topography, spectra)
     if grows:
 
@@ -138,25 +134,27 @@ def pool(
         cell_nm = grown_cell(
             cell_nm, held, shortest_nm, pixels, min(electrode_nm, longest_nm(attributes))
         )
-    charts = list(quantiles.values()) if choice.name == "measured_heights" else []
+    charts = []
+    if choice.name == "measured_heights":
+        charts = list(quantiles.values())
     surface = surface_of(topography, used, charts, settings, cell_nm)
     typical = settings.model_copy(update={"ranges": "interval"})
-    rows, film = (rows_of(topography, used, asked, cell_nm) for asked in (settings, typical))
+    rows = rows_of(topography, used, settings, cell_nm)
+    film = rows_of(topography, used, typical, cell_nm)
     if rows:
         rows["q1"] = cutoff
         film["rms_scatter"] = rms_scatter_row(topography, used)
         if cut_off:
-            rows["rms"], film["rms"] = (
-                rms_before(rows["q1"], part["rms"], topography, surface) for part in (rows, film)
-            )
+            rows["rms"] = rms_before(cutoff, rows["rms"], topography, surface)
+            film["rms"] = rms_before(cutoff, film["rms"], topography, surface)
     doubts = [doubt for doubt in topography.doubts if used is None or doubt.fatal]
     if settings.scans:
         files = {name: str(values.get("file", name)) for name, values in attributes.items()}
         doubts += several_surfaces(images, pairs, files)
-        doubts += description_doubts(topography, choice.name, one, attributes, tests, cell_nm)
-        if one is not None:
+        doubts += description_doubts(topography, choice.name, merged, attributes, tests, cell_nm)
+        if merged is not None:
             doubts += finer_waves_doubt(
-                SpectrumTable(*one.carried_on(one.psd)).psd, spectra, cell_nm
+                SpectrumTable(*merged.carried_on(merged.psd)).psd, spectra, cell_nm
             )
     if settings.scans and rows:
         heights = {name: _levelled(arrays[name], values) for name, values in attributes.items()}
@@ -170,7 +168,7 @@ def pool(
             " counts once"
         )
         doubts.append(Doubt("copies", text, "measure other places of the surface", "rms"))
-    return Pooled(spectra, topography, one, pairs, choice, surface, rows, film, doubts, cell_nm)
+    return Pooled(spectra, topography, merged, pairs, choice, surface, rows, film, doubts, cell_nm)
 
 
 def _levelled(
@@ -187,8 +185,7 @@ def parameters_of(
     quantiles: Mapping[str, np.ndarray],
     settings: TopographySettings,
 ) -> tuple[Topography, list[TrustedSpectrum], float]:
-    """Parameters with intervals that hold the tips' errors, spectra without the tips' lift, and the
-    error it leaves.
+    """Parameters with the tips' errors, spectra without the tips' lift, and the error that leaves.
 
     Parameters
     ----------

@@ -30,11 +30,11 @@ def line_spectrum(profile: Profile) -> tuple[np.ndarray, np.ndarray]:
     The sum of C1 2 pi / L over positive and negative k is the mean square height.
     """
     n = len(profile.heights_nm)
-    tapers = np.sqrt(2) * np.sin(
-        np.pi * np.arange(1, TAPERS + 1)[:, None] * (np.arange(n) + 0.5) / n
-    )
+    waves = np.pi * np.arange(1, TAPERS + 1)[:, None]
+    tapers = np.sqrt(2) * np.sin(waves * (np.arange(n) + 0.5) / n)
     z = np.fft.rfft((profile.heights_nm - profile.heights_nm.mean()) * tapers)
-    c1 = np.mean(np.abs(z) ** 2, axis=0) * profile.step_nm**2 / (2 * np.pi * profile.length_nm)
+    power = np.mean(np.abs(z) ** 2, axis=0)
+    c1 = power * profile.step_nm**2 / (2 * np.pi * profile.length_nm)
     k = 2 * np.pi * np.fft.rfftfreq(n, profile.step_nm)
     last = n // 2 if n % 2 == 0 else len(k)  # at an even Nyquist number there is half a mode
     return k[1:last], np.maximum(c1[1:last], FLOOR)
@@ -56,7 +56,8 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     measured = binned_line(*line_spectrum(profile), low, high)
     bins, modes = measured.q, measured.modes
     distance = np.log(10) / 10  # nodes a decade
-    count = max(4, int(np.ceil(np.log(bins[-1] / bins[0]) / distance)) + 1)
+    decades = np.log(bins[-1] / bins[0]) / distance
+    count = max(4, int(np.ceil(decades)) + 1)
     # C is continued for 1.5 decades beyond the data, because short waves lift C1 everywhere
     nodes = np.log(bins[0]) + distance * np.arange(count + 15)
     heights, covariance = _solve(nodes, measured)
@@ -64,45 +65,40 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     # errors of neighbouring nodes go together: sums have their error where each node has that of
     # its row's sum
     apart = np.abs(nodes[keep][:, None] - nodes[keep])
-    variance = np.sum(covariance[np.ix_(keep, keep)] * (apart < 0.5 * np.log(10)), axis=1)
+    together = apart < 0.5 * np.log(10)
+    variance = np.sum(covariance[np.ix_(keep, keep)] * together, axis=1)
     # neighbouring nodes, which the smoothing ties, have together no more than the wave numbers that
     # they lie among
     near = np.abs(nodes[keep][:, None] - np.log(bins)) < 0.2 * np.log(10)
-    worth = np.minimum(
-        1 / np.maximum(variance, 1e-3), near @ modes / (apart < 0.2 * np.log(10)).sum(axis=1)
-    )
+    sharing = (apart < 0.2 * np.log(10)).sum(axis=1)
+    worth = np.minimum(1 / np.maximum(variance, 1e-3), near @ modes / sharing)
     # error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60
     # lines each)
     worth /= 1 + worth * 0.25**2
     nyquist = np.pi / profile.step_nm
-    return Spectrum(
-        np.exp(nodes[keep]), np.exp(heights[keep]), worth, measured.spacing, nyquist, sharp=True
-    )
+    q = np.exp(nodes[keep])
+    psd = np.exp(heights[keep])
+    return Spectrum(q, psd, worth, measured.spacing, nyquist, sharp=True)
 
 
 def binned_line(k: np.ndarray, c1: np.ndarray, low: float, high: float) -> Spectrum:
-    """C1 (nm^3) of a line's wave vectors k from `low` to `high` (1/nm) on bins, as the tapers
-    spread it (`spread`).
-    """
+    """C1 (nm^3) of a line at k from `low` to `high` (1/nm) on bins, as the tapers spread it."""
     inside = (k >= low) & (k <= high)
     bins, modes, means = _binned(k[inside], c1[inside])
     return Spectrum(bins, means, modes, float(k[0]), float(k[-1]))
 
 
 def spread(k: np.ndarray, step: np.ndarray | float) -> np.ndarray:
-    """(2, m) wave vectors in 1/nm that stand for those over which tapers average at k (m,); `step`
-    is 2 pi / L.
-    """
+    """(2, m) wave vectors (1/nm) for the tapers' average at k (m,); `step` is 2 pi/L."""
     away = SPREAD * np.asarray(step)
     return np.stack([np.maximum(k - away, 0.1 * k), k + away])
 
 
 def projected(q: np.ndarray, psd: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """C1 (nm^3) at k (1/nm) of a spectrum given by points (q in 1/nm, C in nm^4), zero beyond the
-    last.
-    """
-    at, weight = _points(k, float(q[-1]))
-    return np.sum(weight * np.exp(np.interp(np.log(at), np.log(q), np.log(psd))), axis=1)
+    """C1 (nm^3) at k (1/nm) of points (q in 1/nm, C in nm^4), zero beyond the last."""
+    points, weight = _points(k, float(q[-1]))
+    log_psd = np.interp(np.log(points), np.log(q), np.log(psd))
+    return np.sum(weight * np.exp(log_psd), axis=1)
 
 
 def _points(k: np.ndarray, end: float) -> tuple[np.ndarray, np.ndarray]:
@@ -110,8 +106,8 @@ def _points(k: np.ndarray, end: float) -> tuple[np.ndarray, np.ndarray]:
     reach = np.arccosh(np.maximum(end / k, 1 + 1e-9))
     t, w = np.polynomial.legendre.leggauss(160)
     t = 0.5 * (t + 1)[None, :] * reach[:, None]
-    at = k[:, None] * np.cosh(t)
-    return at, at * w[None, :] * reach[:, None]  # 2 * (reach / 2)
+    points = k[:, None] * np.cosh(t)
+    return points, points * w[None, :] * reach[:, None]  # 2 * (reach / 2)
 
 
 def _binned(k: np.ndarray, c1: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -126,31 +122,37 @@ def _binned(k: np.ndarray, c1: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
 def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarray]:
     """ln C at the nodes (ln q) with its covariance, by damped Fisher scoring."""
     k, c1, modes = measured.q, measured.psd, measured.modes
-    parts = [_points(part, float(np.exp(nodes[-1]))) for part in spread(k, measured.spacing)]
-    at, weight = (np.concatenate(both, axis=1) for both in zip(*parts, strict=True))
-    weight /= len(parts)
-    place = (np.log(at) - nodes[0]) / (nodes[1] - nodes[0])
+    last = float(np.exp(nodes[-1]))
+    tables = [_points(waves, last) for waves in spread(k, measured.spacing)]
+    points = np.concatenate([points for points, _ in tables], axis=1)
+    weight = np.concatenate([weight for _, weight in tables], axis=1)
+    weight /= len(tables)
+    place = (np.log(points) - nodes[0]) / (nodes[1] - nodes[0])
     left = np.clip(place.astype(int), 0, len(nodes) - 2)
     right_share = np.clip(place - left, 0.0, 1.0)
     # standard deviation of the change of slope times the node distance, from node to node
-    bends = np.diff(np.eye(len(nodes)), 2, axis=0) / 0.35
-    rise = np.diff(np.eye(len(nodes)), axis=0) / (nodes[1] - nodes[0])
+    unit = np.eye(len(nodes))
+    bends = np.diff(unit, 2, axis=0) / 0.35
+    rise = np.diff(unit, axis=0) / (nodes[1] - nodes[0])
     # the logarithmic slope is -0.75 +- 1.5 where a line hardly determines it (its plateau); five
     # nodes share one
     prior = bends.T @ bends + rise.T @ rise / (1.5**2 * 5)
     pull = rise.sum(axis=0) * -0.75 / (1.5**2 * 5)
-    rows = np.repeat(np.arange(len(k)), at.shape[1])
+    rows = np.repeat(np.arange(len(k)), points.shape[1])
 
     def model(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         c = weight * np.exp(y[left] * (1 - right_share) + y[left + 1] * right_share)
         mean = c.sum(axis=1)
         slope = np.zeros((len(k), len(y)))
-        np.add.at(slope, (rows, left.ravel()), (c * (1 - right_share)).ravel())
-        np.add.at(slope, (rows, left.ravel() + 1), (c * right_share).ravel())
+        on_left = c * (1 - right_share)
+        on_right = c * right_share
+        np.add.at(slope, (rows, left.ravel()), on_left.ravel())
+        np.add.at(slope, (rows, left.ravel() + 1), on_right.ravel())
         return mean, slope / mean[:, None]
 
     def cost(y: np.ndarray, mean: np.ndarray) -> float:
-        return float(np.sum(modes * (c1 / mean + np.log(mean))) + 0.5 * y @ prior @ y - pull @ y)
+        misfit = np.sum(modes * (c1 / mean + np.log(mean)))
+        return float(misfit + 0.5 * y @ prior @ y - pull @ y)
 
     # start from a power law: C = C1 / (2 k) to a factor of order one
     fall = np.polyfit(np.log(k), np.log(c1), 1)

@@ -1,6 +1,4 @@
-"""What the analysis of one measurement leaves for the pooling of all: arrays with their units, and
-attributes.
-"""
+"""What the analysis of one measurement leaves for pooling: arrays with units, and attributes."""
 
 import math
 from collections.abc import Mapping
@@ -41,14 +39,14 @@ KEPT = ("q", "psd", "profile_q", "profile_psd", "heights", "line")
 
 def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays, dict[str, Any]]:
     """Arrays (keys of `DATASETS`) and attributes of one measurement."""
-    data, arrays, attributes = measured.data, {}, {}
+    data = measured.data
+    arrays = {}
+    attributes = {}
     if isinstance(data, Scan):
         cleaned = clean(data, settings)
-        limits, (length_x, length_y), pixels = (
-            trusted_map(cleaned, measured),
-            cleaned.lengths_nm,
-            cleaned.heights_nm.shape,
-        )
+        limits = trusted_map(cleaned, measured)
+        (length_x, length_y) = cleaned.lengths_nm
+        pixels = cleaned.heights_nm.shape
         share, skewness = alignment_effect(data, settings)
         attributes = {"length_y_nm": length_y, "pixels_y": pixels[1], "form": limits.form}
         attributes |= {
@@ -61,11 +59,9 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
             arrays["quantiles"] = height_quantiles(cleaned.heights_nm)
     else:
         cleaned = clean_profile(data, settings)
-        limits, length_x, pixels = (
-            trusted_profile(cleaned, measured),
-            data.length_nm,
-            data.heights_nm.shape,
-        )
+        limits = trusted_profile(cleaned, measured)
+        length_x = data.length_nm
+        pixels = data.heights_nm.shape
         arrays["profile_q"], arrays["profile_psd"] = line_spectrum(cleaned)
         arrays["line"] = _thinned(cleaned.heights_nm, 2000)
     attributes["parabola"] = any(
@@ -94,12 +90,13 @@ def _tip_matters(limits: TrustedSpectrum) -> bool:
     """Would a tip as blunt as many are, four times the radius taken, end what a map shows?"""
     q, psd = limits.spectrum.q, limits.spectrum.psd
     seen = (q >= limits.low) & (q <= limits.high)
-    return bool((curvature(4 * limits.tip_radius_nm, q[seen], psd[seen]) > TRUST.curved).any())
+    curved = curvature(4 * limits.tip_radius_nm, q[seen], psd[seen])
+    return bool((curved > TRUST.curved).any())
 
 
-def _thinned(heights: np.ndarray, most: int) -> np.ndarray:
-    """Heights thinned to at most `most` points a side, single precision."""
-    stride = max(1, -(-max(heights.shape) // most))
+def _thinned(heights: np.ndarray, largest: int) -> np.ndarray:
+    """Heights thinned to at most `largest` points a side, single precision."""
+    stride = max(1, -(-max(heights.shape) // largest))
     return heights[(slice(None, None, stride),) * heights.ndim].astype(np.float32)
 
 
@@ -107,23 +104,24 @@ def in_order(
     arrays: Mapping[str, Arrays], attributes: Mapping[str, Mapping[str, Any]]
 ) -> dict[str, Arrays]:
     """Records from the smallest measurement to the largest, as `pool` takes them."""
-    return dict(
-        sorted(arrays.items(), key=lambda item: (attributes[item[0]]["length_x_nm"], item[0]))
-    )
+
+    def size(name: str) -> tuple[float, str]:
+        return attributes[name]["length_x_nm"], name
+
+    return {name: arrays[name] for name in sorted(arrays, key=size)}
 
 
 def copies(
     arrays: Mapping[str, Mapping[str, np.ndarray]], attributes: Mapping[str, Mapping[str, Any]]
 ) -> dict[str, str]:
-    """Measurements of files of the same bytes that hold what an earlier one holds, with the name of
-    that.
-    """
+    """Measurements that hold what an earlier file of the same bytes holds, with its name."""
     first: dict[tuple[str, bytes], str] = {}
     alike = {}
     for name, data in arrays.items():
         if digest := attributes[name].get("sha256"):  # a container has several measurements
             other = first.setdefault((digest, data["psd"].tobytes()), name)
-            alike |= {name: other} if other != name else {}
+            if other != name:
+                alike[name] = other
     return alike
 
 
@@ -132,22 +130,26 @@ def trusted_record(
 ) -> TrustedSpectrum:
     """Spectrum and trusted range of a recorded measurement."""
     line = is_profile(attributes)
-    ends = attributes["spacing"], attributes["nyquist"]
-    spectrum = Spectrum(arrays["q"], arrays["psd"], arrays["modes"], *ends, sharp=line)
-    low, high, radius, rms, reach = (
-        float(attributes[key])
-        for key in ("trusted_low", "trusted_high", "tip_radius_nm", "unfiltered_rms_nm", "reach")
+    spacing = attributes["spacing"]
+    nyquist = attributes["nyquist"]
+    spectrum = Spectrum(arrays["q"], arrays["psd"], arrays["modes"], spacing, nyquist, sharp=line)
+    trusted = TrustedSpectrum(
+        name,
+        spectrum,
+        low=float(attributes["trusted_low"]),
+        high=float(attributes["trusted_high"]),
+        limit=str(attributes["limit"]),
+        tip_radius_nm=float(attributes["tip_radius_nm"]),
+        rms_nm=float(attributes["unfiltered_rms_nm"]),
+        reach=float(attributes["reach"]),
+        parabola=bool(attributes["parabola"]),
     )
-    result = TrustedSpectrum(
-        name, spectrum, low, high, str(attributes["limit"]), radius, rms, reach
-    )
-    result = replace(result, parabola=bool(attributes["parabola"]))
     if line:
-        return replace(
-            result, line=binned_line(arrays["profile_q"], arrays["profile_psd"], low, high)
-        )
+        q = arrays["profile_q"]
+        psd = arrays["profile_psd"]
+        return replace(trusted, line=binned_line(q, psd, trusted.low, trusted.high))
     side = float(np.sqrt(attributes["length_x_nm"] * attributes["length_y_nm"]))
-    return replace(result, side_nm=side, form=float(attributes["form"]))
+    return replace(trusted, side_nm=side, form=float(attributes["form"]))
 
 
 def is_profile(attributes: Mapping[str, Any]) -> bool:
@@ -157,7 +159,8 @@ def is_profile(attributes: Mapping[str, Any]) -> bool:
 
 def longest_nm(attributes: Mapping[str, Mapping[str, Any]]) -> float:
     """Side of the largest map, or length of a longer line."""
-    return max(
+    shorter_sides = (
         min(values["length_x_nm"], values.get("length_y_nm", math.inf))
         for values in attributes.values()
     )
+    return max(shorter_sides)

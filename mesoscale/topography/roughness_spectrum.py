@@ -55,18 +55,14 @@ class RoughSpectrum:
 
     @property
     def rms_slope(self) -> float:
-        """RMS gradient of the heights; above about 1 a single-valued height map is hard to
-        believe.
-        """
-        gradient = self.q0**4 / 4 + self.q0**self.slope * _power_integral(
-            3 - self.slope, self.q0, self.q1
-        )
+        """RMS gradient of the heights; above about 1 a single-valued map is hard to believe."""
+        steep_waves = _power_integral(3 - self.slope, self.q0, self.q1)
+        gradient = self.q0**4 / 4 + self.q0**self.slope * steep_waves
         return float(np.sqrt(2 * np.pi * self.plateau * gradient))
 
 
 class SpectrumTable:
-    """A spectrum given by points, for instance a measured one: straight between them in log q and
-    log C.
+    """A spectrum by points, for instance a measured one: straight in log q and log C.
 
     Below the first point it stays at the first value, above the last it is zero.
 
@@ -76,31 +72,34 @@ class SpectrumTable:
         order of q."""
 
     def __init__(self, q: Sequence[float] | np.ndarray, psd: Sequence[float] | np.ndarray):
-        self.q, self.values = np.asarray(q, dtype=float), np.asarray(psd, dtype=float)
-        if self.q.ndim != 1 or len(self.q) < 2 or self.q.shape != self.values.shape:
+        self.q = np.asarray(q, dtype=float)
+        self.values = np.asarray(psd, dtype=float)
+        one_length = self.q.ndim == 1 and self.q.shape == self.values.shape
+        if not one_length or len(self.q) < 2:
             raise InputError(
                 "spectrum: accepted are two lists of one length, q (1/nm) and C (nm^4), of two"
                 " values or more"
             )
         finite = np.isfinite(self.q).all() and np.isfinite(self.values).all()
-        if not finite or self.q[0] <= 0 or np.any(np.diff(self.q) <= 0) or np.any(self.values <= 0):
+        rises = self.q[0] > 0 and not np.any(np.diff(self.q) <= 0)
+        if not finite or not rises or np.any(self.values <= 0):
             raise InputError("spectrum: accepted are positive finite values with q in rising order")
 
     def psd(self, q: np.ndarray) -> np.ndarray:
         """C(q) in nm^4 at wave vectors q (any shape) in 1/nm."""
         known = np.log(np.maximum(q, self.q[0]))
-        values = np.exp(np.interp(known, np.log(self.q), np.log(self.values)))
+        log_psd = np.interp(known, np.log(self.q), np.log(self.values))
+        values = np.exp(log_psd)
         return np.where(q <= self.q[-1], values, 0.0)
 
     def scaled(self, rms_nm: float, q1: float) -> "SpectrumTable":
-        """The same shape for an RMS height that the integral of 2 pi q C(q) from zero to q1
-        gives.
-        """
+        """The same shape with an RMS height, which 2 pi q C(q) has from zero to q1."""
         return SpectrumTable(self.q, self.values * rms_nm**2 / self.mean_square(q1))
 
     def mean_square(self, q1: float) -> float:
         """Mean square height, nm^2: the integral of 2 pi q C(q) from zero to q1."""
-        low, high = self.q[0], min(q1, self.q[-1])
+        low = self.q[0]
+        high = min(q1, self.q[-1])
         square = np.pi * self.values[0] * min(low, q1) ** 2
         if high > low:
             inside = self.q[self.q < high]
@@ -111,7 +110,8 @@ class SpectrumTable:
 
 def mean_square(plateau: float, q0: float, slope: float, q1: float) -> float:
     """Mean square height of equation 9, nm^2: plateau part plus power law."""
-    return 2 * np.pi * plateau * (q0**2 / 2 + q0**slope * _power_integral(1 - slope, q0, q1))
+    falling = q0**slope * _power_integral(1 - slope, q0, q1)
+    return 2 * np.pi * plateau * (q0**2 / 2 + falling)
 
 
 def _power_integral(exponent: float, low: float, high: float) -> float:

@@ -1,5 +1,4 @@
-"""Power spectral density of scans: equations 7 and 8 of the paper, sections, windows, radial
-averages.
+"""Power spectra of scans: equations 7 and 8 of the paper, sections, windows, radial averages.
 
 All spectra are two-dimensional, C(q) in nm^4, normalised so that the sum of C (2 pi / L)^2 over all
 wave vectors is the mean square height (Parseval).  Averaging C over directions gives the isotropic
@@ -41,8 +40,7 @@ class Spectrum:
 
 
 def flat_window(n: int, flat: float) -> np.ndarray:
-    """Window of n points, one over the central share `flat`, falling to zero as a half cosine at
-    the ends.
+    """Window of n points, one over the central share `flat`, a half cosine at both ends.
 
     `flat = 0` is the Hann window.
     """
@@ -51,9 +49,8 @@ def flat_window(n: int, flat: float) -> np.ndarray:
     edge = (1 - flat) / 2
     if edge <= 0:
         return np.ones(n)
-    return np.where(
-        distance >= edge, 1.0, 0.5 * (1 - np.cos(np.pi * np.minimum(distance / edge, 1)))
-    )
+    edge_wave = np.cos(np.pi * np.minimum(distance / edge, 1))
+    return np.where(distance >= edge, 1.0, 0.5 * (1 - edge_wave))
 
 
 def section_starts(pixels: int, section: int, count: int) -> np.ndarray:
@@ -63,8 +60,8 @@ def section_starts(pixels: int, section: int, count: int) -> np.ndarray:
 
 def section_pixels(pixels: int, fraction: float) -> int:
     """Side of a section: a fast FFT size near `fraction` of the scan (768 of 1024)."""
-    wanted = max(16, round(pixels * fraction))
-    return min(pixels, scipy.fft.next_fast_len(wanted, True) or wanted)
+    pixels_near = max(16, round(pixels * fraction))
+    return min(pixels, scipy.fft.next_fast_len(pixels_near, True) or pixels_near)
 
 
 def hann_spectrum(cleaned: Scan, sections: int = 25, flat: float = 0.0) -> Spectrum:
@@ -100,46 +97,55 @@ def radial_spectrum(
     """
     nx, ny = heights.shape
     per_side = max(1, round(np.sqrt(sections)))
-    mx, my = section_pixels(nx, fraction), section_pixels(ny, fraction)
-    xs, ys = section_starts(nx, mx, per_side), section_starts(ny, my, per_side)
-    wx, wy = flat_window(mx, flat), flat_window(my, flat)
+    mx = section_pixels(nx, fraction)
+    my = section_pixels(ny, fraction)
+    xs = section_starts(nx, mx, per_side)
+    ys = section_starts(ny, my, per_side)
+    wx = flat_window(mx, flat)
+    wy = flat_window(my, flat)
     window = np.outer(wx, wy).astype(np.float32)
     data = np.ascontiguousarray(heights, dtype=np.float32)  # 7 digits; spectra span fewer
     total = np.zeros((mx, my // 2 + 1))
     for x in xs:
         for y in ys:
-            part = data[x : x + mx, y : y + my]
-            z = np.asarray(scipy.fft.rfft2((part - part.mean()) * window, overwrite_x=True))
+            section = data[x : x + mx, y : y + my]
+            z = np.asarray(scipy.fft.rfft2((section - section.mean()) * window, overwrite_x=True))
             total += np.real(z) ** 2 + np.imag(z) ** 2
     total /= len(xs) * len(ys)
 
     size = lengths_nm[0] * mx / nx, lengths_nm[1] * my / ny
     cell = size[0] * size[1] / (mx * my)
     window_power = float(np.mean(wx**2) * np.mean(wy**2))
-    psd = total * (cell / (2 * np.pi)) ** 2 / (size[0] * size[1] * window_power)
+    power = size[0] * size[1] * window_power
+    psd = total * (cell / (2 * np.pi)) ** 2 / power
 
     kx = np.abs(np.fft.fftfreq(mx, 1 / mx)).astype(int)
     ky = np.arange(my // 2 + 1)
-    qx, qy = 2 * np.pi / size[0] * kx, 2 * np.pi / size[1] * ky
+    qx = 2 * np.pi / size[0] * kx
+    qy = 2 * np.pi / size[1] * ky
     spacing = max(2 * np.pi / size[0], 2 * np.pi / size[1])
     nyquist = min(np.pi * mx / size[0], np.pi * my / size[1])
     q = np.sqrt(qx[:, None] ** 2 + qy[None, :] ** 2)
     shell = np.rint(q / spacing).astype(np.int64)
-    weight = np.where((ky == 0) | ((ky == my // 2) & (my % 2 == 0)), 0.5, 1.0) * np.ones_like(q)
+    # the half plane holds both of a pair of opposite waves but on its edges
+    on_edge = (ky == 0) | ((ky == my // 2) & (my % 2 == 0))
+    weight = np.where(on_edge, 0.5, 1.0) * np.ones_like(q)
     if skip_lines:
         weight[kx <= 1] = 0.0
     count = int(nyquist / spacing)
     inside = shell <= count
-    index, weight = shell[inside], weight[inside]
+    index = shell[inside]
+    weight = weight[inside]
     modes = np.bincount(index, weight, count + 1)[1:]
     known = modes > 0
     with np.errstate(invalid="ignore", divide="ignore"):
-        mean_q = (np.bincount(index, weight * q[inside], count + 1)[1:] / modes)[known]
-        mean_psd = (np.bincount(index, weight * psd[inside], count + 1)[1:] / modes)[known]
+        q_sum = np.bincount(index, weight * q[inside], count + 1)[1:]
+        psd_sum = np.bincount(index, weight * psd[inside], count + 1)[1:]
+        mean_q = (q_sum / modes)[known]
+        mean_psd = (psd_sum / modes)[known]
     area = _covered(nx, xs, wx) / mx * _covered(ny, ys, wy) / my
-    return Spectrum(
-        mean_q, np.maximum(mean_psd, FLOOR), modes[known] * area, float(spacing), float(nyquist)
-    )
+    mean_psd = np.maximum(mean_psd, FLOOR)
+    return Spectrum(mean_q, mean_psd, modes[known] * area, float(spacing), float(nyquist))
 
 
 def _covered(pixels: int, starts: np.ndarray, window: np.ndarray) -> float:

@@ -15,18 +15,19 @@ from mesoscale.topography.roughness_spectrum import hurst_from_slope
 
 
 def measurement_lines(content: Mapping[str, Any]) -> Iterator[str]:
-    """What each measurement shows, as lines of a table; `content` is that of
-    topography/parameters.json.
-    """
+    """What each measurement shows, as lines of a table; `content`: topography/parameters.json."""
     heads = ("measurement", "size (nm)", "points", "RMS (nm)", "trusted q (1/nm)", "ends by")
     rows = [heads, *(_cells(row) for row in content["scans"])]
     widths = [max(len(row[k]) for row in rows) for k in range(len(heads))]
     for row in rows:
-        yield "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        yield "  ".join(cells).rstrip()
 
 
 def _cells(row: Mapping[str, Any]) -> tuple[str, ...]:
-    name, ends, longest = row["name"], f"{row['trusted_low']:.2g} to {row['trusted_high']:.2g}", 20
+    name = row["name"]
+    trusted = f"{row['trusted_low']:.2g} to {row['trusted_high']:.2g}"
+    longest = 20
     if len(name) > longest:  # so that the table fits on 80 columns
         name = f"{name[: longest // 2 - 1]}…{name[-longest // 2 :]}"
     pixels = row["pixels"].replace(" ", "")
@@ -35,7 +36,7 @@ def _cells(row: Mapping[str, Any]) -> tuple[str, ...]:
         f"{row['length_nm']:.4g}",
         pixels,
         f"{row['rms_heights_nm']:.3g}",
-        ends,
+        trusted,
         row["limit"],
     )
 
@@ -43,23 +44,25 @@ def _cells(row: Mapping[str, Any]) -> tuple[str, ...]:
 def doubt_lines(content: Mapping[str, Any]) -> Iterator[str]:
     """A line for each doubt, with its remedy."""
     for doubt in content["doubts"]:
-        remedy = f"; {doubt['remedy']}" if doubt["remedy"] else ""
+        remedy = doubt["remedy"]
+        if remedy:
+            remedy = f"; {remedy}"
         yield f"DOUBT ({doubt['code']}, about {doubt['about']}): {doubt['text']}{remedy}"
 
 
 def _scan(item: TrustedSpectrum, loaded: Mapping[str, Any]) -> dict[str, Any]:
     """One measurement: size, RMS from heights, trusted range and what limits it."""
-    line = is_profile(loaded)
+    length_nm = loaded["length_x_nm"]
+    pixels = f"{loaded['pixels_x']}"
+    if not is_profile(loaded):
+        length_nm = min(loaded["length_x_nm"], loaded["length_y_nm"])
+        pixels = f"{loaded['pixels_x']} x {loaded['pixels_y']}"
     return {
         "name": item.name,
         "file": loaded["file"],
         "sha256": loaded["sha256"],
-        "length_nm": loaded["length_x_nm"]
-        if line
-        else min(loaded["length_x_nm"], loaded["length_y_nm"]),
-        "pixels": f"{loaded['pixels_x']}"
-        if line
-        else f"{loaded['pixels_x']} x {loaded['pixels_y']}",
+        "length_nm": length_nm,
+        "pixels": pixels,
         "rms_heights_nm": loaded["rms_nm"],
         "trusted_low": item.low,
         "trusted_high": item.high,
@@ -86,17 +89,16 @@ def parameters(
     stopping = [doubt for doubt in doubts if doubt.fatal or doubt in topography.doubts]
     passed = bool(pooled.rows) and (not stopping or settings.on_doubt == "warn")
     units = {"q0": "1/nm", "slope": "1", "hurst": "1", "rms": "nm"}
+    estimates_of = "eq. 9, for comparison; inputs have the measured spectrum, in cells of cell_nm"
+    if used == "power_law":
+        estimates_of = "eq. 9, all waves; inputs have those of a cell"
     content: dict[str, Any] = {
         "synthetic": truth is not None,
         "convention": settings.convention,
         "ranges": settings.ranges,
         "confidence": CONFIDENCE,
         "tip_radius_nm": settings.tip_nm,
-        "estimates_of": (
-            "eq. 9, all waves; inputs have those of a cell"
-            if used == "power_law"
-            else "eq. 9, for comparison; inputs have the measured spectrum, in cells of cell_nm"
-        ),
+        "estimates_of": estimates_of,
         "estimates": {
             name: {**estimate.plain(), "unit": units[name]}
             for name, estimate in topography.estimates.items()
@@ -148,15 +150,15 @@ def _likelihood(fitted: LikelihoodFit | None, cutoff: float) -> dict[str, Any] |
 
 
 def _one(pooled: Pooled) -> dict[str, Any] | None:
-    one = pooled.one
-    if one is None:
+    merged = pooled.merged
+    if merged is None:
         return None
     return {
-        "from_q": one.first,
-        "to_q": float(one.q[-1]),
-        "place_sd": one.place_sd,
-        "measurements": list(one.names),
-        **one.statistics(),
+        "from_q": merged.first,
+        "to_q": float(merged.q[-1]),
+        "place_sd": merged.place_sd,
+        "measurements": list(merged.names),
+        **merged.statistics(),
         "overlaps": [
             {
                 "first": pair.first,

@@ -60,11 +60,8 @@ def synthesize(
     amplitude[0] = 0.0
     # (q/q0)^(-s/2) for q > q0, as exp/log: NumPy has fast vector code for these but not for power
     decay = np.log(squared * (step / q0) ** 2)
-    np.exp(
-        np.minimum(decay, np.inf, out=decay).clip(min=0.0)
-        * (-0.25 * slope_from_hurst(hurst, convention)),
-        out=amplitude[1:],
-    )
+    exponent = -0.25 * slope_from_hurst(hurst, convention)
+    np.exp(decay.clip(min=0.0) * exponent, out=amplitude[1:])
     return filtered_noise(pixels, amplitude, rms, seed)
 
 
@@ -92,15 +89,14 @@ def synthesize_spectrum(
 
 
 def squared_waves(pixels: int, length_nm: float, q1: float | None) -> tuple[Array, float]:
-    """Squared wave numbers 1, 2, ... up to the cut-off, and the wave vector of wave number 1
-    (1/nm).
-    """
+    """Squared wave numbers 1, 2, ... up to the cut-off, and wave vector of wave number 1 (1/nm)."""
     check_number("length_nm", length_nm, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
     if isinstance(pixels, bool) or not isinstance(pixels, Integral) or pixels < 3:
         raise InputError(f"pixels = {pixels!r}: accepted is a whole number >= 3")
     step = 2.0 * np.pi / length_nm
-    cutoff = np.inf if q1 is None else q1
-    cutoff = min(cutoff, np.pi * pixels / length_nm)
+    cutoff = np.pi * pixels / length_nm
+    if q1 is not None:
+        cutoff = min(q1, cutoff)
     last = int(np.floor((cutoff / step) ** 2 * (1.0 + 1e-12)))
     if last < 1:
         raise InputError(
@@ -111,16 +107,13 @@ def squared_waves(pixels: int, length_nm: float, q1: float | None) -> tuple[Arra
 
 
 def filtered_noise(pixels: int, amplitude: Array, rms: float, seed: int) -> Array:
-    """The surface whose waves of squared wave number n have noise times `amplitude[n]`, scaled to
-    `rms`.
-    """
+    """Surface of noise times `amplitude[n]`, n the squared wave number, of RMS `rms`."""
     check_seed(seed)
     check_number("rms", rms, 1e-5, 1e6, "nm", zero=True)
     highest = (pixels - 1) // 2
     modes = 2 * highest * (highest + 1)
-    normals = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed))).standard_normal(
-        2 * modes
-    )
+    rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
+    normals = rng.standard_normal(2 * modes)
     spectrum = np.zeros((pixels, pixels // 2 + 1), dtype=complex)
     power = _fill_spectrum(spectrum, normals, amplitude, highest)
     spectrum *= rms * pixels**2 / np.sqrt(power)

@@ -1,6 +1,4 @@
-"""A synthetic AFM: surfaces of known spectrum, scanned with tip, noise, tilt, drift and digital
-steps.
-"""
+"""A synthetic AFM: surfaces of known spectrum, with tip, noise, tilt, drift, digital steps."""
 
 import math
 from collections.abc import Iterator
@@ -16,9 +14,7 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum
 
 
 class ScanSet(SyntheticScanSettings):
-    """A set of synthetic scans: what a scene says of them, and what is fixed, the surface and the
-    artefacts.
-    """
+    """A set of synthetic scans: what a scene says of them, and the fixed surface and artefacts."""
 
     seed: int = 1
     small_length_nm: float = 1000.0
@@ -48,12 +44,12 @@ class SyntheticScan:
 
 def synthetic_scans(settings: ScanSet) -> Iterator[SyntheticScan]:
     """The scans of a set, small ones first; scan k is the same whatever the number of scans."""
-    for size, count, length in (
-        ("small", settings.small_scans, settings.small_length_nm),
-        ("large", settings.large_scans, settings.large_length_nm),
-    ):
+    groups = {
+        "small": (0, settings.small_scans, settings.small_length_nm),
+        "large": (1, settings.large_scans, settings.large_length_nm),
+    }
+    for size, (key, count, length) in groups.items():
         for number in range(count):
-            key = 0 if size == "small" else 1
             rng = np.random.default_rng(
                 np.random.SeedSequence(settings.seed, spawn_key=(key, number))
             )
@@ -62,9 +58,8 @@ def synthetic_scans(settings: ScanSet) -> Iterator[SyntheticScan]:
             # the tip meets the surface on pixels of 5 nm, or twice as fine as the scan's
             finer = 2 if settings.tip_radius_nm > 0 and length / settings.pixels > 5.0 else 1
             surface = surface_patch(truth, finer * settings.pixels, length, rng)
-            surface = dilate(surface, settings.tip_radius_nm, length / len(surface))[
-                ::finer, ::finer
-            ]
+            traced = dilate(surface, settings.tip_radius_nm, length / len(surface))
+            surface = traced[::finer, ::finer]
             name = f"{size}_{number + 1:02d}"
             yield SyntheticScan(measure(surface, length, settings, rng, name), truth)
 
@@ -76,16 +71,16 @@ def surface_patch(
 
     The spectrum is folded at the Nyquist wave vector as point sampling folds it, so that a coarse
     scan of a surface that is rough below its pixels is exact, RMS included."""
-    wanted = math.ceil(
-        1.25 * pixels
-    )  # the periodic surface is larger, so that scans are not periodic
-    n = scipy.fft.next_fast_len(wanted, True) or wanted
+    # the periodic surface is larger, so that scans are not periodic
+    least_pixels = math.ceil(1.25 * pixels)
+    n = scipy.fft.next_fast_len(least_pixels, True) or least_pixels
     step = length_nm / pixels
     qx = 2 * np.pi * np.fft.fftfreq(n, step)
     qy = 2 * np.pi * np.fft.rfftfreq(n, step)
     folded = _folded_psd(truth, qx, qy, 2 * np.pi / step)
     noise = np.asarray(scipy.fft.rfft2(rng.standard_normal((n, n))))
-    surface = np.asarray(scipy.fft.irfft2(noise * np.sqrt(folded) * (2 * np.pi / step), s=(n, n)))
+    filtered = noise * np.sqrt(folded) * (2 * np.pi / step)
+    surface = np.asarray(scipy.fft.irfft2(filtered, s=(n, n)))
     return surface[:pixels, :pixels]
 
 
@@ -100,14 +95,14 @@ def _folded_psd(
     for i in range(-images, images + 1):
         for j in range(-images, images + 1):
             if (i, j) != (0, 0):
-                far += truth.psd(
-                    np.hypot(nodes[:, None] + i * sampling, nodes[None, :] + j * sampling)
-                )
+                image_x = nodes[:, None] + i * sampling
+                image_y = nodes[None, :] + j * sampling
+                far += truth.psd(np.hypot(image_x, image_y))
     unit = np.eye(33)
-    along_x, along_y = (
-        np.stack([np.interp(q, nodes, row) for row in unit], axis=1) for q in (qx, qy)
-    )
-    return truth.psd(np.hypot(qx[:, None], qy[None, :])) + along_x @ far @ along_y.T
+    along_x = np.stack([np.interp(qx, nodes, row) for row in unit], axis=1)
+    along_y = np.stack([np.interp(qy, nodes, row) for row in unit], axis=1)
+    near = truth.psd(np.hypot(qx[:, None], qy[None, :]))
+    return near + along_x @ far @ along_y.T
 
 
 def measure(
@@ -117,18 +112,17 @@ def measure(
     rng: np.random.Generator,
     name: str,
 ) -> Scan:
-    """Scan what the tip traces (pixels, pixels; nm): tilt, drift, line offsets, noise, digital
-    steps.
-    """
+    """Scan what the tip traces (pixels, pixels; nm): tilt, drift, line offsets, noise, steps."""
     pixels = surface.shape[0]
     position = np.linspace(-0.5, 0.5, pixels)
     tilt = np.tan(np.radians(settings.tilt_deg * rng.uniform(-1, 1, 2))) * length_nm
     heights = surface + tilt[0] * position[:, None] + tilt[1] * position[None, :]
     # drift acts in time, that is along the slow axis: a smooth curve of three random cosines
     phases = rng.uniform(0, 2 * np.pi, 3)
-    drift = sum(
+    cosines = [
         np.cos(np.pi * (k + 1) * position + phase) / (k + 1) for k, phase in enumerate(phases)
-    )
+    ]
+    drift = sum(cosines)
     heights += settings.drift_nm / 2 * np.asarray(drift)[None, :]
     heights += settings.line_noise_nm * rng.standard_normal(pixels)[None, :]
     heights += settings.noise_nm * rng.standard_normal((pixels, pixels))

@@ -14,8 +14,10 @@ def nodes(inputs: int) -> Array:
     """Nodes in [-1, 1]^n, shape (2n + 1, n); row 0 is the centre, rows 2k+1, 2k+2 the ends of axis
     k.
     """
-    rows, axes = np.zeros((2 * inputs + 1, inputs)), np.arange(inputs)
-    rows[2 * axes + 1, axes], rows[2 * axes + 2, axes] = -1.0, 1.0
+    rows = np.zeros((2 * inputs + 1, inputs))
+    axes = np.arange(inputs)
+    rows[2 * axes + 1, axes] = -1.0
+    rows[2 * axes + 2, axes] = 1.0
     return rows
 
 
@@ -23,7 +25,8 @@ def to_values(u: Array, ranges: Array) -> Array:
     """Scaled points (m, n) in [-1, 1] to values of the inputs; the centre is the middle of each
     range.
     """
-    low, high = ranges[:, 0], ranges[:, 1]
+    low = ranges[:, 0]
+    high = ranges[:, 1]
     return low + (u + 1) / 2 * (high - low)
 
 
@@ -38,7 +41,8 @@ def level1_response(y: Array, ranges: Array) -> Surrogate:
     y : output at the nodes, shape (2n + 1,), in the order of `nodes`; NaN anywhere gives NaN.
     """
     inputs = len(ranges)
-    lower, upper = y[1::2], y[2::2]
+    lower = y[1::2]
+    upper = y[2::2]
     constant = (1 - inputs / 3) * y[0] + (lower + upper).sum() / 6
     degrees = np.vstack([np.zeros((1, inputs), int), np.eye(inputs, dtype=int)])
     return Surrogate(ranges, degrees, np.concatenate([[constant], (upper - lower) / 2]))

@@ -36,11 +36,13 @@ def explained(
     first, second : an output on the two surfaces, shape (m,).
     predicted : by a response that saw neither, shape (m,).
     """
-    middle, variance = np.concatenate([first, second]).mean(), np.concatenate([first, second]).var()
+    middle = np.concatenate([first, second]).mean()
+    variance = np.concatenate([first, second]).var()
     explicable = (first - middle) * (second - middle)
     wrong = (first - predicted) * (second - predicted)
     picks = rng.integers(len(first), size=(RESAMPLES, len(first)))
-    explicables, wrongs = explicable[picks].mean(axis=1), wrong[picks].mean(axis=1)
+    explicables = explicable[picks].mean(axis=1)
+    wrongs = wrong[picks].mean(axis=1)
     known = np.quantile(explicables, 0.05) > 0.0
     shares = 1.0 - wrongs / np.where(explicables > 0.0, explicables, np.nan)
     row: dict[str, Any] = {
@@ -104,13 +106,15 @@ def against_physics(
             evaluate(responses, _moved(base, k, end[k]))[:, CLOSING][:, 1].mean()
             for end in (low, high)
         )
-        rise, due = most / least - 1.0, high[k] / low[k] - 1.0
+        rise = most / least - 1.0
+        due = high[k] / low[k] - 1.0
         if abs((1.0 + rise) / (1.0 + due) - 1.0) > TOLERANCE:
             reasons["C_a_GPa_nm"] = (
                 f"it changes by {rise:.0%} where the Hamaker constant rises by {due:.0%}"
             )
     both = evaluate(responses, base)
-    closing, opening = both[:, CLOSING], both[:, OPENING]
+    closing = both[:, CLOSING]
+    opening = both[:, OPENING]
     at = _separations(closing, most_GPa)
     harder = (_repulsion(opening, at) > (1.0 + TOLERANCE) * SHARES * most_GPa).any(axis=1).mean()
     if harder > TOLERANCE:

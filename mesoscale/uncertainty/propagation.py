@@ -47,7 +47,8 @@ def to_paper_outputs(parameters: Array) -> Array:
     """Closing and opening parameters (..., len(FITTED)) to closing parameters and their change,
     same shape.
     """
-    closing, opening = parameters[..., CLOSING], parameters[..., OPENING]
+    closing = parameters[..., CLOSING]
+    opening = parameters[..., OPENING]
     return np.concatenate([closing, opening - closing], axis=-1)
 
 
@@ -79,7 +80,8 @@ def exported_responses(
     responses: list[Response | None] = [
         _regression(x, y[:, k], ranges, any_sign) for k, any_sign in enumerate(signs)
     ]
-    first, last = FITTED.index("closing_d_c_nm"), FITTED.index("opening_d_c_nm")
+    first = FITTED.index("closing_d_c_nm")
+    last = FITTED.index("opening_d_c_nm")
     above = responses[first]
     if settings.opening_contact == "below_closing" and isinstance(above, Surrogate):
         # at least 0.01 nm, so that there is a logarithm
@@ -109,7 +111,9 @@ def _regression(x: Array, y: Array, ranges: Array, any_sign: bool) -> Surrogate 
 
     try:
         return sparse_chaos(x, y, ranges, transform="identity" if any_sign else "log")
-    except ValueError:  # too few usable runs; the count of missing ones is in uq/validation.csv
+    except (
+        ValueError
+    ):  # too few usable runs; the count of missing ones is in uncertainty/validation.csv
         return None
 
 
@@ -193,13 +197,14 @@ def output_rows(
     paper: Mapping[str, tuple[float, float]],
     paper_exchanged: Mapping[str, tuple[float, float]],
 ) -> list[dict[str, Any]]:
-    """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of
-    seeds.
+    """Rows of uncertainty/outputs.csv: Table 2 beside the paper's; differences in units of the
+    scatter of seeds.
 
     mean and dev are the paper's method; response_* are those of the exported responses, averaged
     over random surfaces; cell_* those of the direct runs, each a cell of its own."""
     y = nodes.paper_outputs
-    propagated, cells = to_paper_outputs(result.outputs), to_paper_outputs(direct[1])
+    propagated = to_paper_outputs(result.outputs)
+    cells = to_paper_outputs(direct[1])
     rows = []
     for k, output in enumerate(LAW_OUTPUTS):
         complete = np.isfinite(result.by_seed[:, 0, k])
@@ -253,7 +258,7 @@ def _center_and_scatter(values: Array) -> tuple[float, float]:
 def surrogate_json(
     result: Propagation, table: InputTable, law: Mapping[str, float]
 ) -> dict[str, Any]:
-    """Content of uq/surrogate.json: usable without this code (docs/uncertainty.md)."""
+    """Content of uncertainty/surrogate.json: usable without this code (docs/uncertainty.md)."""
     inputs = [
         {
             "name": row.name,

@@ -46,7 +46,8 @@ class Process:
         with needs("uncertainty"):
             import openturns as ot
 
-        self.low, self.width = x.min(axis=0), np.ptp(x, axis=0)
+        self.low = x.min(axis=0)
+        self.width = np.ptp(x, axis=0)
         self.sample, count = ot.Sample, int((self.width > 0).sum())
         kernel = ot.MaternModel([2.0] * count, [1.0], 2.5)
         kernel.activateNuggetFactor(True)
@@ -238,7 +239,8 @@ def rates_given(
     inner : draws of what differs between devices.
     """
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0x2100]))
-    shared, error = rng.normal(size=(draws, 1, common.size)), rng.normal(size=(draws, 1))
+    shared = rng.normal(size=(draws, 1, common.size))
+    error = rng.normal(size=(draws, 1))
 
     def reserve(x: Array) -> Array:
         z = np.tile(shared, (1, x.shape[1], 1))
@@ -320,7 +322,8 @@ def correct(
         return Corrected(0.0, 0.0, LEAST, 0.0, sampled.probability, 0, 0)
     factors = happened / chance
     mean = float(factors.mean())
-    runs, events = happened.size, int(happened.sum())
+    runs = happened.size
+    events = int(happened.sum())
     if not events:  # fewer than three times one in so many runs, by 95 %
         return Corrected(
             0.0, 0.0, 3.0 / runs * sampled.probability, 0.0, sampled.probability, runs, 0

@@ -49,7 +49,8 @@ def sparse_chaos(
     u = np.clip(scaled(x[usable], ranges), -1.0, 1.0)
     target = np.log(y[usable]) if transform == "log" else y[usable]
     # in units of its deviation, because LARS stops at absolute tolerances
-    centre, width = target.mean(), target.std() or 1.0
+    centre = target.mean()
+    width = target.std() or 1.0
 
     # an input that does not vary has no terms, and would make the least squares singular
     varying = np.flatnonzero(np.ptp(u, axis=0) > 0)

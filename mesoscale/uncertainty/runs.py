@@ -114,7 +114,9 @@ def monte_carlo(
     if isinstance(samples, bool) or not isinstance(samples, int) or samples < 1:
         raise InputError(f"samples = {samples!r}: accepted is a whole number >= 1")
     runs = random_runs(table, 0, samples, seed)
-    kept, parameters, failed = [], [], []
+    kept = []
+    parameters = []
+    failed = []
     for run, cycle in compute_all(runs, contact, progress):
         outcome = Outcome(NO_FIT, NO_FIT, cycle) if isinstance(cycle, str) else fit_cycle(cycle)
         pair = np.stack([outcome.closing.parameters, outcome.opening.parameters])

@@ -67,7 +67,8 @@ def pick_freeze(table: InputTable, count: int, seed: int) -> Array:
     # the seed
     shift = np.random.default_rng(np.random.SeedSequence([seed, 0x50])).random(2 * inputs)
     unit = (np.asarray(openturns.SobolSequence(2 * inputs).generate(count)) + shift) % 1.0
-    a, b = unit[:, :inputs], unit[:, inputs:]
+    a = unit[:, :inputs]
+    b = unit[:, inputs:]
     mixed = []
     for k in range(inputs):
         column = a.copy()
@@ -85,7 +86,7 @@ def sensitivity_rows(
     paper_as_printed: Mapping[str, Mapping[str, float]],
     direct: Direct,
 ) -> list[dict[str, Any]]:
-    """Rows of uq/sensitivity.csv: every output with every input.
+    """Rows of uncertainty/sensitivity.csv: every output with every input.
 
     mu* is the mean over seeds of every seed's own value on the nodes of level 1 (the paper's one
     star), beside its scatter. Sobol' indices are those of the exported responses, averaged over
@@ -145,7 +146,8 @@ def index_intervals(
         resampled.append(
             response_indices(again, _refitted(responses, direct[0][picks], outputs[picks]))
         )
-    ends, draws = np.full((2, *estimate.shape), np.nan), np.array(resampled)
+    ends = np.full((2, *estimate.shape), np.nan)
+    draws = np.array(resampled)
     known = np.isfinite(draws).all(axis=0)
     ends[:, known] = np.quantile(draws[:, known], [0.05, 0.95], axis=0)
     first, total = (np.stack([estimate[j], ends[0, j], ends[1, j]]) for j in (0, 1))

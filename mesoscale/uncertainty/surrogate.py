@@ -44,7 +44,8 @@ def scaled(x: Array, ranges: Array) -> Array:
     """Inputs (m, n), of ranges (n, 2), in -1 .. 1, and beyond where they leave them; an input of no
     width gives 0.
     """
-    low, high = ranges[:, 0], ranges[:, 1]
+    low = ranges[:, 0]
+    high = ranges[:, 1]
     width = high - low
     return np.where(width > 0, 2 * (x - low) / np.where(width > 0, width, 1.0) - 1, 0.0)
 

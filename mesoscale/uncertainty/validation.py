@@ -52,7 +52,8 @@ def held_out_predictions(direct: Direct, ranges: Array, settings: UncertaintySet
     predicted = np.full_like(y, np.nan)
     folds = np.arange(len(x)) % 5
     for fold in range(5):
-        rest, held = folds != fold, folds == fold
+        rest = folds != fold
+        held = folds == fold
         again = exported_responses((x[rest], y[rest]), ranges, settings)
         predicted[held] = evaluate(again, x[held])
     return predicted
@@ -66,7 +67,7 @@ def validation_rows(
     again: Array,
     most_GPa: float,
 ) -> list[dict[str, Any]]:
-    """Rows of uq/validation.csv, one per output of Table 2.
+    """Rows of uncertainty/validation.csv, one per output of Table 2.
 
     Parameters
     ----------
@@ -101,7 +102,8 @@ def validation_rows(
         picks = rng.integers(len(y), size=(RESAMPLES, len(y)))
         errors = predicted[usable, k] - y
         variance = y.var()
-        row["rmse"], row["bias"] = np.sqrt((errors**2).mean()), errors.mean()
+        row["rmse"] = np.sqrt((errors**2).mean())
+        row["bias"] = errors.mean()
         if variance > 0:
             row["q2"] = 1 - (errors**2).mean() / variance
             spread = np.maximum(y[picks].var(axis=1), 1e-12 * variance)

@@ -206,7 +206,7 @@ def test_the_scene_reaches_snakemake_as_it_is_called(monkeypatch):
 @pytest.mark.skipif(sys.platform != "linux", reason="needs /proc")
 def test_signals_to_the_command_reach_the_workflow(tmp_path):
     """No process of it lives on; the command and Snakemake are one. Both runs work at once."""
-    command = [ASPERITY, "run", "paper", "--cores", "1", "curves"]
+    command = [ASPERITY, "run", "paper", "--cores", "1", "contact"]
     runs = {}
     for number in (signal.SIGTERM, signal.SIGKILL):
         folder = tmp_path / number.name

@@ -104,7 +104,7 @@ def _curves(root: Path) -> None:
         "reading": {"convention": "areal", "touching_attracts": False},
     }
     write_h5(
-        root / "curves/nominal.h5",
+        root / "contact/nominal.h5",
         groups,
         {"cell_area_nm2": 1e6, "contact": contact},
         PROVENANCE,
@@ -125,7 +125,7 @@ def _curves(root: Path) -> None:
         "asperities": Dataset(np.array([1, 5, 9]), "1", "asperities in contact", ("number",)),
         "cut_share": Dataset(np.array([0.01, 0.1, 0.3]), "1", "share of the area", ("number",)),
     }
-    write_h5(root / "curves/spots.h5", {"spots": spots}, {"length_nm": 1000.0}, PROVENANCE)
+    write_h5(root / "contact/spots.h5", {"spots": spots}, {"length_nm": 1000.0}, PROVENANCE)
     fits = [
         {"branch": branch, **law, "residual": 0.2, "status": "ok"}
         for branch, law in (("closing", LAW), ("opening", OPENED))
@@ -151,11 +151,11 @@ def _uncertainty(root: Path) -> None:
                 rms / 8.5 if name.endswith("_nm") else np.ones(200)
             )
     rows = [dict(zip(samples, line, strict=True)) for line in zip(*samples.values(), strict=True)]
-    _write(root / "uq/samples.csv", rows)
+    _write(root / "uncertainty/samples.csv", rows)
     outputs = [*LAW, *(f"delta_{name}" for name in LAW)]
     values = [*LAW.values(), *(OPENED[name] - LAW[name] for name in LAW)]
     _write(
-        root / "uq/outputs.csv",
+        root / "uncertainty/outputs.csv",
         [
             {
                 "output": name,
@@ -179,7 +179,7 @@ def _uncertainty(root: Path) -> None:
         ],
     )
     _write(
-        root / "uq/sensitivity.csv",
+        root / "uncertainty/sensitivity.csv",
         [
             {
                 "output": output,
@@ -193,7 +193,7 @@ def _uncertainty(root: Path) -> None:
         ],
     )
     _write(
-        root / "uq/validation.csv",
+        root / "uncertainty/validation.csv",
         [
             {
                 "output": name,
@@ -227,7 +227,7 @@ def _uncertainty(root: Path) -> None:
         "outputs": responses,
         "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0, "most_GPa": 0.007},
     }
-    write_json(root / "uq/surrogate.json", content, PROVENANCE)
+    write_json(root / "uncertainty/surrogate.json", content, PROVENANCE)
 
 
 def _response(branch: str, name: str, value: float) -> dict[str, Any]:
@@ -259,9 +259,9 @@ def _law_band(root: Path) -> None:
     from mesoscale.law.samples import band_rows
     from workflow.files.results import load_numbers
 
-    rows = load_numbers(root / "uq/samples.csv")
+    rows = load_numbers(root / "uncertainty/samples.csv")
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    _write(root / "uq/law.csv", band_rows(columns))
+    _write(root / "uncertainty/law.csv", band_rows(columns))
 
 
 def _pad(root: Path) -> None:
@@ -307,10 +307,10 @@ def _pad(root: Path) -> None:
     )
     model = PadModel(central, Design((), (), np.empty((0, 0)), np.arange(0), ()), ())
     switch = switch_on_pad(model, area)
-    write_json(root / "device/pad_switch.json", switch, PROVENANCE)
+    write_json(root / "answer/pad_switch.json", switch, PROVENANCE)
     shipped = load_mapping(ROOT / "config" / "effects.yaml", "table of effects")
     _write(
-        root / "device/budget.csv",
+        root / "answer/budget.csv",
         budget(effects_of(shipped), switch, central, {1.0: 7.0, 0.5: 5.0, 1.37: 7.3}),
     )
 
@@ -569,7 +569,7 @@ def _studies(root: Path) -> None:
         for knob, volts in errors.items()
     ]
     _write(
-        root / "device/errors.csv", [{**own, **row, "reference": "twice as many"} for row in finer]
+        root / "answer/errors.csv", [{**own, **row, "reference": "twice as many"} for row in finer]
     )
     cases = [
         {"case": case, "passed": passed} for case, passed in (("flat", True), ("spikes", False))
@@ -620,11 +620,11 @@ def _failure(root: Path) -> None:
         {"name": "hurst", "failing_if_known": 3e-5},
     ]
     write_json(
-        root / "device/failure.json",
+        root / "failure/failure.json",
         rate | {"control_attraction": 1.0, "control": control},
         PROVENANCE,
     )
-    _write(root / "device/failure.csv", rows)
+    _write(root / "failure/failure.csv", rows)
     study = {
         "lumps": 24,
         "pull_in": 1e-4,
@@ -634,7 +634,7 @@ def _failure(root: Path) -> None:
         "release_V": 6.0,
     }
     study |= {"reference": 1e-3}
-    write_json(root / "device/circuit.json", {"lumps": study}, PROVENANCE)
+    write_json(root / "circuit/circuit.json", {"lumps": study}, PROVENANCE)
     switches = [
         {
             "switch": name,
@@ -653,9 +653,9 @@ def _failure(root: Path) -> None:
             ("draw_01", 5.0),
         )
     ]
-    _write(root / "device/circuit.csv", switches)
+    _write(root / "circuit/circuit.csv", switches)
     ways = [f"{way}_{of}_fF" for way in ("up", "down") for of in ("central", "q05", "q95")]
     _write(
-        root / "device/loop.csv",
+        root / "circuit/loop.csv",
         [{"voltage_V": v, **dict.fromkeys(ways, 160.0 + v)} for v in (0.0, 40.0, 77.0)],
     )

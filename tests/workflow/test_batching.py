@@ -28,14 +28,16 @@ def test_more_runs_reuse_the_old_files(workflow_in):
     path = workflow_in.folder / "grown.yaml"
     path.write_text(SCENE.format(runs=220))
     made = {f"chunk_{name}.csv" for name in ("000", "001", "again")}
-    done = workflow_in.run(str(path), *(f"results/grown/uq/direct/{name}" for name in sorted(made)))
+    done = workflow_in.run(
+        str(path), *(f"results/grown/uncertainty/direct/{name}" for name in sorted(made))
+    )
     assert done.returncode == 0, done.stderr
-    folder = workflow_in.folder / "results/grown/uq/direct"
+    folder = workflow_in.folder / "results/grown/uncertainty/direct"
     old = {file.name: file.read_bytes() for file in folder.iterdir()}
     assert made <= set(old)
 
     path.write_text(SCENE.format(runs=620))
-    assert workflow_in.planned(str(path), "uq")["compute_direct_runs"] == 2
+    assert workflow_in.planned(str(path), "uncertainty")["compute_direct_runs"] == 2
     assert {file.name: file.read_bytes() for file in folder.iterdir()} == old
 
 

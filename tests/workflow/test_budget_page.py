@@ -19,14 +19,14 @@ EFFECT = {
 def budget_of(tmp_path):
     def made(**tables):
         rows = {"humid air": 6.0, "creep of the beam": None}
-        tables["device/budget"] = [
+        tables["answer/budget"] = [
             {"effect": name, "volts": volts, **EFFECT} for name, volts in rows.items()
         ]
         for name, content in tables.items():
             write_csv(tmp_path / f"{name}.csv", content)
-        write_json(tmp_path / "device/pad_switch.json", {"answer": None}, {})
+        write_json(tmp_path / "answer/pad_switch.json", {"answer": None}, {})
         paths = [
-            tmp_path / "device/pad_switch.json",
+            tmp_path / "answer/pad_switch.json",
             *(tmp_path / f"{name}.csv" for name in tables),
         ]
         section = describe(Results(tmp_path, paths, "mine"))
@@ -47,7 +47,7 @@ def test_humid_air_is_that_which_was_computed(budget_of):
             (0.8, "volume", None),
         )
     ]
-    plain, computed = budget_of(), budget_of(**{"device/humidity": humid})
+    plain, computed = budget_of(), budget_of(**{"humidity/humidity": humid})
     assert plain["humid air"] == ("6.0", "bound by literature: at most")
     assert computed["humid air"] == ("1.3", "computed here: 0% to 50%, menisci either way")
     assert computed["creep of the beam"][0] == "–"

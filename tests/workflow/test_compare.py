@@ -140,8 +140,8 @@ def test_a_file_that_cannot_be_read_is_named_and_the_rest_compared(folders, plan
 
 
 def test_the_command_says_what_each_scene_says_of_its_switch(made_up, tmp_path):
-    (tmp_path / "other/device").mkdir(parents=True)
-    (tmp_path / "other/device/pad_switch.json").write_text("[]")
+    (tmp_path / "other/answer").mkdir(parents=True)
+    (tmp_path / "other/answer/pad_switch.json").write_text("[]")
     (tmp_path / "other/scene.yaml").write_text("")
     command = [
         sys.executable,

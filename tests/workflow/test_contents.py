@@ -65,7 +65,7 @@ FILES = {  # a rule that reads each, and one that must not run again
     "alone.gwy": ("analyse_scans", "make_glass"),
     "film/second.gwy": ("analyse_scans", "make_glass"),
     "mine_potential.yaml": ("make_glass", "analyse_scans"),
-    "volts.csv": ("calibrate", "inputs"),
+    "volts.csv": ("calibration", "inputs"),
     "hamaker.csv": ("inputs", "make_glass"),
     "gaps.csv": ("press_prior_pads", "inputs"),
 }

@@ -19,7 +19,7 @@ import asperity as asp
 from asperity.__main__ import COMMANDS as DOORS
 from asperity.__main__ import _parser as parser
 from asperity.__main__ import targets as stages
-from asperity.door import device_of, material_of
+from asperity.words import device_of, material_of
 from mesoscale.inputs.table import collect
 from mesoscale.law.parameters import FITTED
 from mesoscale.settings import UncertaintySettings
@@ -165,7 +165,7 @@ def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):
     z = np.random.default_rng(1).multivariate_normal(np.zeros(8), 0.04 * (np.eye(8) + 0.5), 200)
     direct = x, np.exp(x @ (1 / ranges[:, 1]))[:, None] * np.exp(z)
     result = propagate(nothing, table, UncertaintySettings(), direct)
-    path = tmp_path / "results/paper/uq/surrogate.json"
+    path = tmp_path / "results/paper/uncertainty/surrogate.json"
     write_json(path, surrogate_json(result, table, {}))
 
     (code,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
@@ -196,14 +196,14 @@ def test_the_steps_of_the_tutorial_can_be_planned(make_workflow, tmp_path):
         (tmp_path / "my_switch.yaml").write_text(yaml.safe_dump(scene), encoding="utf-8")
         return set(workflow.planned("my_switch.yaml", *targets))
 
-    assert planned(own) >= {"inputs", "press_pads", "device", "compute_direct_runs", "report"}
+    assert planned(own) >= {"inputs", "press_pads", "answer", "compute_direct_runs", "report"}
     measured = (
         own
         | scans
         | switch
         | {"inputs": {name: own["inputs"][name] for name in ("e_star", "h_macro", "h_prime")}}
     )
-    assert planned(measured) >= {"analyse_scans", "press_pads", "device"}
+    assert planned(measured) >= {"analyse_scans", "press_pads", "answer"}
     computed = (
         own
         | hardness

@@ -23,10 +23,10 @@ STAGES = {
     "topography": "analyse_scans",
     "inputs": "inputs",
     "pad": "press_pads",
-    "curves": "curves",
+    "contact": "contact",
     "law": "compute_runs",
-    "uq": "uq",
-    "device": "device",
+    "uncertainty": "uncertainty",
+    "answer": "answer",
     "report": "report",
 }
 RESULTS = (
@@ -40,18 +40,18 @@ RESULTS = (
     "topography/spectra.h5",
     "topography/parameters.json",
     "inputs.csv",
-    "curves/nominal.h5",
+    "contact/nominal.h5",
     "pad/curves.csv",
     "law/parameters.csv",
-    "uq/outputs.csv",
-    "uq/sensitivity.csv",
-    "uq/surrogate.json",
-    "uq/validation.csv",
+    "uncertainty/outputs.csv",
+    "uncertainty/sensitivity.csv",
+    "uncertainty/surrogate.json",
+    "uncertainty/validation.csv",
     "report.html",
 )
 
 
-OF_POINTS = ("pad/model.h5", "device/pad_switch.json")
+OF_POINTS = ("pad/model.h5", "answer/pad_switch.json")
 """What the points make, which the second run has not."""
 
 
@@ -115,7 +115,7 @@ def test_every_part_of_the_page_is_drawn(finished):
 
 def test_the_pad_has_an_answer(finished):
     state = json.loads(
-        (finished.folder / "results/ci/device/pad_switch.json").read_text(encoding="utf-8")
+        (finished.folder / "results/ci/answer/pad_switch.json").read_text(encoding="utf-8")
     )
     assert state["answer_status"] == "ok"
 
@@ -140,7 +140,7 @@ def test_a_deleted_stage_is_made_again_with_what_depends_on_it(finished):
     path.rename(kept)
     planned = set(finished.planned("ci"))
     kept.rename(path)
-    assert planned >= {"law", "uq", "report"}
+    assert planned >= {"law", "uncertainty", "report"}
     assert not {"compute_runs", "run_closing", "scan_glass", "analyse_scans"} & planned
 
 

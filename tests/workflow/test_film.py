@@ -285,7 +285,7 @@ def test_python_gives_the_numbers_of_the_scene_digit_for_digit(
     content["contact"]["pixels"] = 128
     content["pad"] = {"cells": 8, "points": 0}
     Path("mine.yaml").write_text(yaml.safe_dump(content))
-    done = workflow_in.run("mine.yaml", "curves", "device")
+    done = workflow_in.run("mine.yaml", "contact", "answer")
     assert done.returncode == 0, done.stderr
 
     threads = {
@@ -315,11 +315,11 @@ stored = load_json("results/mine/topography/parameters.json")
 for key in ("estimates", "surface", "inputs", "doubts", "gate"):
     assert film.description[key] == stored[key], key
 contact = film.press(load_nN=7000.0, pixels=128)
-curves, _, _ = load_h5("results/mine/curves/nominal.h5")
+curves, _, _ = load_h5("results/mine/contact/nominal.h5")
 for name in ("closing", "opening"):
     for key, values in asdict(getattr(contact.cycle, name)).items():
         assert np.array_equal(values, curves[f"load_7000/{name}"][key]), (name, key)
 switch = contact.switch(pad=asp.PadSettings(cells=8))
-stored = load_json("results/mine/device/pad_switch.json")
+stored = load_json("results/mine/answer/pad_switch.json")
 assert {key: stored[key] for key in switch.content} == switch.content
 """

@@ -16,8 +16,8 @@ from workflow.run.studies import STUDIES
 HARDNESS = {"make_glass", "run_closing", "hardness"}
 ELASTIC = {"make_amorphous", "scan_glass", "elastic"}
 TOPOGRAPHY = {"write_synthetic_scans", "analyse_scans", "pool_spectra"}
-MESOSCALE = {"inputs", "curves", "compute_runs", "law", "uq"}
-REPORT = {"device", "report"}
+MESOSCALE = {"inputs", "contact", "compute_runs", "law", "uncertainty"}
+REPORT = {"answer", "report"}
 
 LITERATURE = """
 inputs:
@@ -63,15 +63,15 @@ def test_the_failure_rate_is_found_where_a_scene_asks_for_it(plan):
 
 
 def test_a_scene_computes_the_tails_that_it_wants(plan):
-    assert not {"compute_runs", "law", "uq"} & plan("diamond")
-    assert "device" in plan("diamond")
-    assert not {"press_pads", "pad", "device"} & plan("paper")
+    assert not {"compute_runs", "law", "uncertainty"} & plan("diamond")
+    assert "answer" in plan("diamond")
+    assert not {"press_pads", "pad", "answer"} & plan("paper")
 
 
-@pytest.mark.parametrize("scene", ["films", "nitride", "sizes", "lifetime"])
+@pytest.mark.parametrize("scene", ["films", "nitride", "sizes", "history"])
 def test_a_scene_without_tails_computes_what_it_is_for(plan, scene):
-    assert not {"curves", *MESOSCALE - {"inputs"}, "press_pads", "device"} & plan(scene)
-    assert plan(scene) >= {"inputs", "report", "history" if scene == "lifetime" else "run_closing"}
+    assert not {"contact", *MESOSCALE - {"inputs"}, "press_pads", "answer"} & plan(scene)
+    assert plan(scene) >= {"inputs", "report", "history" if scene == "history" else "run_closing"}
 
 
 def test_humidity_is_swept_where_a_scene_has_humid_air(plan):
@@ -96,14 +96,14 @@ def test_every_target_of_every_scene_is_planned_or_refused_for_a_true_reason(eve
     reasons = {
         "humidity": "the air is dry; give inputs.humidity or contact.air",
         "history": "history.cycles = 0: give the cycles of each surface",
-        "calibrate": (
+        "calibration": (
             "measurements.tables: none; name the tables of measurements (docs/calibration.md)"
         ),
         "failure": (
             "failure.probability = null: give the share of the switches that may fail, such as 1e-6"
         ),
     }
-    serves = {("humid", "humidity"), ("lifetime", "history"), ("made_up", "calibrate")}
+    serves = {("humid", "humidity"), ("history", "history"), ("made_up", "calibration")}
     refused = {pair: words for pair, words in every_plan.items() if words}
     expected = {
         (scene, target): f"ERROR {scene}: {reasons[target]}"
@@ -119,7 +119,7 @@ def test_a_target_runs_whatever_the_tails_of_the_scene_say(every_plan):
         ("paper", "pad"),
         ("diamond", "law"),
         ("sizes", "sensitivity"),
-        ("films", "device"),
+        ("films", "answer"),
     ):
         assert every_plan[pair] == ""
 
@@ -136,7 +136,7 @@ def test_a_target_runs_its_stage_and_what_that_needs(plan):
 
 
 def test_only_scenes_with_measurements_schedule_a_calibration(plan):
-    calibration = {"collect_priors", "observe_cycles", "calibrate"}
+    calibration = {"collect_priors", "observe_cycles", "calibration"}
     for scene in ("ci", "paper", "reduced", "full", "literature"):
         assert not calibration & plan(scene)
     assert plan("made_up") >= calibration | MESOSCALE | REPORT
@@ -149,8 +149,8 @@ def test_voltages_of_switches_are_compared_with_pads_over_the_prior(make_workflo
     (tmp_path / "mine.yaml").write_text(
         "measurements: {tables: [{kind: release, file: volts.csv}]}"
     )
-    jobs = set(workflow.jobs(workflow.plan(str(tmp_path / "mine.yaml"), "calibrate")))
-    assert jobs >= {"collect_priors", "press_prior_pads", "calibrate"}
+    jobs = set(workflow.jobs(workflow.plan(str(tmp_path / "mine.yaml"), "calibration")))
+    assert jobs >= {"collect_priors", "press_prior_pads", "calibration"}
     assert not jobs & {"press_pads", "inputs"}
 
 

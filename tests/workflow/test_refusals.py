@@ -43,7 +43,10 @@ def test_traces_without_the_word_are_found(said):
 
 @pytest.mark.parametrize(
     ("target", "meant"),
-    [("lwa", "law"), ("results/paper/uq/outputs.cs", "results/paper/uq/outputs.csv")],
+    [
+        ("lwa", "law"),
+        ("results/paper/uncertainty/outputs.cs", "results/paper/uncertainty/outputs.csv"),
+    ],
 )
 def test_a_mistyped_target_is_one_line_with_the_nearest_name(workflow_in, target, meant):
     done = workflow_in.run("paper", target)
@@ -220,10 +223,10 @@ def test_a_run_of_weeks_is_planned_with_its_time_and_refused(workflow_in):
     scene.write_text(
         "{contact: {mechanics: coupled, pixels: 2048}, uncertainty: {direct_runs: 100000}}"
     )
-    said = workflow_in.plan(str(scene), "uq")
+    said = workflow_in.plan(str(scene), "uncertainty")
     assert "a run is refused: jobs compute_direct_runs take " in said
     assert said.split(" jobs, about ")[1].split()[1] == "h"
-    done = workflow_in.run(str(scene), "uq")
+    done = workflow_in.run(str(scene), "uncertainty")
     assert done.returncode != 0
     (line,) = errors(done)
     assert line.startswith(f"ERROR {scene}: jobs compute_direct_runs take ")
@@ -234,7 +237,7 @@ def test_a_table_of_measurements_that_cannot_be_used(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
     (workflow_in.folder / "forces.csv").write_text("pull_off,pull_off_error_nN\n200,20\n")
     scene.write_text("measurements: {tables: [{kind: pull_off, file: forces.csv}]}")
-    done = workflow_in.run(str(scene), "calibrate")
+    done = workflow_in.run(str(scene), "calibration")
     assert done.returncode != 0
     (line,) = errors(done)
     assert "forces.csv: column pull_off has no unit" in line

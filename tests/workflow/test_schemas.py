@@ -21,7 +21,7 @@ from workflow.schemas.__main__ import PAGE, page
 
 RULES = Path(__file__).parents[2] / "workflow" / "rules"
 ROW = {"hold_V": 80.0, "attraction": 0.5, "failing": 0.6, "failing_q95": 0.7, "failing_sure": 0.8}
-TABLE = "results/mine/device/failure.csv"
+TABLE = "results/mine/failure/failure.csv"
 
 
 def test_every_table_of_the_rules_has_a_schema():
@@ -187,6 +187,6 @@ def test_switches_for_circuits_fit_their_table_whatever_their_inputs(
         central, design, tuple(solve_points(list(enumerate(design.points, 1)), contact, 2))
     )
     made = spread_switches(model, of_pad, contact, cutoffs, 8)
-    path = tmp_path / "results/mine/device/circuit.csv"
+    path = tmp_path / "results/mine/circuit/circuit.csv"
     write_csv(path, [switch.row for switch in made])
     assert set(of_pad.names) <= set(load_csv(path)[0])

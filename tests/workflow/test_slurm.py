@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 
-TARGETS = ("inputs", "curves")
+TARGETS = ("inputs", "contact")
 SLURM = ("--seconds-between-status-checks", "2", "--latency-wait", "5")
 
 
@@ -38,7 +38,7 @@ pytestmark = [
     not answers(), reason="no Slurm answers here; .ci/slurm starts one on a machine for tests"
 )
 def test_results_do_not_depend_on_where_a_job_ran(make_workflow, tmp_path):
-    files = ("inputs.csv", "curves/nominal.h5")
+    files = ("inputs.csv", "contact/nominal.h5")
     found = []
     for place in ("local", "slurm"):
         folder = tmp_path / place

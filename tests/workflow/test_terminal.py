@@ -165,12 +165,12 @@ def test_the_page_before_the_end_brings_no_warning():
     logger.addHandler(handler)
     snakemake = SimpleNamespace(dryrun=False, output_settings=SimpleNamespace(verbose=False))
     speak(snakemake, logger, Costs(load_scene("paper"), {}), "nothing to do", 12)
-    for rule in ("report", "device"):
+    for rule in ("report", "answer"):
         logger.warning(
             f"Warning: the following output files of rule {rule} were not present when the DAG was"
             " created:"
         )
-    assert [" of rule device " in record.getMessage() for record in heard] == [True]
+    assert [" of rule answer " in record.getMessage() for record in heard] == [True]
 
 
 def test_nothing_to_do_names_the_report(capsys):
@@ -221,17 +221,17 @@ def test_costs_grow_with_what_a_job_does(tmp_path):
 def test_a_plan_learns_from_what_jobs_took(tmp_path):
     paper, times = load_scene("paper"), tmp_path / ".snakemake/times.json"
     costs = Costs(paper, {}, times)
-    guess, at_first = costs.seconds("uq", {}), costs.seconds("topography", {})
+    guess, at_first = costs.seconds("uncertainty", {}), costs.seconds("topography", {})
     for _ in range(100):  # a machine of a third of the speed, long enough to be believed
-        costs.learn("uq", {}, 3 * guess)
+        costs.learn("uncertainty", {}, 3 * guess)
     later = Costs(paper, {}, times)
-    assert later.seconds("uq", {}) == pytest.approx(3 * guess)
-    assert later.known(["uq"])
+    assert later.seconds("uncertainty", {}) == pytest.approx(3 * guess)
+    assert later.known(["uncertainty"])
     # what has not run here is as slow as the rest
     assert later.seconds("topography", {}) == pytest.approx(3 * at_first, rel=0.2)
-    assert not later.known(["uq", "topography"])
+    assert not later.known(["uncertainty", "topography"])
     other = Costs(load_scene("ci"), {}, times)
-    assert other.seconds("uq", {}) == guess
+    assert other.seconds("uncertainty", {}) == guess
 
 
 SHAPES = [
@@ -240,24 +240,24 @@ SHAPES = [
     "3",
     "null",
     "[" * 100_000,
-    '{"uq": [3, 4]}',
+    '{"uncertainty": [3, 4]}',
     '{"paper": 1}',
-    '{"paper": {"uq": {"1": 2}}}',
+    '{"paper": {"uncertainty": {"1": 2}}}',
 ]
 PAIRS = ["[1]", '["x", 2]', "[1, 0]", "[NaN, 1]", "[-1, 1]", "[1e999, 1]", "null"]
 
 
 @pytest.mark.parametrize(
-    "content", [*SHAPES, *(f'{{"paper": {{"uq": {pair}}}}}' for pair in PAIRS)]
+    "content", [*SHAPES, *(f'{{"paper": {{"uncertainty": {pair}}}}}' for pair in PAIRS)]
 )
 def test_times_of_another_shape_are_forgotten(tmp_path, content):
     times, paper = tmp_path / "times.json", load_scene("paper")
     times.write_text(content)
-    assert Costs(paper, {}, times).seconds("uq", {}) == Costs(
+    assert Costs(paper, {}, times).seconds("uncertainty", {}) == Costs(
         paper, {}, tmp_path / "none.json"
-    ).seconds("uq", {})
+    ).seconds("uncertainty", {})
     times.write_bytes(b"\xff\x00")
-    assert not Costs(paper, {}, times).known(["uq"])
+    assert not Costs(paper, {}, times).known(["uncertainty"])
 
 
 def test_what_takes_the_time_is_named_with_what_to_do():

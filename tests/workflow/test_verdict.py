@@ -29,7 +29,7 @@ def _probability(value):
 
 
 def _pad(stuck=0.02, cells=0.1, explained=0.9, **more):
-    """As device/pad_switch.json with an answer for the inputs, D0 and geometry; the release's
+    """As answer/pad_switch.json with an answer for the inputs, D0 and geometry; the release's
     variance is 4 V².
     """
     rows = [("bow_nm", "each", 0.5), ("rms", "common", 0.25), ("gap_cutoff_nm", "common", 0.1)]
@@ -199,7 +199,7 @@ def test_the_bar_has_the_zone_of_sticking_apart_from_the_axis_of_volts():
     bar = release_bar(said(_pad()))
     assert 'class="zone"' in bar
     assert 'class="interval"' in bar
-    assert " 2%" in bar
+    assert " 2\u202f%" in bar
     assert 'class="other"' in bar
     assert 'class="interval"' not in release_bar(said({**_pad(), "answer": None}))
 

@@ -54,6 +54,10 @@ class Results:
         """Rows of a CSV file."""
         return load_csv(self.root / name)
 
+    def rows(self, name: str) -> list[CsvRow]:
+        """Rows of a CSV file; none where it is not there."""
+        return self.csv(name) if self.has(name) else []
+
     @cache  # noqa: B019
     def json(self, name: str) -> dict[str, Any]:
         """Content of a JSON file."""
@@ -78,8 +82,8 @@ class Results:
         """The contact settings that the curves were made with; without curves those that are at
         hand.
         """
-        if self.has("curves/nominal.h5"):
-            return json.loads(self.h5("curves/nominal.h5")[1]["contact"])
+        if self.has("contact/nominal.h5"):
+            return json.loads(self.h5("contact/nominal.h5")[1]["contact"])
         return self.record["scene"]["contact"] if self.at_hand else {}
 
     @property
@@ -90,7 +94,7 @@ class Results:
     @property
     def fitted_MPa(self) -> float:
         """Largest pressure of the curves that the law was fitted to."""
-        return float(self.json("uq/surrogate.json")["law"]["most_GPa"]) * 1e3
+        return float(self.json("uncertainty/surrogate.json")["law"]["most_GPa"]) * 1e3
 
     def uses(self, stage: str) -> bool:
         """Whether an input of this scene comes from the stage."""

@@ -23,5 +23,5 @@ def early_page(
     of the scene.
     """
     switch = switch_on_pad(central, cell_area_nm2) | {"answer_status": STATUS}
-    at_hand = {"device/pad_switch.json": switch, "scene.yaml": {"scene": scene}}
+    at_hand = {"answer/pad_switch.json": switch, "scene.yaml": {"scene": scene}}
     return render(Results(root, paths, root.name, at_hand))

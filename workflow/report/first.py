@@ -6,7 +6,7 @@ from typing import Any
 from mesoscale.settings import DeviceSettings
 from workflow.report.available import Results
 from workflow.report.numbers import show
-from workflow.report.verdict import Verdict, does, in_words, verdict, volts
+from workflow.report.verdict import DECIDED, Verdict, does, in_words, verdict, volts
 
 KINDS = {
     "common": "To measure: one unknown value",
@@ -22,6 +22,8 @@ class First:
     """Pictures and words of the first screen."""
 
     said: Verdict
+    pull_in: str
+    conditions: str
     device: str
     bar: str
     causes: list[tuple[str, list[tuple[str, int]]]]
@@ -44,14 +46,46 @@ def first_screen(results: Results, gates: Any) -> First | None:
             f" switch {by_this} by this law; by the other one, with {work} the work of adhesion, it"
             f" {by_other}."
         )
-    answer = results.json("device/pad_switch.json").get("answer") or {}
+    answer = results.json("answer/pad_switch.json").get("answer") or {}
     named = bool(said.causes)
     causes = [(head, _largest(answer, kind)) for kind, head in KINDS.items()] if named else []
     bands = {kind: answer["known"][f"{kind}_V"] for kind in BANDS} if named else {}
-    known = _known(answer) if named else ""
     return First(
-        said, _device(results), release_bar(said, bands), causes, known, _unsolved(answer), other
+        said,
+        pull_in=_pull_in(results.json("answer/pad_switch.json")),
+        conditions=_conditions(results),
+        device=_device(results),
+        bar=release_bar(said, bands),
+        causes=causes,
+        known=_known(answer) if named else "",
+        unsolved=_unsolved(answer),
+        other_law=other,
     )
+
+
+def _pull_in(pad: dict[str, Any]) -> str:
+    """The voltage that closes it, in words; empty where it is not known."""
+    if pad.get("answer"):
+        quantiles = pad["answer"]["pull_in_V"]["quantiles"]
+        low, middle, high = (volts(quantiles[q]) for q in ("0.05", "0.5", "0.95"))
+        return f"It closes at {middle} (5\u00a0%:\u00a0{low}; 95\u00a0%:\u00a0{high})."
+    if pad["central"]:
+        return f"It closes at {volts(pad['central']['pull_in_V'])}, at central inputs."
+    return ""
+
+
+def _conditions(results: Results) -> str:
+    """The air, the temperature and the charge that the answer is of."""
+    scene = results.record["scene"]
+    device = DeviceSettings(**scene["device"])
+    air = scene["contact"].get("air") or {}
+    if "humidity" in scene.get("inputs", {}):
+        words = "In humid air of the stated range"
+    elif air.get("humidity"):
+        words = f"In air of {air['humidity']:.0%} humidity"
+    else:
+        words = "In dry air"
+    return f"{words}, at {device.temperature_C:g} °C, uncharged."
 
 
 def _largest(answer: dict[str, Any], kind: str) -> list[tuple[str, int]]:
@@ -70,13 +104,26 @@ def _known(answer: dict[str, Any]) -> str:
     typical, device = (
         [show(known[f"{kind}_V"][q]["value"], 2) for q in ("0.05", "0.95")] for kind in BANDS
     )
-    most = known["stuck_share"]["0.95"]
     return (
         f"Not known: where the typical device lets go, {typical[0]} to {typical[1]} V. From device"
-        f" to device: {device[0]} to {device[1]} V, all else known. With 95 % confidence, less than"
-        f" {_rate(most['value'], answer)} of one batch stick. The error of this limit allows up to"
-        f" {_rate(most['high'], answer)}."
+        f" to device: {device[0]} to {device[1]} V, all else known. {_sticking(answer)}"
     )
+
+
+def _sticking(answer: dict[str, Any]) -> str:
+    """How many of one batch may stick; so many switches cannot tell less than three in them."""
+    tellable = 1.0 - 0.05 ** (1.0 / answer["points"])  # none of n: 95 % confidence, "rule of three"
+    limit = answer["known"]["stuck_share"]["0.95"]
+    value = max(limit["value"], tellable)
+    allowed = max(limit["high"], tellable)
+    if value > DECIDED:
+        return "A whole batch may stick."
+    words = f"With 95 % confidence, less than {_rate(value)} of one batch stick."
+    if _rate(allowed) == _rate(value):
+        return words
+    if allowed > DECIDED:
+        return f"{words} The error of this limit allows that all stick."
+    return f"{words} The error of this limit allows up to {_rate(allowed)}."
 
 
 def _unsolved(answer: dict[str, Any]) -> str:
@@ -91,10 +138,9 @@ def _unsolved(answer: dict[str, Any]) -> str:
     )
 
 
-def _rate(share: float, answer: dict[str, Any]) -> str:
-    """A share of devices; so many switches know none below one in their number."""
-    least = 1.0 / answer["points"]
-    return f"{max(share, least):.0%}" if share > 0.095 else f"{max(share, least):.1%}"
+def _rate(share: float) -> str:
+    """A share of devices."""
+    return f"{share:.0%}" if share > 0.095 else f"{share:.1%}"
 
 
 def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
@@ -117,7 +163,7 @@ def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
         step for step in (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 1e4, 1e5) if top / step <= 6
     )
     ticks = [k * step for k in range(int(top / step) + 1)]
-    share = "" if said.stuck is None else f" {said.stuck[1]:.0%}"
+    share = "" if said.stuck is None else f" {100 * said.stuck[1]:.0f}\u202f%"
     parts = [
         f'<rect class="zone" x="0" y="8" width="{LEFT - 8:g}" height="70" rx="4"/>',
         f'<text x="{LEFT / 2 - 4:g}" y="32" class="mid">sticks</text>',
@@ -163,16 +209,16 @@ def _device(results: Results) -> str:
     anchors = "M10 40h12v110H10zM378 40h12v110h-12z"
     if device.kind == "plate":
         metal = (
-            '<path class="metal" d="M90 96h220"/><path class="rest" d="M200 30v10l-8 5 16 8-16 8 16'
-            ' 8-16 8 8 5v14"/>'
+            '<path class="metal" d="M90 110h220"/><path class="rest" d="M200 30v10l-8 5 16'
+            ' 8-16 8 16 8-16 8 8 5v28"/>'
         )
         size = f"plate on a spring of {show(device.spring_N_per_m)} N/m"
     elif device.ends == "cantilever":
         anchors = "M10 40h12v110H10z"
-        metal = '<path class="metal" d="M20 40h30q110 0 190 44q50 20 100 20"/>'
+        metal = '<path class="metal" d="M20 40h30q110 0 190 50q50 20 100 20"/>'
         size = f"cantilever of {device.length_um:g} × {device.width_um:g} µm"
     else:
-        metal = '<path class="metal" d="M20 40h30q25 0 60 42q20 22 90 22t90-22q35-42 60-42h30"/>'
+        metal = '<path class="metal" d="M20 40h30q25 0 60 46q20 24 90 24t90-24q35-46 60-46h30"/>'
         size = f"beam of {device.length_um:g} × {device.width_um:g} µm, bending"
     hold = (
         f"held at {device.hold_voltage_V:g} V"

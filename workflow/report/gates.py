@@ -37,8 +37,8 @@ def trust(gates: Sequence[Gate]) -> tuple[str, str]:
 
 
 def faint_outputs(results: Results) -> dict[str, str]:
-    """Outputs of the law that are not to be trusted, each with the reason (uq/validation.csv)."""
-    rows = results.csv("uq/validation.csv") if results.has("uq/validation.csv") else []
+    """Outputs of the law that are not to be trusted, each with the reason."""
+    rows = results.rows("uncertainty/validation.csv")
     return {row["output"]: row["doubt"] for row in rows if row.get("doubt")}
 
 
@@ -63,7 +63,7 @@ def _topography(results: Results) -> Iterator[Gate]:
             (f"Doubts, each beside the numbers it touches: {', '.join(doubts)}.",) if doubts else ()
         )
         yield Gate(gate.stage, gate.passed, (*gate.reasons, *remark), gate.used)
-    rows = results.csv("topography/judged.csv") if results.has("topography/judged.csv") else []
+    rows = results.rows("topography/judged.csv")
     reasons = tuple(
         f"{row['scan']} touches first at {show(row['pressed'])} nm, its description says"
         f" {show(row['low'])} to {show(row['high'])} nm"
@@ -73,16 +73,16 @@ def _topography(results: Results) -> Iterator[Gate]:
         yield Gate("pressing the scans", not reasons, reasons, results.uses("topography"))
 
 
-def _curves(results: Results) -> Iterator[Gate]:
-    if results.has("curves/nominal.h5"):
-        cycles = results.h5("curves/nominal.h5")[2]
+def _contact(results: Results) -> Iterator[Gate]:
+    if results.has("contact/nominal.h5"):
+        cycles = results.h5("contact/nominal.h5")[2]
         bad = [
             name
             for name, cycle in cycles.items()
             if "/" not in name and not bool(cycle.get("converged", True))
         ]
         yield Gate(
-            "curves", not bad, tuple(f"{name}: some load steps did not converge" for name in bad)
+            "contact", not bad, tuple(f"{name}: some load steps did not converge" for name in bad)
         )
 
 
@@ -108,16 +108,16 @@ def _law(results: Results) -> Iterator[Gate]:
         yield Gate("law", fair, tuple(reasons), answer=False)
 
 
-def _responses(results: Results) -> Iterator[Gate]:
-    if results.has("uq/validation.csv"):
+def _uncertainty(results: Results) -> Iterator[Gate]:
+    if results.has("uncertainty/validation.csv"):
         faint = faint_outputs(results)
         reasons = tuple(f"{OUTPUTS[name][0]}: {reason}" for name, reason in faint.items())
-        yield Gate("responses", not faint, reasons, answer=False)
+        yield Gate("uncertainty", not faint, reasons, answer=False)
 
 
 def _pad(results: Results) -> Iterator[Gate]:
-    if results.has("device/pad_switch.json"):
-        gate = results.json("device/pad_switch.json")["gate"]
+    if results.has("answer/pad_switch.json"):
+        gate = results.json("answer/pad_switch.json")["gate"]
         yield Gate("pad", gate["passed"], tuple(gate["reasons"]))
 
 
@@ -125,7 +125,7 @@ def other_law_V(results: Results) -> tuple[float, float] | None:
     """Release at central inputs by this law of attraction and by the other one; None where not
     computed.
     """
-    rows = results.json("device/pad_switch.json").get("by_attraction", [])
+    rows = results.json("answer/pad_switch.json").get("by_attraction", [])
     releases = {round(row["times"], 3): number(row["release_V"]) for row in rows}
     works = (1.0, OTHER_WORK.get(results.contact.get("attraction", ""), 0.0))
     here, other = (releases.get(round(times, 3), np.nan) for times in works)
@@ -136,7 +136,7 @@ def _attraction(results: Results) -> Iterator[Gate]:
     """Nothing here measures the law of attraction: a remark where the other law gives another
     outcome.
     """
-    both = other_law_V(results) if results.has("device/pad_switch.json") else None
+    both = other_law_V(results) if results.has("answer/pad_switch.json") else None
     if both and (both[0] == 0) != (both[1] == 0):
         reason = "by one of the two laws of attraction the switch sticks, by the other it lets go"
         yield Gate("law of attraction", True, (reason,))
@@ -161,10 +161,10 @@ INPUT_GATES: dict[str, Callable[[Results], Iterator[Gate]]] = {
 GATES: tuple[Callable[[Results], Iterator[Gate]], ...] = (
     *INPUT_GATES.values(),
     _topography,
-    _curves,
+    _contact,
     _pad,
     _attraction,
     _law,
-    _responses,
+    _uncertainty,
     _calibration,
 )

@@ -1,5 +1,6 @@
 """The page from the result files of a scene."""
 
+import re
 import sys
 from collections.abc import Callable
 from functools import partial
@@ -91,8 +92,9 @@ def failed(name: str, error: Exception) -> Gate:
 
 
 def low(text: str) -> Markup:
-    """Escaped text in which names such as d_c have their index set low."""
-    return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
+    """Escaped text with low indices in names such as d_c, and one kind of space before per cent."""
+    written = re.sub(r"(?<=\d)[ \u00a0]?%", "\u202f%", str(escape(text)))
+    return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", written))
 
 
 def _provenance(results: Results) -> list[tuple[str, str]]:

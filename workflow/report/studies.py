@@ -15,14 +15,14 @@ STAGES = {  # with a result that tells whether the scene has the stage
     "hardness": "hardness/points.csv",
     "elastic": "elastic/bulk_moduli.csv",
     "topography": "topography/parameters.json",
-    "contact": "curves/nominal.h5",
-    "uncertainty": "uq/outputs.csv",
+    "contact": "contact/nominal.h5",
+    "uncertainty": "uncertainty/outputs.csv",
     "pad": "pad/curves.csv",
-    "answer": "device/pad_switch.json",
-    "circuit": "device/circuit.json",
-    "failure": "device/failure.json",
+    "answer": "answer/pad_switch.json",
+    "circuit": "circuit/circuit.json",
+    "failure": "failure/failure.json",
 }
-OWN = {"contact": "curves/errors.csv", "answer": "device/errors.csv"}
+OWN = {"contact": "contact/errors.csv", "answer": "answer/errors.csv"}
 """Tables that every run makes; others are those of the target `accuracy`."""
 NEAR_BEST = 2.0
 """An error within this factor of the best one is not worth more time."""
@@ -237,7 +237,7 @@ def _accuracy(results: Results, tables: Sequence[KnobTable]) -> Iterator[Block]:
 
 def release_deviation_V(results: Results) -> float:
     """Standard deviation of the release over all that is uncertain, V; NaN without an answer."""
-    switch = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
+    switch = results.json("answer/pad_switch.json") if results.has("answer/pad_switch.json") else {}
     return float((switch.get("answer") or {"release_V": {"std": np.nan}})["release_V"]["std"])
 
 

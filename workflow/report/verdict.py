@@ -89,9 +89,9 @@ class Verdict:
 
 def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | None:
     """The verdict of a scene; None without a switch on a pad."""
-    if not results.has("device/pad_switch.json"):
+    if not results.has("answer/pad_switch.json"):
         return None
-    pad = results.json("device/pad_switch.json")
+    pad = results.json("answer/pad_switch.json")
     answer = pad.get("answer")
     release, stuck, no_interval, causes, no_cause = None, None, "", (), ""
     if answer:
@@ -171,7 +171,7 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
         return "The interval comes first." if pad["central"] else ""
     if answer["stuck"]["value"] == 1.0:
         return (
-            "Measure a pull-off force next (target calibrate)."
+            "Measure a pull-off force next (target calibration)."
             if coupled
             else "No better measurement would free it; a stiffer or shorter beam might."
         )

@@ -1,27 +1,20 @@
 # What the rule files share: the scene, where its results go, and how it is refused
 
 import os
-import sys
 from pathlib import Path
 
-from asperity.guards.foreign_text import from_word, shown
+from asperity.guards.foreign_text import from_word
 from asperity.guards.errors import InputError
 from atomistic.materials import load_materials, oxide_glasses
+from workflow.run.refuse import refuse
 from workflow.scene.memory import contact_MB, propagation_MB
 from workflow.files.checksums import content_checksums
 from workflow.scene import SceneError, files_of, load_scene, locate
 from asperity.guards.bundle import ROOT
 
-# one thread per process: the jobs themselves fill the cores, and results do not depend on their number
+# one thread a process: jobs fill the cores, and results do not depend on their number
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ[variable] = "1"
-
-
-def refuse(mistakes):
-    """End before any job starts, with one ERROR line for each line of `mistakes`."""
-    for line in str(mistakes).splitlines():
-        print(f"ERROR {shown(line)}", file=sys.stderr)
-    sys.exit(1)
 
 
 SCENE_GIVEN = from_word(str(config.get("scene", "reduced")))  # a name or a path
@@ -42,7 +35,8 @@ for folder in (Path(RESULTS), Path(RESULTS).parent):
         folder
     ):  # unlike Path.exists, False where one may not look
         refuse(
-            f"{folder}: a link to {os.readlink(folder)}, which is not there; mount it, or remove the link"
+            f"{folder}: a link to {os.readlink(folder)}, which is not there;"
+            " mount it, or remove the link"
         )
 writable = next(
     folder for folder in (Path(RESULTS), *Path(RESULTS).parents) if os.path.exists(folder)
@@ -64,17 +58,20 @@ KEPT = []  # what jobs of these stages leave besides; a lost one is made again
 
 
 def settings(section):
-    """Settings of one section as plain values for `params:`, so that a change re-runs just that stage."""
+    """One section as plain values for `params:`, so that a change re-runs just that stage."""
     return RESOLVED[section]
 
 
 def contents(*paths):
-    """Checksums of files that no job makes, for `params:`: what reads them follows their content, whatever the date."""
+    """Checksums of files that no job makes, for `params:`.
+
+    What reads them follows their content, whatever the date.
+    """
     return content_checksums(paths)
 
 
 def named_files(key, *names):
-    """Paths of files that the scene names under a key, sought here and beside the scene; missing ones are refused."""
+    """Paths of files that the scene names under a key; missing ones are refused."""
     try:
         return locate(SCENE_GIVEN, key, names)
     except SceneError as error:
@@ -82,7 +79,7 @@ def named_files(key, *names):
 
 
 def with_found_samples(scene):
-    """The scene with the paths at which its files of departures (device.spread) lie, and these paths."""
+    """The scene with the paths of its files of departures (device.spread), and these paths."""
     rows, found = {}, []
     for name in scene.device.varied:
         row = getattr(scene.device.spread, name)
@@ -104,7 +101,7 @@ def material_path(material):
 
 
 def required(is_there, words):
-    """No input where a scene has what a target needs; else what refuses the target in these words."""
+    """No input where a scene has what a target needs; else what refuses the target."""
     line = f"{SCENE_GIVEN}: {words}"
     return [] if is_there else lambda wildcards: refuse(line)
 

@@ -32,10 +32,20 @@ wildcard_constraints:
 
 
 def quenched_before(wildcards):
-    """Cells that a quench must not make once more: one after the other, which costs nothing beside their DFT."""
+    """Cells that a quench must not make once more: they are made one after the other.
+
+    That costs nothing beside their DFT.
+    """
     return [
         f"{RESULTS}/elastic/quenched/a{k:02d}.xyz" for k in range(1, int(wildcards.amorphous[1:]))
     ]
+
+
+def functionals_of(cell):
+    """Both functionals for half of the cells, which gives the shift between them."""
+    if cell in WITH_LDA:
+        return ["GGA", "LDA"]
+    return ["GGA"]
 
 
 rule make_amorphous:
@@ -74,7 +84,7 @@ rule scan_glass:
     params:
         contents=contents(MATERIAL),
         dft=ELASTIC["dft"],
-        functionals=lambda wildcards: ["GGA", "LDA"] if wildcards.amorphous in WITH_LDA else ["GGA"],
+        functionals=lambda wildcards: functionals_of(wildcards.amorphous),
         store=f"{RESULTS}/work/scf/{{amorphous}}",
     message:
         "relax amorphous cell {wildcards.amorphous} and scan its E(V)"

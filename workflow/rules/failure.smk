@@ -1,4 +1,4 @@
-# Failure rate of the switch, and its circuit; on the page only in scenes with failure.probability
+# Failure rate of the switch; on the page only in scenes with failure.probability
 
 
 rule failure:
@@ -6,12 +6,13 @@ rule failure:
     input:
         required(
             SCENE.failure.probability is not None,
-            "failure.probability = null: give the share of the switches that may fail, such as 1e-6",
+            "failure.probability = null: give the share of the switches that may fail,"
+            " such as 1e-6",
         ),
         **PRESSED,
     output:
-        rate=f"{RESULTS}/device/failure.json",
-        table=f"{RESULTS}/device/failure.csv",
+        rate=f"{RESULTS}/failure/failure.json",
+        table=f"{RESULTS}/failure/failure.csv",
     log:
         f"{RESULTS}/logs/failure.log",
     params:
@@ -23,24 +24,5 @@ rule failure:
         "../scripts/find_failure_rate.py"
 
 
-rule circuit:
-    """the switch for simulators: corners, draws, C-V loop"""
-    input:
-        **PRESSED,
-    output:
-        models=directory(f"{RESULTS}/device/circuit"),
-        summary=f"{RESULTS}/device/circuit.json",
-        table=f"{RESULTS}/device/circuit.csv",
-        loop=f"{RESULTS}/device/loop.csv",
-    log:
-        f"{RESULTS}/logs/circuit.log",
-    params:
-        **ON_PADS,
-    message:
-        "make the switch for circuit simulators"
-    script:
-        "../scripts/make_circuit.py"
-
-
-if SCENE.failure.probability is not None and "pad" in SCENE.tails:
-    SHOWN += [*rules.failure.output, *rules.circuit.output[1:]]
+if SCENE.failure.probability is not None and "switch" in SCENE.tails:
+    SHOWN += rules.failure.output

@@ -7,7 +7,7 @@ rule humidity:
         required(SCENE.humid, "the air is dry; give inputs.humidity or contact.air"),
         **PRESSED,
     output:
-        f"{RESULTS}/device/humidity.csv",
+        f"{RESULTS}/humidity/humidity.csv",
     log:
         f"{RESULTS}/logs/humidity.log",
     resources:
@@ -20,5 +20,5 @@ rule humidity:
         "../scripts/sweep_humidity.py"
 
 
-if SCENE.humid and "pad" in SCENE.tails:
+if SCENE.humid and "switch" in SCENE.tails:
     SHOWN += rules.humidity.output

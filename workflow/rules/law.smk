@@ -8,7 +8,7 @@ rule compute_runs:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
-        f"{RESULTS}/curves/runs/chunk_{{chunk}}.h5",
+        f"{RESULTS}/law/runs/chunk_{{chunk}}.h5",
     log:
         f"{RESULTS}/logs/compute_runs_{{chunk}}.log",
     priority: 1  # a chain of jobs waits for them
@@ -27,8 +27,8 @@ rule law:
     """compact law of one cell"""
     input:
         inputs=f"{RESULTS}/inputs.csv",
-        chunks=[f"{RESULTS}/curves/runs/chunk_{chunk}.h5" for chunk in RUN_CHUNKS],
-        nominal=f"{RESULTS}/curves/nominal.h5",
+        chunks=[f"{RESULTS}/law/runs/chunk_{chunk}.h5" for chunk in RUN_CHUNKS],
+        nominal=f"{RESULTS}/contact/nominal.h5",
     output:
         parameters=f"{RESULTS}/law/parameters.csv",
         nominal=f"{RESULTS}/law/nominal.csv",

@@ -8,11 +8,11 @@ POINT_CHUNKS = {"central": (0, 1)} | {
         SCENE.pad.points, POINTS_PER_JOB[SCENE.contact.mechanics]
     ).items()
 }
+ALL_CHUNKS = f"central, 000 to {len(POINT_CHUNKS) - 2:03}"
 
 
 # what jobs that use the pad read, and the settings that they have
 PRESSED = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv", "model": f"{RESULTS}/pad/model.h5"}
-EFFECTS = str(CONFIG / "effects.yaml")
 ON_PADS = {section: settings(section) for section in ("contact", "device", "pad")}
 if SPREAD_FILES:
     ON_PADS["departures"] = contents(*SPREAD_FILES)
@@ -26,7 +26,8 @@ rule press_pads:
         f"{RESULTS}/pad/points/chunk_{{chunk}}.h5",
     log:
         f"{RESULTS}/logs/press_pads_{{chunk}}.log",
-    # first of all: the rest then fills the other cores while the pad is assembled; the central point has the first answer
+    # first of all: the rest then fills the other cores while the pad is assembled;
+    # the central point has the first answer
     priority: lambda wildcards: 3 if wildcards.chunk == "central" else 2
     resources:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
@@ -34,7 +35,7 @@ rule press_pads:
         **ON_PADS,
         bounds=lambda wildcards: POINT_CHUNKS[wildcards.chunk],
     message:
-        f"press pads {{wildcards.chunk}} (central, 000 to {len(POINT_CHUNKS) - 2:03})"
+        f"press pads {{wildcards.chunk}} ({ALL_CHUNKS})"
     script:
         "../scripts/press_pads.py"
 
@@ -60,30 +61,6 @@ rule pad:
         "../scripts/assemble_pad.py"
 
 
-rule device:
-    """the switch on the pads: release, sticking and what they hang on"""
-    input:
-        **PRESSED,
-        hardness=INPUT_STAGES.get("hardness", []),
-        effects=EFFECTS,
-    output:
-        switch=f"{RESULTS}/device/pad_switch.json",
-        budget=f"{RESULTS}/device/budget.csv",
-        errors=f"{RESULTS}/device/errors.csv",
-        verilog=f"{RESULTS}/device/rough_pad.va",
-        spice=f"{RESULTS}/device/rough_pad.sub",
-    log:
-        f"{RESULTS}/logs/device.log",
-    priority: 2
-    params:
-        **ON_PADS,
-        contents=contents(EFFECTS),
-    message:
-        "say what the switch does"
-    script:
-        "../scripts/answer_switch.py"
-
-
-if "pad" in SCENE.tails:
-    SHOWN += [*rules.pad.output, *rules.device.output]
+if "switch" in SCENE.tails:
+    SHOWN += rules.pad.output
     KEPT += rules.pad.input.chunks

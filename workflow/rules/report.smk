@@ -6,7 +6,8 @@ STYLE = [str(ROOT / "workflow" / "report" / name) for name in ("template.html.j2
 def studies_at_hand():
     """Tables of studies already present, with their checksums.
 
-    As parameters, not inputs: they are shown without being scheduled, and a new one renews the page.
+    As parameters, not inputs: they are shown without being scheduled, and a new one renews
+    the page.
     """
     return {name: file_checksum(name) for name in (*ACCURACY, *STABILITY) if Path(name).is_file()}
 

@@ -1,4 +1,5 @@
-# Error against run time (accuracy) and stiff and extreme cases (stability) of every stage that the scene uses
+# Error against run time (accuracy), and stiff and extreme cases (stability), of every stage that
+# the scene uses
 
 OF_CELL = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"}
 # what both studies of a stage read beside settings, and whether the scene uses the stage
@@ -15,12 +16,12 @@ OF_STAGE = {
     "topography": ({}, needed("topography")),
     "contact": (OF_CELL, bool(SCENE.tails)),
     "uncertainty": (OF_CELL, "law" in SCENE.tails),
-    "pad": (PRESSED, "pad" in SCENE.tails),
-    "answer": (PRESSED, "pad" in SCENE.tails),
-    "circuit": (PRESSED, "pad" in SCENE.tails),
-    "failure": (PRESSED, "pad" in SCENE.tails and SCENE.failure.probability is not None),
+    "pad": (PRESSED, "switch" in SCENE.tails),
+    "answer": (PRESSED, "switch" in SCENE.tails),
+    "circuit": (PRESSED, "switch" in SCENE.tails),
+    "failure": (PRESSED, "switch" in SCENE.tails and SCENE.failure.probability is not None),
 }
-IN_VOLTS = PRESSED if "pad" in SCENE.tails else {}
+IN_VOLTS = PRESSED if "switch" in SCENE.tails else {}
 ALSO_READ = {  # by one study alone
     "accuracy/hardness": IN_VOLTS,
     "accuracy/elastic": {
@@ -35,7 +36,7 @@ ALSO_READ = {  # by one study alone
     "accuracy/contact": IN_VOLTS,
     "accuracy/uncertainty": {
         "direct": DIRECT,
-        "again": rules.uq.input.again,
+        "again": rules.uncertainty.input.again,
         "parameters": f"{RESULTS}/law/parameters.csv",
     },
 }
@@ -49,7 +50,10 @@ def studies_of(kind):
 def files_of_study(wildcards):
     """As named inputs: what a study reads; a stage that the scene does not use is refused."""
     files, used = OF_STAGE[wildcards.stage]
-    words = f"target accuracy or stability: the scene does not use the stage {wildcards.stage}; nothing to study"
+    words = (
+        f"target accuracy or stability: the scene does not use the stage {wildcards.stage};"
+        " nothing to study"
+    )
     return {
         "used": required(used, words),
         **files,

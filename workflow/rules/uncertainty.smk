@@ -2,8 +2,8 @@ from mesoscale.uncertainty.chunks import MOST_REPEATED, full_chunks
 
 DIRECT_CHUNKS = full_chunks(SCENE.uncertainty.direct_runs)
 # more runs add files and leave these as they are
-DIRECT = [f"{RESULTS}/uq/direct/chunk_{chunk}.csv" for chunk in DIRECT_CHUNKS]
-# the first ones once more on other surfaces, for the scatter between these apart from what the inputs explain
+DIRECT = [f"{RESULTS}/uncertainty/direct/chunk_{chunk}.csv" for chunk in DIRECT_CHUNKS]
+# the first ones once more on other surfaces: scatter between surfaces is no effect of the inputs
 AGAIN = (0, min(MOST_REPEATED, SCENE.uncertainty.direct_runs))
 
 
@@ -12,7 +12,7 @@ rule compute_direct_runs:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
-        f"{RESULTS}/uq/direct/chunk_{{chunk}}.csv",
+        f"{RESULTS}/uncertainty/direct/chunk_{{chunk}}.csv",
     log:
         f"{RESULTS}/logs/compute_direct_runs_{{chunk}}.log",
     priority: 1  # a chain of jobs waits for them
@@ -30,23 +30,23 @@ rule compute_direct_runs:
 PAPER_TABLES = {name: str(CONFIG / "paper" / f"{name}.csv") for name in ("table2", "table3")}
 
 
-rule uq:
+rule uncertainty:
     """what uncertain inputs do to the law, and which cause the spread"""
     input:
         **PAPER_TABLES,
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
         direct=DIRECT,
-        again=[f"{RESULTS}/uq/direct/chunk_again.csv"] if DIRECT else [],
+        again=[f"{RESULTS}/uncertainty/direct/chunk_again.csv"] if DIRECT else [],
     output:
-        outputs=f"{RESULTS}/uq/outputs.csv",
-        sensitivity=f"{RESULTS}/uq/sensitivity.csv",
-        surrogate=f"{RESULTS}/uq/surrogate.json",
-        samples=f"{RESULTS}/uq/samples.csv",
-        validation=f"{RESULTS}/uq/validation.csv",
-        law=f"{RESULTS}/uq/law.csv",
+        outputs=f"{RESULTS}/uncertainty/outputs.csv",
+        sensitivity=f"{RESULTS}/uncertainty/sensitivity.csv",
+        surrogate=f"{RESULTS}/uncertainty/surrogate.json",
+        samples=f"{RESULTS}/uncertainty/samples.csv",
+        validation=f"{RESULTS}/uncertainty/validation.csv",
+        law=f"{RESULTS}/uncertainty/law.csv",
     log:
-        f"{RESULTS}/logs/uq.log",
+        f"{RESULTS}/logs/uncertainty.log",
     resources:
         mem_mb=PROPAGATION_MB,
     params:
@@ -61,11 +61,11 @@ rule uq:
 
 
 rule sensitivity:
-    """the same as uq: the ranking of the inputs comes with their effect"""
+    """the same as uncertainty: the ranking of the inputs comes with their effect"""
     input:
-        rules.uq.output,
+        rules.uncertainty.output,
 
 
 if "law" in SCENE.tails:
-    SHOWN += rules.uq.output
-    KEPT += [*rules.uq.input.direct, *rules.uq.input.again]
+    SHOWN += rules.uncertainty.output
+    KEPT += [*rules.uncertainty.input.direct, *rules.uncertainty.input.again]

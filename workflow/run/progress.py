@@ -9,7 +9,7 @@ import textwrap
 import time
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from shutil import disk_usage
 from typing import Any
 
@@ -19,6 +19,7 @@ from asperity.guards.foreign_text import COLUMNS, did_you_mean, shown, wrapped
 from workflow.run.changed_files import change_lines, changed_files
 from workflow.run.cost import Costs, refusal, wall_seconds
 from workflow.run.job import last_line
+from workflow.scene.renamed import SINCE, STAGES, name_now, place_now
 
 NO_SUCH_TARGET = re.compile(
     r"MissingRuleException:\nNo rule to produce (.*) \(if you use input functions"
@@ -80,6 +81,9 @@ class Terminal(logging.Handler):
             self._refuse_target(mistyped[1])
 
     def _refuse_target(self, target: str) -> None:
+        if renamed := _name_now(target):
+            _say(f"ERROR {renamed}")
+            return
         rules = self._workflow.rules
         names = [rule.name for rule in rules] + [
             str(path) for rule in rules for path in rule.output
@@ -191,6 +195,15 @@ class Terminal(logging.Handler):
                 [file for of in pressed if of.jobid not in self._left for file in of.output]
             ):
                 _say(line)
+
+
+def _name_now(target: str) -> str:
+    """The line on a target of before that is called otherwise now; empty for any other one."""
+    if target in STAGES:
+        return name_now(target, STAGES)
+    results, scene, *inside = [*PurePosixPath(target).parts, "", ""]
+    place = place_now("/".join(filter(None, inside))) if results == "results" else ""
+    return f"`{target}` is `{results}/{scene}/{place}` since {SINCE}" if place else ""
 
 
 def release_so_far(files: Iterable[str]) -> Iterator[str]:

@@ -40,8 +40,8 @@ class Scene(Settings):
     compute: tuple[Literal["hardness", "elastic", "topography"], ...] = Field(
         default=(), description="stages to run and report although no input is taken from them"
     )
-    tails: tuple[Literal["law", "pad"], ...] = Field(
-        default=("law", "pad"),
+    tails: tuple[Literal["law", "switch"], ...] = Field(
+        default=("law", "switch"),
         description=(
             "what is made of the inputs and shown: the law of one cell with its uncertainty, as in"
             " the paper; the pad of many cells and the switch on it; none: the inputs alone"

@@ -18,6 +18,8 @@ from mesoscale.topography.measurements import check_count, files_in
 from workflow.files.checksums import CLOCK_S
 from workflow.scene.accepted import accepted_values, field_at, model_at
 from workflow.scene.definition import Scene
+from workflow.scene.renamed import SCENES as RENAMED_SCENES
+from workflow.scene.renamed import TAILS, name_now
 
 SCENES = ROOT / "config" / "scenes"
 SHOWN = 60  # characters of a value or key in a message
@@ -132,6 +134,8 @@ def find_scene(name_or_path: str) -> Path:
         return path
     known = _shipped()
     if name_or_path not in known:
+        if renamed := name_now(name_or_path, RENAMED_SCENES):
+            raise SceneError(f"scene={word}: {renamed}")
         raise SceneError(
             f"scene={word}: unknown scene; accepted: {', '.join(known)}, or the path of a YAML file"
         )
@@ -244,6 +248,8 @@ def _explain(path: Path, error: Any) -> str:
             f"{path}: {key}: unknown key{did_you_mean(str(location[-1]), known)} (accepted:"
             f" {', '.join(known)})"
         )
+    if location[:1] == ("tails",) and (renamed := name_now(str(error["input"]), TAILS)):
+        return f"{path}: tails: {renamed}; write `{TAILS[error['input']]}`"
     field = field_at(location)
     accepted = accepted_values(field) if field else error["msg"]
     value = _cut(json.dumps(error["input"], ensure_ascii=False, default=str))

@@ -7,11 +7,17 @@ The writer and the reader of results hold every table to its schema; docs/result
 from pathlib import PurePath
 
 from workflow.schemas import (
+    answer,
     calibration,
+    circuit,
     elastic,
+    failure,
     hardness,
-    inputs_and_law,
-    pad_and_device,
+    history,
+    humidity,
+    inputs,
+    law,
+    pad,
     studies,
     topography,
     uncertainty,
@@ -24,10 +30,16 @@ STAGES: dict[str, tuple[Table, ...]] = {
     "Hardness": hardness.TABLES,
     "Elastic": elastic.TABLES,
     "Topography": topography.TABLES,
-    "Inputs, contact and law": inputs_and_law.TABLES,
+    "Inputs": inputs.TABLES,
+    "Law": law.TABLES,
     "Uncertainty": uncertainty.TABLES,
+    "Pad": pad.TABLES,
+    "Answer": answer.TABLES,
+    "Failure": failure.TABLES,
+    "Circuit": circuit.TABLES,
+    "Humidity": humidity.TABLES,
+    "History": history.TABLES,
     "Calibration": calibration.TABLES,
-    "Pad and device": pad_and_device.TABLES,
     "Studies of all stages": studies.TABLES,
 }
 """All tables by heading; of two that fit a path, the first one counts."""

@@ -2,7 +2,7 @@
 
 from mesoscale.calibration.observables import NAMES
 from mesoscale.settings.definitions import INPUTS
-from workflow.schemas.inputs_and_law import SEED
+from workflow.schemas.columns import SEED
 from workflow.schemas.table import Table, integer, number, text
 
 _INPUTS = tuple(number(row.name, row.unit, row.label, optional=row.may_lack) for row in INPUTS)

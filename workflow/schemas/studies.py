@@ -4,7 +4,7 @@ from workflow.schemas.table import Table, boolean, number, text
 
 TABLES = (
     Table(
-        ("accuracy/*.csv", "curves/errors.csv", "device/errors.csv"),
+        ("accuracy/*.csv", "contact/errors.csv", "answer/errors.csv"),
         "One value of one knob.",
         (
             text("stage", "stage of the study"),

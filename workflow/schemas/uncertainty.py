@@ -1,7 +1,7 @@
 """Tables of uncertainty and sensitivity."""
 
 from mesoscale.law.parameters import LAW
-from workflow.schemas.inputs_and_law import BRANCH, INPUT_VALUES, SEED
+from workflow.schemas.columns import BRANCH, INPUT_VALUES, SEED
 from workflow.schemas.table import Column, Table, integer, number, text
 
 _OUTPUT = text("output", "parameter of the law on closing, or its change on opening (delta_)")
@@ -42,7 +42,7 @@ _QUANTILES = {"q05": "5 % quantile", "q50": "median", "q95": "95 % quantile"}
 _MISSING = integer("missing", "runs without this output")
 
 _OUTPUTS = Table(
-    ("uq/outputs.csv",),
+    ("uncertainty/outputs.csv",),
     "An output of the paper's Table 2.",
     (
         _OUTPUT,
@@ -85,7 +85,7 @@ _OUTPUTS = Table(
 )
 
 _VALIDATION = Table(
-    ("uq/validation.csv",),
+    ("uncertainty/validation.csv",),
     "An output: the exported response beside direct runs. All but the counts is empty with fewer"
     " than three of these.",
     (
@@ -116,7 +116,7 @@ _VALIDATION = Table(
 )
 
 _SENSITIVITY = Table(
-    ("uq/sensitivity.csv",),
+    ("uncertainty/sensitivity.csv",),
     "An output with an input (the paper's Table 3).",
     (
         _OUTPUT,
@@ -140,7 +140,7 @@ _SENSITIVITY = Table(
 )
 
 _DIRECT = Table(
-    ("uq/direct/chunk_*.csv",),
+    ("uncertainty/direct/chunk_*.csv",),
     "One direct run: cycle and law of its own inputs on its own surface.",
     (
         integer("run", "number of the run"),
@@ -153,13 +153,13 @@ _DIRECT = Table(
 )
 
 _SAMPLES = Table(
-    ("uq/samples.csv",),
+    ("uncertainty/samples.csv",),
     "One sample of the inputs through the exported responses; nan where an output has none.",
     (*INPUT_VALUES, *_fitted(empty=False, status=False)),
 )
 
 _LAW = Table(
-    ("uq/law.csv",),
+    ("uncertainty/law.csv",),
     "One gap of one branch: the pressure over the samples of the law.",
     (
         BRANCH,

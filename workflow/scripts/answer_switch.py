@@ -1,8 +1,8 @@
 """What the switch does on the pad, over all that is uncertain.
 
 In: inputs.csv, pad/model.h5 (GPa against nm; V), config/effects.yaml, hardness/fit.json where the
-scene uses it. Out: device/pad_switch.json, device/budget.csv (V), device/errors.csv (V),
-device/rough_pad.va, device/rough_pad.sub."""
+scene uses it. Out: answer/pad_switch.json, answer/budget.csv (V), answer/errors.csv (V),
+answer/rough_pad.va, answer/rough_pad.sub."""
 
 from pathlib import Path
 

@@ -1,10 +1,10 @@
 """Contact cycles at the medians of the inputs (the means, where they are symmetric), for figures 4
 and 11; a picture.
 
-In: inputs.csv.  Out: curves/nominal.h5 (groups <model>/closing|opening and load_<F
+In: inputs.csv.  Out: contact/nominal.h5 (groups <model>/closing|opening and load_<F
 nN>/closing|opening; nm, nN, nm^2), with inputs, seed, largest force and flags as attributes of the
-group of each curve; curves/spots.h5 (the surface and where the flat has reached it, on the closing
-to the largest force); curves/errors.csv (numerical errors)."""
+group of each curve; contact/spots.h5 (the surface and where the flat has reached it, on the closing
+to the largest force); contact/errors.csv (numerical errors)."""
 
 from dataclasses import asdict
 
@@ -41,7 +41,7 @@ with job(snakemake) as run:
                 for key, values in asdict(curve).items()
             }
     reading = {"cell_area_nm2": settings.length_nm**2, "contact": settings.model_dump(mode="json")}
-    write_h5(snakemake.output.curves, groups, reading, run.provenance, attributes)
+    write_h5(snakemake.output.nominal, groups, reading, run.provenance, attributes)
     spots = spots_under(inputs, settings, max(cycles, key=lambda pair: pair[0])[1])
     datasets = {
         "towards_flat_nm": Dataset(

@@ -1,6 +1,6 @@
 """Compute a chunk of contact cycles of the collocation.
 
-In: inputs.csv.  Out: curves/runs/chunk_NNN.h5 (groups run_NNNN/closing and run_NNNN/opening; nm,
+In: inputs.csv.  Out: law/runs/chunk_NNN.h5 (groups run_NNNN/closing and run_NNNN/opening; nm,
 nN, nm^2)."""
 
 from dataclasses import asdict

@@ -1,7 +1,7 @@
 """Find how often the switch fails, down to one in a million, and what is allowed of hold voltage,
 film and spring.
 
-In: inputs.csv, pad/model.h5.  Out: device/failure.json, device/failure.csv (V).
+In: inputs.csv, pad/model.h5.  Out: failure/failure.json, failure/failure.csv (V).
 """
 
 from mesoscale.failure.rate import failure_rate

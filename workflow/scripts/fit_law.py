@@ -1,7 +1,7 @@
 """Fit the force-separation law to both branches of every curve, of the runs and of the nominal
 cycles.
 
-In: inputs.csv, curves/runs/chunk_NNN.h5, curves/nominal.h5 (nm, nN). Out: law/parameters.csv, one
+In: inputs.csv, law/runs/chunk_NNN.h5, contact/nominal.h5 (nm, nN). Out: law/parameters.csv, one
 row per run and branch; law/nominal.csv, one row per nominal curve and branch."""
 
 from mesoscale.inputs.table import from_rows

@@ -4,9 +4,9 @@ asked.
 In: inputs.csv.  Out: history/cycles.csv (nm, nN), history/dwell.csv (s, nm).
 """
 
+from mesoscale.history.cycles import cycle_row, dwell_rows, follow_all
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
-from mesoscale.law.lifetime import cycle_row, dwell_rows, follow_all
 from mesoscale.settings import HistorySettings
 from workflow.files.results import load_csv, write_csv
 from workflow.run.contact_settings import contact_settings

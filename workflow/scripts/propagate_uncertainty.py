@@ -1,8 +1,9 @@
 """Propagate the inputs' uncertainty through the responses, validate these, and rank the inputs.
 
-In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, uq/direct/chunk_again.csv, the paper's
-Tables 2 and 3. Out: uq/outputs.csv (Table 2), uq/sensitivity.csv (Table 3), uq/surrogate.json,
-uq/samples.csv, uq/validation.csv, uq/law.csv (nm, GPa/nm, GPa)."""
+In: inputs.csv, law/parameters.csv, the paper's Tables 2 and 3; of uncertainty/:
+direct/chunk_NNN.csv, direct/chunk_again.csv. Out, in uncertainty/: outputs.csv (Table 2),
+sensitivity.csv (Table 3), surrogate.json, samples.csv, validation.csv,
+law.csv (nm, GPa/nm, GPa)."""
 
 import numpy as np
 

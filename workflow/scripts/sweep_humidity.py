@@ -1,6 +1,6 @@
 """The switch against humidity, at central inputs and over the points of the pad.
 
-In: inputs.csv, pad/model.h5.  Out: device/humidity.csv (V, mJ/m^2, kPa).
+In: inputs.csv, pad/model.h5.  Out: humidity/humidity.csv (V, mJ/m^2, kPa).
 """
 
 from mesoscale.answer.humidity import humidity_rows

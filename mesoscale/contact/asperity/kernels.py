@@ -59,13 +59,14 @@ def grow(asperities, heights, n, level, spacing, seed):
         south = site + n if row < n - 1 else site - n * (n - 1)
         west = -1 if col > 0 else n - 1
         east = 1 if col < n - 1 else 1 - n
-        around[0], around[1], around[2], around[3] = north, south, site + west, site + east
-        around[4], around[5], around[6], around[7] = (
-            north + west,
-            north + east,
-            south + west,
-            south + east,
-        )
+        around[0] = north
+        around[1] = south
+        around[2] = site + west
+        around[3] = site + east
+        around[4] = north + west
+        around[5] = north + east
+        around[6] = south + west
+        around[7] = south + east
         curvature += site_curvature(
             height,
             heights[north],
@@ -444,7 +445,8 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
             return sweeps, False
         flows = 0
         for k in np.argsort(work.peak[:yielding]):
-            goal, margin = work.goal[k], work.margin[k]
+            goal = work.goal[k]
+            margin = work.margin[k]
             low = 1
             work.low[0] = work.peak[k]
             if not rule.fixed:

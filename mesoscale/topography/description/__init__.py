@@ -1,3 +1,1 @@
-"""What the measurements say about the surface: its spectrum, its heights, and the parameters in
-use.
-"""
+"""What the measurements say about the surface: spectrum, heights, and the parameters in use."""

@@ -1,6 +1,4 @@
-"""The spectrum of one measurement on bands of log q, and what its mean square height holds
-besides.
-"""
+"""The spectrum of one measurement on bands of log q, and what its mean square height adds."""
 
 from dataclasses import dataclass, replace
 
@@ -19,7 +17,9 @@ def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     nothing = np.empty(0, dtype=int), np.empty(0), np.empty(0)
     if inside.sum() < 3:
         return nothing
-    q, psd, modes = item.spectrum.q[inside], corrected[inside], item.spectrum.modes[inside]
+    q = item.spectrum.q[inside]
+    psd = corrected[inside]
+    modes = item.spectrum.modes[inside]
     grid = np.floor(np.log10(q) * BANDS_PER_DECADE).astype(int)
     numbers, index = np.unique(grid, return_inverse=True)
     worth = np.bincount(index, modes)
@@ -30,20 +30,19 @@ def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]
         level = level + np.minimum(0.5 / worth, 0.3)
     if len(numbers) < 2:
         return nothing
-    wanted = (numbers + 0.5) / BANDS_PER_DECADE * np.log(10)
+    middle = (numbers + 0.5) / BANDS_PER_DECADE * np.log(10)
     # a band that is only half covered is read at its centre along the measurement's own slope
     slope = np.gradient(level, centre)
     # the mean over a band of a power law is above its middle
     width = np.bincount(index, modes * np.log(q) ** 2) / worth - centre**2
     level = level - 0.5 * slope**2 * np.maximum(width, 0.0)
     tip = np.bincount(index, modes * error[inside]) / worth
-    return numbers, level + slope * (wanted - centre), 1 / worth + DISCREPANCY**2 + tip**2
+    return numbers, level + slope * (middle - centre), 1 / worth + DISCREPANCY**2 + tip**2
 
 
 @dataclass(frozen=True)
 class Seen:
-    """Which waves a levelled measurement has in its mean square height, and which of these its
-    bands have, too.
+    """Waves in the mean square height of a levelled measurement, and those in its bands.
 
     Surfaces of C ~ q^-1 to q^-4 without a plateau hold, levelled by a plane, the waves from 0.63 to
     0.81 a side on; so do lines (Brownian ones from 0.76 on). A parabola takes waves 1.3 times as
@@ -69,12 +68,12 @@ class Seen:
     @property
     def first(self) -> float:
         """Wave vector of the longest, 1/nm."""
-        return (0.94 if self.parabola else 0.72) * 2 * np.pi / self.length_nm
+        waves = 0.94 if self.parabola else 0.72
+        return waves * 2 * np.pi / self.length_nm
 
     @property
     def common(self) -> float:
-        """Share of the chance in the bands that is in the mean square, too: 1 over the variance
-        that a window adds.
+        """Share of the bands' chance in the mean square: 1 over the variance that a window adds.
 
         Of a window w it is <w^2>^2 / <w^4>: 18/35 for Hann's, once a side, and `COVER` for the
         tapers of a line."""
@@ -82,15 +81,15 @@ class Seen:
 
     def share(self, q: np.ndarray, first: float | None = None) -> np.ndarray:
         """Part of the isotropic waves at q (m,) in 1/nm, all at least the first."""
-        return (
-            2 / np.pi * np.arccos(np.minimum((first or self.first) / q, 1.0))
-            if self.line
-            else np.ones_like(q)
-        )
+        if not self.line:
+            return np.ones_like(q)
+        nearest = np.minimum((first or self.first) / q, 1.0)
+        return 2 / np.pi * np.arccos(nearest)
 
     def share_in_bands(self, q: np.ndarray) -> np.ndarray:
         """Part of the isotropic waves at q (m,) in 1/nm that is in the bands."""
-        return self.share(q, self.low) - (self.share(q, self.high) if self.line else 0.0)
+        beyond_bands = self.share(q, self.high) if self.line else 0.0
+        return self.share(q, self.low) - beyond_bands
 
     def scatter(self, q: np.ndarray, logs: np.ndarray, low: float, high: float) -> np.ndarray:
         """Relative scatter of the mean square of waves from low to high (1/nm), from their number.
@@ -100,25 +99,29 @@ class Seen:
         logs : (..., m) ln C on q.
         """
         points = np.geomspace(min(low, high), high, 24)
-        # of a power law C1 is C q times a number; an integral over ln q
-        density = np.exp(at_points(points, q, logs)) * points ** (1 if self.line else 0)
-        area = points * (2.0 if self.line else 2 * np.pi * points) * np.log(points[1] / points[0])
-        wave = (2 * np.pi / self.length_nm) ** (1 if self.line else 2)
+        density = np.exp(at_points(points, q, logs))
+        area = points * (2 * np.pi * points)
+        wave = (2 * np.pi / self.length_nm) ** 2
+        if self.line:
+            # of a power law C1 is C q times a number; an integral over ln q
+            density = density * points
+            area = points * 2.0
+            wave = 2 * np.pi / self.length_nm
+        area = area * np.log(points[1] / points[0])
         return np.sqrt(2 * wave * (density**2 @ area)) / (density @ area)
 
 
 def at_points(points: np.ndarray, q: np.ndarray, values: np.ndarray) -> np.ndarray:
     """(..., n) values (..., m) at q, read at points (n,) by straight lines over ln q."""
-    place = np.interp(np.log(points), np.log(q), np.arange(len(q)))
+    bands = np.arange(len(q))
+    place = np.interp(np.log(points), np.log(q), bands)
     left = np.clip(place.astype(int), 0, len(q) - 2)
     share = place - left
     return values[..., left] * (1 - share) + values[..., left + 1] * share
 
 
 def seen_by(item: TrustedSpectrum) -> Seen | None:
-    """Which waves the levelled heights of a measurement have; None where its size or its bands are
-    not known.
-    """
+    """Waves in the levelled heights of a measurement; None without size or bands."""
     line = item.line is not None
     length_nm = 2 * np.pi / item.spectrum.spacing if line else item.side_nm
     numbers, level, _ = on_bands(item)
@@ -126,12 +129,9 @@ def seen_by(item: TrustedSpectrum) -> Seen | None:
         return None
     width = np.log(10) / BANDS_PER_DECADE
     q = 10 ** ((numbers + 0.5) / BANDS_PER_DECADE)
-    seen = Seen(
-        length_nm,
-        item.parabola,
-        line,
-        float(q[0] * np.exp(-width / 2)),
-        float(q[-1] * np.exp(width / 2)),
-    )
-    square = float(np.sum(2 * np.pi * q**2 * np.exp(level) * seen.share_in_bands(q)) * width)
+    low = float(q[0] * np.exp(-width / 2))
+    high = float(q[-1] * np.exp(width / 2))
+    seen = Seen(length_nm, item.parabola, line, low, high)
+    density = 2 * np.pi * q**2 * np.exp(level)
+    square = float(np.sum(density * seen.share_in_bands(q)) * width)
     return replace(seen, in_bands_nm2=square)

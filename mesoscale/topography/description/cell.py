@@ -1,5 +1,4 @@
-"""The side of the cells that the contact is computed on: what measurements see of it, and what the
-device has room for.
+"""The side of the cells for the contact, from what was measured and what the device has room for.
 
 A cell holds the shortest waves that were measured several times, and as much of the film's RMS
 height as its grid and the electrode allow: cells without the long waves release too early (`python
@@ -29,8 +28,7 @@ HELD = 0.9
 
 
 def suited_cell(spectra: Sequence[TrustedSpectrum], electrode_nm: float = math.inf) -> float:
-    """Side (nm) of cells: eight of the shortest measured waves, at least the usual, at most the
-    electrode's.
+    """Side (nm) of cells: eight of the shortest measured waves, within the usual and the electrode.
 
     Parameters
     ----------
@@ -53,8 +51,7 @@ def suited_cell(spectra: Sequence[TrustedSpectrum], electrode_nm: float = math.i
 def grown_cell(
     side_nm: float, held: Callable[[float], float], shortest_nm: float, pixels: int, room_nm: float
 ) -> float:
-    """The side (nm), doubled until a cell holds `HELD` of the RMS height, as far as grid and
-    electrode go along.
+    """The side (nm), doubled until a cell holds `HELD` of the RMS height, if grid and room allow.
 
     Parameters
     ----------
@@ -72,44 +69,46 @@ def grown_cell(
 
 
 def cell_waves(cell_nm: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Wave vectors (1/nm) of a periodic cell, the area (1/nm^2) that each stands for, and where an
-    integral takes over.
+    """Waves (1/nm) of a periodic cell, area (1/nm^2) of each, and where an integral takes over.
 
     The mean plane counts as one more wave of the longest: the spectrum of the film is flat there.
     """
-    step, summed = (
-        2.0 * np.pi / cell_nm,
-        16,
-    )  # beyond, sum and integral differ by less than a per cent
+    # beyond, sum and integral differ by less than a per cent
+    step = 2.0 * np.pi / cell_nm
+    summed = 16
     numbers = np.arange(-summed, summed + 1)
     squared, count = np.unique(numbers[:, None] ** 2 + numbers**2, return_counts=True)
     inside = squared <= summed**2
-    return step * np.sqrt(np.maximum(squared[inside], 1)), step**2 * count[inside], summed * step
+    wave_vectors = step * np.sqrt(np.maximum(squared[inside], 1))
+    areas = step**2 * count[inside]
+    return wave_vectors, areas, summed * step
 
 
-def mean_square_of_cells(one: OneSpectrum, psd: np.ndarray, cell_nm: float) -> np.ndarray:
-    """Mean square height (nm^2) of cells by spectra (..., m) on the bands of `one`."""
+def mean_square_of_cells(merged: OneSpectrum, psd: np.ndarray, cell_nm: float) -> np.ndarray:
+    """Mean square height (nm^2) of cells by spectra (..., m) on the bands of `merged`."""
     waves, areas, end = cell_waves(cell_nm)
-    logs, known = np.log(psd).reshape(-1, len(one.q)), waves <= one.q[-1]
-    summed = [
-        np.exp(np.interp(np.log(waves[known]), np.log(one.q), row)) @ areas[known] for row in logs
-    ]
-    return np.reshape(summed, psd.shape[:-1]) + one.moment(0, low=end, psd=psd) + one.tail(psd)
+    logs = np.log(psd).reshape(-1, len(merged.q))
+    known = waves <= merged.q[-1]
+    log_q = np.log(merged.q)
+    log_waves = np.log(waves[known])
+    summed = [np.exp(np.interp(log_waves, log_q, row)) @ areas[known] for row in logs]
+    long_waves = np.reshape(summed, psd.shape[:-1])
+    return long_waves + merged.moment(0, low=end, psd=psd) + merged.tail(psd)
 
 
 def share_on_cells(
-    topography: Topography, one: OneSpectrum | None, cell_nm: float
+    topography: Topography, merged: OneSpectrum | None, cell_nm: float
 ) -> tuple[float, float]:
-    """Share that cells have of the mean square height (nm^2) of all measured waves, and that mean
-    square.
+    """Share of the mean square height (nm^2) of all measured waves on cells, and that mean square.
 
     Parameters
     ----------
-    one : the measured spectrum, where it is used; None: eq. 9, flat beyond the longest wave of a
+    merged : the measured spectrum, where it is used; None: eq. 9, flat beyond the longest wave of a
         cell."""
-    if one is not None:
-        whole = float(one.moment(0, low=one.seen, psd=one.psd) + one.tail(one.psd))
-        return float(mean_square_of_cells(one, one.psd, cell_nm)) / whole, whole
+    if merged is not None:
+        measured = merged.moment(0, low=merged.seen, psd=merged.psd)
+        total = float(measured + merged.tail(merged.psd))
+        return float(mean_square_of_cells(merged, merged.psd, cell_nm)) / total, total
     fitted = topography.likelihood
     if fitted is None:
         return 1.0, 0.0
@@ -117,19 +116,17 @@ def share_on_cells(
     if fitted.q0 >= 2.0 * np.pi / cell_nm:
         return 1.0, all_of_it
     waves, areas, end = cell_waves(cell_nm)
-    whole, summed = (
-        mean_square(1.0, fitted.q0, fitted.slope, high) for high in (topography.cutoff, end)
-    )
-    areas = np.where(
-        waves <= topography.cutoff, areas, 0.0
-    )  # a coarse film ends before the sum does
-    share = ((waves / fitted.q0) ** -fitted.slope @ areas + max(whole - summed, 0.0)) / whole
+    total = mean_square(1.0, fitted.q0, fitted.slope, topography.cutoff)
+    summed = mean_square(1.0, fitted.q0, fitted.slope, end)
+    # a coarse film ends before the sum does
+    areas = np.where(waves <= topography.cutoff, areas, 0.0)
+    long_waves = (waves / fitted.q0) ** -fitted.slope @ areas
+    share = (long_waves + max(total - summed, 0.0)) / total
     return float(share), all_of_it
 
 
 def refuse_coarse_measurements(spectra: Sequence[TrustedSpectrum], cell_nm: float) -> None:
-    """Refuse measurements that see next to no wave of a cell, before surfaces are made of what
-    nobody saw.
+    """Refuse measurements that see next to no wave of a cell, before surfaces are made of guesses.
 
     Raises
     ------
@@ -157,13 +154,14 @@ def finer_waves_doubt(
     finest, seen = _shortest_wave(spectra)
     if cell_nm >= 16.0 * seen:  # the contact is mostly one of measured waves
         return []
-    step, end = 2.0 * np.pi / cell_nm, 2.0 * np.pi / seen
+    step = 2.0 * np.pi / cell_nm
+    end = 2.0 * np.pi / seen
     effects = []
     for last in (end, 10.0 * end):
         q = np.geomspace(step, last, 400)
-        rms, slope = (
-            float(np.sqrt(np.trapezoid(2 * np.pi * q**power * psd(q), q))) for power in (1, 3)
-        )
+        spectrum = psd(q)
+        rms = float(np.sqrt(np.trapezoid(2 * np.pi * q * spectrum, q)))
+        slope = float(np.sqrt(np.trapezoid(2 * np.pi * q**3 * spectrum, q)))
         surfaces = (synthesize_spectrum(256, cell_nm, psd, rms, seed, last) for seed in range(8))
         effects.append((slope, float(np.mean([heights.max() for heights in surfaces]))))
     (cut_slope, cut_nm), (slope, contact_nm) = effects
@@ -183,8 +181,7 @@ def finer_waves_doubt(
 def rms_in_cells(
     heights: np.ndarray, lengths_nm: Sequence[float], cell_nm: float
 ) -> tuple[float, float] | None:
-    """RMS height (nm) of levelled heights, a map or a line, within cells of a side, without and
-    with their noise.
+    """RMS height (nm) of a levelled map or line within cells of a side, without and with noise.
 
     Noise is at most what neighbouring points differ by. None where a cell has next to no points. A
     measurement smaller than the cell is taken as a whole."""
@@ -195,14 +192,10 @@ def rms_in_cells(
         return None
     for axis, side in enumerate(sides):
         count = max(heights.shape[axis] // side, 1)
-        heights = np.stack(
-            np.split(
-                np.take(heights, range(min(count * side, heights.shape[axis])), axis), count, axis
-            )
-        )
-        heights = np.moveaxis(
-            heights, 0, -1
-        )  # cells behind, so that the axes of a cell keep their places
+        points = min(count * side, heights.shape[axis])
+        cells = np.split(np.take(heights, range(points), axis), count, axis)
+        # cells behind, so that the axes of a cell keep their places
+        heights = np.moveaxis(np.stack(cells), 0, -1)
     inside = tuple(range(len(sides)))
     square = float(np.mean(np.var(heights, axis=inside)))
     noise = 0.5 * float(np.mean(np.diff(heights, axis=0) ** 2))
@@ -212,18 +205,18 @@ def rms_in_cells(
 def unlike_measured(
     rms_nm: float, measured: Mapping[str, tuple[np.ndarray, Sequence[float]]], cell_nm: float
 ) -> list[Doubt]:
-    """A doubt that stops, where cells get less than half or more than twice the RMS height that
-    measurements have.
+    """A doubt that stops, where the RMS height of cells is off the measured one by more than twice.
 
     Parameters
     ----------
     measured : levelled heights and lengths (nm) of the measurements, by name.
     """
-    in_cells = {name: rms_in_cells(*part, cell_nm) for name, part in measured.items()}
-    known = {name: ends for name, ends in in_cells.items() if ends}
+    in_cells = {name: rms_in_cells(*map_nm, cell_nm) for name, map_nm in measured.items()}
+    known = [rms_range for rms_range in in_cells.values() if rms_range]
     if not known:
         return []
-    low, high = min(ends[0] for ends in known.values()), max(ends[1] for ends in known.values())
+    low = min(without_noise for without_noise, _ in known)
+    high = max(with_noise for _, with_noise in known)
     if 0.5 * low <= rms_nm <= 2.0 * high:
         return []
     text = (

@@ -90,60 +90,55 @@ class Choice:
 
 def choose(
     topography: Topography,
-    one: OneSpectrum | None,
+    merged: OneSpectrum | None,
     tests: Sequence[HeightTest],
     settings: TopographySettings,
 ) -> Choice:
     """The first description that the measurements do not contradict, or the scene's."""
-    power_law, strange = not topography.doubts, not_gaussian(tests)
-    heights = (
-        f"as Gaussian surfaces of the same spectrum ({len(tests)} scans)"
-        if tests
-        else "no map of heights: not tested"
-    )
-    bands = (
-        f"{int((one.count > 0).sum())} bands of {one.first:.2g} to {one.q[-1]:.2g} /nm"
-        if one
-        else "no"
-    )
+    power_law = not topography.doubts
+    strange = not_gaussian(tests)
+    heights = "no map of heights: not tested"
+    if tests:
+        heights = f"as Gaussian surfaces of the same spectrum ({len(tests)} scans)"
+    bands = "no"
+    if merged is not None:
+        measured = int((merged.count > 0).sum())
+        bands = f"{measured} bands of {merged.first:.2g} to {merged.q[-1]:.2g} /nm"
+    shape = "; ".join(topography.reasons) or _fitted(topography)
     asked = (
-        (
-            "spectrum has the shape of eq. 9",
-            "; ".join(topography.reasons) or _fitted(topography),
-            power_law,
-        ),
+        ("spectrum has the shape of eq. 9", shape, power_law),
         ("heights and highest point are a Gaussian surface's", strange or heights, not strange),
-        ("spectrum is measured band by band", bands, one is not None),
+        ("spectrum is measured band by band", bands, merged is not None),
     )
     evidence = tuple(
         {"test": test, "outcome": outcome, "passed": passed} for test, outcome, passed in asked
     )
     if settings.description != "auto":
         return Choice(settings.description, evidence, overridden=True)
-    if strange and one is not None:
+    if strange and merged is not None:
         return Choice("measured_heights", evidence, overridden=False)
-    return Choice(
-        "power_law" if power_law or one is None else "measured_spectrum", evidence, overridden=False
-    )
+    if power_law or merged is None:
+        return Choice("power_law", evidence, overridden=False)
+    return Choice("measured_spectrum", evidence, overridden=False)
 
 
 def _fitted(topography: Topography) -> str:
     fitted = topography.likelihood
     if fitted is None:
         return ""
-    apart = (
-        f"; each measurement at a level of its own, a factor of {np.exp(fitted.amplitude_sd):.2g}"
-        " apart in C"
-    )
-    return f"misses the bands by {np.expm1(fitted.misfit):.0%} (RMS)" + (
-        apart if fitted.amplitude_sd > 0 else ""
+    misses = f"misses the bands by {np.expm1(fitted.misfit):.0%} (RMS)"
+    if fitted.amplitude_sd <= 0:
+        return misses
+    return (
+        f"{misses}; each measurement at a level of its own, a factor of"
+        f" {np.exp(fitted.amplitude_sd):.2g} apart in C"
     )
 
 
 def description_doubts(
     topography: Topography,
     name: str,
-    one: OneSpectrum | None,
+    merged: OneSpectrum | None,
     attributes: Mapping[str, Mapping[str, Any]],
     tests: Sequence[HeightTest],
     cell_nm: float,
@@ -153,14 +148,15 @@ def description_doubts(
     Parameters
     ----------
     name : of the description.
-    one : the measured spectrum, used or not.
+    merged : the measured spectrum, used or not.
     attributes : of the records, by name.
     """
-    share, whole = share_on_cells(topography, None if name == "power_law" else one, cell_nm)
+    used = None if name == "power_law" else merged
+    share, square_nm2 = share_on_cells(topography, used, cell_nm)
     if share < HELD**2:
         text = (
             f"a cell of {cell_nm:g} nm has {np.sqrt(share):.0%} of the RMS height; the rest, "
-            f"{np.sqrt(whole * (1 - share)):.3g} nm, is in longer waves, which no stage has"
+            f"{np.sqrt(square_nm2 * (1 - share)):.3g} nm, is in longer waves, which no stage has"
         )
         remedy = (
             "a larger contact.length_nm with as many more contact.pixels holds more of them; on a"
@@ -183,26 +179,27 @@ def description_doubts(
                 " noise of lines"
             )
             yield Doubt("anisotropic", text, remedy, "contact")
-    if one is not None:
-        gap = one.q[(one.count == 0) & (np.cumsum(one.count) > 0)]
+    if merged is not None:
+        gap = merged.q[(merged.count == 0) & (np.cumsum(merged.count) > 0)]
         if len(gap):
             text = (
                 f"nothing is measured from {gap[0]:.2g} to {gap[-1]:.2g} /nm; the spectrum is"
                 " bridged there"
             )
             yield Doubt("gap", text, "add scans of the sizes between", "spectrum")
-        if len(one.names) == 1:
+        if len(merged.names) == 1:
             text = (
                 "one measurement: how much places differ is unknown, the ranges hold its own error"
                 " only"
             )
             yield Doubt("one_place", text, "measure other places of the surface", "rms")
-    first = topography.doubts[0] if topography.doubts else None
+    first = next(iter(topography.doubts), None)
     if name != "power_law" and first is not None and not first.fatal:
         text = f"{first.text}; used instead: {DESCRIPTIONS[name]}"
-        remedy = first.remedy if first.code in ("no_plateau", "short_range") else "nothing to do"
+        remedy = first.remedy
         if first.code not in ("no_plateau", "short_range"):
             text = f"eq. 9 does not describe this surface: {text}"
+            remedy = "nothing to do"
         yield Doubt("no_power_law", text, remedy, "q0")
 
 

@@ -1,6 +1,4 @@
-"""What is doubtful about the measurements of a surface, each with a code for programs and a remedy
-for people.
-"""
+"""What is doubtful about measurements, each with a code for programs and a remedy for people."""
 
 from dataclasses import dataclass
 

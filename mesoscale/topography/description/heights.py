@@ -1,6 +1,4 @@
-"""How the heights of scans are distributed, and whether a Gaussian surface of their spectrum has
-such heights.
-"""
+"""Distribution of the heights of scans, compared with Gaussian surfaces of their spectrum."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -50,11 +48,11 @@ def compare_heights(name: str, heights: np.ndarray, lengths_nm: tuple[float, flo
     side = n * pixel_nm
     spectrum = radial_spectrum(square, (side, side), 9, 0.75, flat=0.0)
     psd = SpectrumTable(spectrum.q, spectrum.psd).psd
-    gaussian = np.array(
-        [moments(synthesize_spectrum(n, side, psd, 1.0, seed)) for seed in range(39)]
-    )
+    surfaces = (synthesize_spectrum(n, side, psd, 1.0, seed) for seed in range(39))
+    gaussian = np.array([moments(surface) for surface in surfaces])
     skewness, kurtosis, highest = moments(square)
-    expected, spread = gaussian.mean(axis=0), gaussian.std(axis=0, ddof=1)
+    expected = gaussian.mean(axis=0)
+    spread = gaussian.std(axis=0, ddof=1)
     return HeightTest(name, skewness, kurtosis, highest, expected, spread, slope_ratio(square))
 
 
@@ -68,19 +66,21 @@ def square_pixels(heights: np.ndarray, lengths_nm: tuple[float, float]) -> tuple
             place = np.arange(0.0, count - 1, step / fine)
             left = place.astype(int)
             share = np.expand_dims(place - left, 1 - axis)
-            heights = (1 - share) * np.take(heights, left, axis) + share * np.take(
-                heights, left + 1, axis
-            )
+            before = (1 - share) * np.take(heights, left, axis)
+            heights = before + share * np.take(heights, left + 1, axis)
     return heights, step
 
 
 def slope_ratio(heights: np.ndarray) -> float:
-    """RMS slope of heights (n, n) along the steepest direction over that across it, from the tensor
-    of slopes.
-    """
-    x, y = (part.ravel() for part in np.gradient(heights))
-    low, high = np.linalg.eigvalsh(np.array([[x @ x, x @ y], [x @ y, y @ y]]))
-    return float(np.sqrt(high / max(low, 1e-12 * high))) if high > 0 else 1.0
+    """RMS slope of heights (n, n) along the steepest direction over that across it."""
+    slope_x, slope_y = np.gradient(heights)
+    x = slope_x.ravel()
+    y = slope_y.ravel()
+    tensor = np.array([[x @ x, x @ y], [x @ y, y @ y]])
+    low, high = np.linalg.eigvalsh(tensor)
+    if high <= 0:
+        return 1.0
+    return float(np.sqrt(high / max(low, 1e-12 * high)))
 
 
 def moments(heights: np.ndarray) -> tuple[float, float, float]:
@@ -88,7 +88,9 @@ def moments(heights: np.ndarray) -> tuple[float, float, float]:
     z = heights - heights.mean()
     z /= np.sqrt(np.mean(z**2))
     square = z * z  # the power function takes ten times as long
-    return float(np.mean(square * z)), float(np.mean(square * square)), float(z.max())
+    skewness = float(np.mean(square * z))
+    kurtosis = float(np.mean(square * square))
+    return skewness, kurtosis, float(z.max())
 
 
 def not_gaussian(tests: Sequence[HeightTest]) -> str:
@@ -98,33 +100,31 @@ def not_gaussian(tests: Sequence[HeightTest]) -> str:
     to change a contact."""
     if not tests:
         return ""
-    together = np.sum([test.away for test in tests], axis=0) / np.sqrt(len(tests))
-    skewness, kurtosis, highest = (
-        np.mean([getattr(test, key) for test in tests])
-        for key in ("skewness", "kurtosis", "highest")
-    )
+    total_away = np.sum([test.away for test in tests], axis=0)
+    together = total_away / np.sqrt(len(tests))
+    skewness = np.mean([test.skewness for test in tests])
+    kurtosis = np.mean([test.kurtosis for test in tests])
+    highest = np.mean([test.highest for test in tests])
     expected = np.mean([test.expected for test in tests], axis=0)
-    far = (  # less hardly changes a contact
-        abs(skewness - expected[0]) > 0.3,
-        abs(kurtosis - expected[1]) > 0.15 * expected[1],
-        abs(highest / expected[2] - 1) > 0.15,
-    )
+    # less hardly changes a contact
+    skewed = abs(skewness - expected[0]) > 0.3
+    peaked = abs(kurtosis - expected[1]) > 0.15 * expected[1]
+    high = abs(highest / expected[2] - 1) > 0.15
     words = (
         f"skewness {skewness:.2f} where Gaussian surfaces have {expected[0]:.2f}",
         f"kurtosis {kurtosis:.2f} where they have {expected[1]:.2f}",
         f"highest point {highest:.2f} RMS where they reach {expected[2]:.2f}",
     )
+    rows = zip(words, together, (skewed, peaked, high), strict=True)
     return "; ".join(
         f"{word} ({away:+.1f} standard deviations)"
-        for word, away, enough in zip(words, together, far, strict=True)
-        if enough and abs(away) > 2.0
+        for word, away, far in rows
+        if far and abs(away) > 2.0
     )
 
 
 def height_quantiles(heights: np.ndarray) -> np.ndarray:
-    """Heights of a scan in units of its RMS at each normal variable of `Z`, with the tails carried
-    on straight.
-    """
+    """Heights of a scan over its RMS at each normal variable of `Z`; tails carried on straight."""
     from scipy.special import ndtr, ndtri
 
     values = np.sort(heights, axis=None)
@@ -134,18 +134,18 @@ def height_quantiles(heights: np.ndarray) -> np.ndarray:
     table = np.interp(ndtr(Z), place, values)
     for side in (1, -1):
         end = float(ndtri(1 - 0.5 / count))
-        outside, near = side * Z > end, (side * Z <= end) & (side * Z >= end - 1.0)
+        outside = side * Z > end
+        near = (side * Z <= end) & (side * Z >= end - 1.0)
         slope = max(np.polyfit(Z[near], table[near], 1)[0], 0.0)
-        edge = Z[near][-1] if side > 0 else Z[near][0]
-        start = table[near][-1] if side > 0 else table[near][0]
+        nearest = -1 if side > 0 else 0
+        edge = Z[near][nearest]
+        start = table[near][nearest]
         table[outside] = start + slope * (Z[outside] - edge)
     return np.maximum.accumulate(table)
 
 
 def common_heights(quantiles: Sequence[np.ndarray]) -> tuple[float, ...]:
-    """The height map of a surface from those of its scans (each (len(Z),)), of mean 0 and variance
-    1.
-    """
+    """The height map of a surface from those of its scans, (len(Z),) each; mean 0, variance 1."""
     table = np.mean(quantiles, axis=0)
     density = np.exp(-(Z**2) / 2)
     density /= density.sum()

@@ -1,13 +1,11 @@
-"""What a description hands on: distributions of q0, hurst, rms, q1 and of the scatter between
-places, and the surface.
+"""What a description hands on: the surface, and distributions of q0, hurst, rms, q1, rms_scatter.
 
 Topography takes each measurement's spectrum as the film's times a factor, C_k = C exp(a_k), so all
 waves of a place grow together: RMS heights differ, q0 and slope are the film's. The factors'
 standard deviation is estimated with the statistical errors of single measurements taken off. It
 holds what differs between instruments, too.
 
-`one` is the measured spectrum everywhere, where the description uses it, and None where it uses eq.
-9."""
+`merged` is the measured spectrum, where the description uses it, and None where it uses eq. 9."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -29,34 +27,34 @@ Row = dict[str, Any]
 
 def surface_of(
     topography: Topography,
-    one: OneSpectrum | None,
+    merged: OneSpectrum | None,
     quantiles: Sequence[np.ndarray],
     settings: TopographySettings,
     cell_nm: float,
 ) -> dict[str, Any]:
-    """What random surfaces are made from besides q0, hurst and rms: entries of `contact.surface`;
-    none for eq. 9.
+    """Entries of `contact.surface` besides q0, hurst and rms; none for eq. 9.
 
     Parameters
     ----------
     quantiles : of each scan where measured heights are used; else none.
     """
-    if one is None:
+    if merged is None:
         return {}
-    q, psd = one.carried_on(one.psd)
+    q, psd = merged.carried_on(merged.psd)
     low = 2 * np.pi / cell_nm
     if low > q[0]:  # longer waves do not fit on the cell
-        first = float(np.exp(np.interp(np.log(low), np.log(q), np.log(psd))))
-        q, psd = np.concatenate([[low], q[q > low]]), np.concatenate([[first], psd[q > low]])
-    pivot_q0, pivot_hurst = _nearest(topography, one, settings)
-    return {
-        "spectrum": {"q": q.tolist(), "psd": psd.tolist(), "q0": pivot_q0, "hurst": pivot_hurst},
-        "heights": list(common_heights(quantiles)) if len(quantiles) else [],
-    }
+        log_first = np.interp(np.log(low), np.log(q), np.log(psd))
+        fits = q > low
+        psd = np.concatenate([[float(np.exp(log_first))], psd[fits]])
+        q = np.concatenate([[low], q[fits]])
+    pivot_q0, pivot_hurst = _nearest(topography, merged, settings)
+    spectrum = {"q": q.tolist(), "psd": psd.tolist(), "q0": pivot_q0, "hurst": pivot_hurst}
+    heights = list(common_heights(quantiles)) if len(quantiles) else []
+    return {"spectrum": spectrum, "heights": heights}
 
 
 def rows_of(
-    topography: Topography, one: OneSpectrum | None, settings: TopographySettings, cell_nm: float
+    topography: Topography, merged: OneSpectrum | None, settings: TopographySettings, cell_nm: float
 ) -> dict[str, Row]:
     """Distributions of q0, hurst and rms over the ranges that the settings ask for.
 
@@ -66,40 +64,38 @@ def rows_of(
     The RMS height is that of the waves of a cell of side `cell_nm`, and of a film whose spectrum is
     flat beyond, as the pad makes it (`pad.cells`). With a measured spectrum q0 and hurst are
     coordinates that bend the spectrum about the eq. 9 nearest to it, as far as its band allows."""
-    if one is None:
+    if merged is None:
         estimates = topography.estimates
-        ranges = {
-            name: getattr(estimates[name], settings.ranges)
-            for name in ("q0", "hurst", "rms")
-            if name in estimates
-        }
+        names = [name for name in ("q0", "hurst", "rms") if name in estimates]
+        ranges = {name: getattr(estimates[name], settings.ranges) for name in names}
         if "rms" in ranges:
-            ranges["rms"] = np.multiply(
-                ranges["rms"], np.sqrt(share_on_cells(topography, None, cell_nm)[0])
-            )
+            share, _ = share_on_cells(topography, None, cell_nm)
+            ranges["rms"] = np.multiply(ranges["rms"], np.sqrt(share))
     else:
-        drawn = one.draws(places=settings.ranges == "scatter")
-        pivot_q0, pivot_hurst = _nearest(topography, one, settings)
-        bend_q0, bend_hurst = _bends(one, pivot_q0, drawn)
+        drawn = merged.draws(places=settings.ranges == "scatter")
+        pivot_q0, pivot_hurst = _nearest(topography, merged, settings)
+        bend_q0, bend_hurst = _bends(merged, pivot_q0, drawn)
+        rms_of_cells = np.sqrt(mean_square_of_cells(merged, drawn, cell_nm))
+        # a coordinate, the spectrum itself is the measured one
+        hurst_range = [pivot_hurst - bend_hurst, pivot_hurst + bend_hurst]
         ranges = {
             "q0": (pivot_q0 * np.exp(-bend_q0), pivot_q0 * np.exp(bend_q0)),
-            # a coordinate, the spectrum itself is the measured one
-            "hurst": np.clip([pivot_hurst - bend_hurst, pivot_hurst + bend_hurst], 0.05, 1.95),
-            "rms": np.quantile(np.sqrt(mean_square_of_cells(one, drawn, cell_nm)), QUANTILES),
+            "hurst": np.clip(hurst_range, 0.05, 1.95),
+            "rms": np.quantile(rms_of_cells, QUANTILES),
         }
-    by_logarithm = () if one is None else ("q0", "rms")
-    return {
-        name: _over(ends[0], ends[1], "log_uniform" if name in by_logarithm else "uniform")
-        for name, ends in ranges.items()
-    }
+    kinds = {name: "uniform" for name in ranges}
+    if merged is not None:
+        kinds |= {"q0": "log_uniform", "rms": "log_uniform"}
+    return {name: _over(low, high, kinds[name]) for name, (low, high) in ranges.items()}
 
 
 def middle(row: Mapping[str, Any]) -> float:
     """The median of a row."""
-    low, high = row["a"], row.get("b", row["a"])
-    return float(
-        np.sqrt(low * high) if row["distribution"] == "log_uniform" else 0.5 * (low + high)
-    )
+    low = row["a"]
+    high = row.get("b", row["a"])
+    if row["distribution"] == "log_uniform":
+        return float(np.sqrt(low * high))
+    return float(0.5 * (low + high))
 
 
 def _over(low: float, high: float, kind: str = "uniform") -> Row:
@@ -107,59 +103,61 @@ def _over(low: float, high: float, kind: str = "uniform") -> Row:
 
 
 def _nearest(
-    topography: Topography, one: OneSpectrum, settings: TopographySettings
+    topography: Topography, merged: OneSpectrum, settings: TopographySettings
 ) -> tuple[float, float]:
     """q0 and Hurst exponent about which the spectrum is bent."""
     fitted = topography.likelihood
     if fitted is None:
-        return float(np.sqrt(one.q[0] * one.q[-1])), 0.8
+        return float(np.sqrt(merged.q[0] * merged.q[-1])), 0.8
     hurst = float(np.clip(hurst_from_slope(fitted.slope, settings.convention), 0.2, 1.8))
-    return float(np.clip(fitted.q0, one.q[0], one.q[-1])), hurst
+    return float(np.clip(fitted.q0, merged.q[0], merged.q[-1])), hurst
 
 
-def _bends(one: OneSpectrum, q0: float, drawn: np.ndarray) -> tuple[float, float]:
+def _bends(merged: OneSpectrum, q0: float, drawn: np.ndarray) -> tuple[float, float]:
     """How far ln q0 and the Hurst exponent may be from the pivot, at the intervals' level."""
-    logs, log_q = np.log(drawn), np.log(one.q)
-    long, short = one.q <= q0, one.q >= q0
-    slopes = (
-        np.polyfit(log_q[short], logs[:, short].T, 1)[0]
-        if short.sum() > 2
-        else np.array([-3.0, -3.4])
-    )
+    logs = np.log(drawn)
+    log_q = np.log(merged.q)
+    long = merged.q <= q0
+    short = merged.q >= q0
+    slopes = np.array([-3.0, -3.4])
+    if short.sum() > 2:
+        slopes = np.polyfit(log_q[short], logs[:, short].T, 1)[0]
     bend_hurst = max(REACH * float(np.std(slopes)) / 2, 0.02)
     bend_q0 = 0.1
     if long.sum() > 1 and short.sum() > 2:
         step = logs[:, short].mean(axis=1) - logs[:, long].mean(axis=1)
-        bend_q0 = REACH * float(np.std(step)) / max(abs(float(np.mean(slopes))), 1.0)
+        bend_q0 = REACH * float(np.std(step))
+        bend_q0 /= max(abs(float(np.mean(slopes))), 1.0)
     return float(np.clip(bend_q0, 0.02, 0.7)), bend_hurst
 
 
 def trusted_end(spectra: Sequence[TrustedSpectrum]) -> dict[str, Any]:
-    """Where the measured spectrum ends: the largest trusted wave vector, what ends it, and how sure
-    that is.
+    """End of the measured spectrum: the largest trusted wave vector, its cause and its interval.
 
     The interval holds the ends of the other measurements of that kind, and for a tip what an error
     of its radius makes of the wave vector at which the roughness is as curved as the tip."""
     finest = max(spectra, key=lambda item: item.high)
-    ends = [item.high for item in spectra if item.high > 0.5 * finest.high]
+    high_ends = [item.high for item in spectra if item.high > 0.5 * finest.high]
     shift = 1.0
     if finest.limit == "tip":
         q, psd = finest.spectrum.q, finest.spectrum.psd
         near = (q > 0.6 * finest.high) & (q < 1.2 * finest.high)
-        slope = np.polyfit(np.log(q[near]), np.log(psd[near]), 1)[0] if near.sum() > 3 else -3.0
+        slope = -3.0
+        if near.sum() > 3:
+            slope = np.polyfit(np.log(q[near]), np.log(psd[near]), 1)[0]
         shift = (1 + LIFT.radius_error) ** (1 / max(3 + slope / 2, 0.5))  # R q^3 sqrt(C) is held
+    interval = [min(high_ends) / shift, finest.high * shift]
     return {
         "value": finest.high,
         "unit": "1/nm",
-        "interval": [min(ends) / shift, finest.high * shift],
+        "interval": interval,
         "limit": finest.limit,
         "measurement": finest.name,
     }
 
 
 def cutoff_row(topography: Topography, spectra: Sequence[TrustedSpectrum]) -> Row:
-    """Distribution of the short-wave cut-off q1: where the power law is seen to end, else where the
-    instrument does.
+    """Distribution of the cut-off q1: the seen end of the power law, else that of the instrument.
 
     In the second case the surface goes on beyond: such a q1 says which roughness is known, and not
     where it ends."""
@@ -192,26 +190,29 @@ def rms_before(
         fitted = topography.likelihood
         if fitted is None:
             return dict(rms)
-        before, all_of_it = (
-            mean_square(1.0, fitted.q0, fitted.slope, end) for end in (cut, topography.cutoff)
-        )
-        share = min(before / all_of_it, 1.0)
-    return {**rms, **{key: float(rms[key] * np.sqrt(share)) for key in ("a", "b") if key in rms}}
+        before = mean_square(1.0, fitted.q0, fitted.slope, cut)
+        all_waves = mean_square(1.0, fitted.q0, fitted.slope, topography.cutoff)
+        share = min(before / all_waves, 1.0)
+    cut_rms = dict(rms)
+    for key in ("a", "b"):
+        if key in rms:
+            cut_rms[key] = float(rms[key] * np.sqrt(share))
+    return cut_rms
 
 
-def rms_scatter_row(topography: Topography, one: OneSpectrum | None) -> Row:
+def rms_scatter_row(topography: Topography, merged: OneSpectrum | None) -> Row:
     """Distribution of the standard deviation of ln RMS between places.
 
     Uniform over its interval; half of a normal distribution of the same upper end where it is not
     told from 0. Beyond MOST_APART measurements have no common level."""
-    fitted, most = topography.likelihood, MOST_APART / 2
-    if one is not None:
-        between = one.between
-    else:
-        between = (
-            fitted.between if fitted is not None and fitted.misfit <= MAX_MISFIT else PlaceScatter()
-        )
-    low, high = (min(end / 2, most) for end in between.interval())
+    fitted = topography.likelihood
+    largest = MOST_APART / 2
+    between = PlaceScatter()
+    if merged is not None:
+        between = merged.between
+    elif fitted is not None and fitted.misfit <= MAX_MISFIT:
+        between = fitted.between
+    low, high = (min(end / 2, largest) for end in between.interval())
     if high == 0:  # one measurement
         return {"distribution": "fixed", "a": 0.0}
     if low > 0.1 * high:
@@ -219,4 +220,10 @@ def rms_scatter_row(topography: Topography, one: OneSpectrum | None) -> Row:
     deviation = (
         high / 1.9599639845400545
     )  # of the normal distribution, of whose half 95 % lie below `high`
-    return {"distribution": "truncated_normal", "a": 0.0, "b": deviation, "low": 0.0, "high": most}
+    return {
+        "distribution": "truncated_normal",
+        "a": 0.0,
+        "b": deviation,
+        "low": 0.0,
+        "high": largest,
+    }

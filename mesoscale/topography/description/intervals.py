@@ -1,6 +1,4 @@
-"""Estimates with their intervals: the level of all of them in the topography stage, and how far
-they reach.
-"""
+"""Estimates with their intervals, at one level in the whole topography stage."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -26,8 +24,7 @@ SCATTERS = np.geomspace(0.02, 5.0, 40)
 
 @dataclass(frozen=True)
 class PlaceScatter:
-    """How much places differ in ln C: what the measurements say of its standard deviation, and what
-    is usual.
+    """Standard deviation of ln C between places: what the measurements say, and what is usual.
 
     A few places leave their scatter uncertain, and a moment estimate is often 0. So all values
     count, each by its probability, with a half-Cauchy prior (Gelman 2006, doi:10.1214/06-BA117A).
@@ -51,9 +48,7 @@ class PlaceScatter:
 
     @property
     def deviation(self) -> float:
-        """Standard deviation of the normal distribution whose interval is that of one more place; 0
-        for one place.
-        """
+        """Normal standard deviation with one more place's interval; 0 for one place."""
         from scipy.special import ndtr
 
         if self.weights is None:
@@ -83,19 +78,23 @@ class Estimate:
         return {"value": self.value, "interval": list(self.interval), "scatter": list(self.scatter)}
 
     def widened(self, error: float, log: bool) -> "Estimate":
-        """The same with a further error (standard deviation) of the value, or of its logarithm, in
-        quadrature.
-        """
-        centre, ends = (np.log(v) if log else np.asarray(v) for v in (self.value, self.interval))
-        low, high = (
-            centre - np.hypot(centre - ends[0], REACH * error),
-            centre + np.hypot(ends[1] - centre, REACH * error),
-        )
-        interval = (float(np.exp(low)), float(np.exp(high))) if log else (float(low), float(high))
+        """The same with a further standard deviation of the value or of its logarithm."""
+        centre = np.asarray(self.value)
+        edges = np.asarray(self.interval)
+        if log:
+            centre = np.log(self.value)
+            edges = np.log(self.interval)
+        low = centre - np.hypot(centre - edges[0], REACH * error)
+        high = centre + np.hypot(edges[1] - centre, REACH * error)
+        if log:
+            low = np.exp(low)
+            high = np.exp(high)
+        interval = (float(low), float(high))
         return Estimate(self.value, interval, union(interval, self.scatter))
 
 
 def union(interval: Any, values: Any) -> tuple[float, float]:
     """Smallest range that holds the interval and all values."""
-    every = np.concatenate([np.asarray(interval, dtype=float), np.asarray(values, dtype=float)])
-    return float(every.min()), float(every.max())
+    members = [np.asarray(interval, dtype=float), np.asarray(values, dtype=float)]
+    together = np.concatenate(members)
+    return float(together.min()), float(together.max())

@@ -10,6 +10,7 @@ along a line. Its converted spectrum C(q) is smoothed, which rounds the knee."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -75,30 +76,29 @@ class LikelihoodFit:
 
 
 class _Data:
-    """Trusted shells of all scans and bins of all lines, flat arrays with the scan and bin each
-    belongs to.
-    """
+    """Trusted shells of all scans and bins of all lines, flat, with the scan and bin of each."""
 
     def __init__(self, spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = 12):
-        parts = []
+        columns = []
         for number, item in enumerate(spectra):
             s, ok = item.spectrum, item.trusted
             if item.line is not None:
-                s, ok = item.line, np.ones(len(item.line.q), dtype=bool)
+                s = item.line
+                ok = np.ones(len(item.line.q), dtype=bool)
             bins = np.floor(np.log10(s.q[ok]) * per_decade).astype(int)
-            size_class = round(
-                float(np.log(s.spacing)) * 20
-            )  # scans of one size share their discrepancies
-            columns = (s.q[ok], s.psd[ok], s.modes[ok], bins)
-            whole = (
+            # scans of one size share their discrepancies
+            size_class = round(float(np.log(s.spacing)) * 20)
+            constants = (
                 number,
                 size_class,
                 item.tip_radius_nm,
                 0.0 if s.sharp else s.spacing,
                 item.line is not None,
             )
-            parts.append([*columns, *(np.full(int(ok.sum()), value) for value in whole)])
-        joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
+            shells = int(ok.sum())
+            repeated = [np.full(shells, value) for value in constants]
+            columns.append([s.q[ok], s.psd[ok], s.modes[ok], bins, *repeated])
+        joined = [np.concatenate(column) for column in zip(*columns, strict=True)]
         self.q, self.psd, self.modes, bins, scan, size_class, self.tip, spacing, line = joined
         with np.errstate(divide="ignore"):
             self.shell = self.q / spacing  # infinite where nothing is blurred
@@ -109,7 +109,8 @@ class _Data:
         per_bin = np.bincount(self.bin, self.modes)
         # weight of a bin: modes in parallel with the discrepancy, shared out in proportion to the
         # modes
-        centre = np.exp(np.bincount(self.bin, self.modes * np.log(self.q)) / per_bin)
+        log_q_sum = np.bincount(self.bin, self.modes * np.log(self.q))
+        centre = np.exp(log_q_sum / per_bin)
         discrepancy = np.where(centre < knee, PLATEAU_DISCREPANCY, DISCREPANCY)
         self.weight = self.modes / (1 + discrepancy**2 * per_bin)[self.bin]
         self.log_q = np.log(self.q)
@@ -117,22 +118,19 @@ class _Data:
         # a line's C1(k) is the integral of 2 C(q) q over t, with q = k cosh t
         end = 7.7  # arcosh(q/k) = 1100 k
         t, step = np.polynomial.legendre.leggauss(48)
-        t, step = end * (t + 1) / 2, end / 2 * step
+        t = end * (t + 1) / 2
+        step = end / 2 * step
         spacing = np.array([item.spectrum.spacing for item in spectra])
         k = spread(self.q[self.line], spacing[self.scan[self.line]])
         self.line_q = np.concatenate(k[:, :, None] * np.cosh(t), axis=1)
-        self.line_log_q, self.line_weight = (
-            np.log(self.line_q),
-            self.line_q * np.concatenate([step, step]),
-        )
+        self.line_log_q = np.log(self.line_q)
+        self.line_weight = self.line_q * np.concatenate([step, step])
         self.per_scan = np.bincount(self.scan, self.weight, self.scans)
 
     def ratio(
         self, log_q0: float, slope: float, level: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """ln of the model's shape and measured over modelled shape, the tip's bias at amplitude
-        `level`.
-        """
+        """ln of the model's shape (tip's bias at `level`), and measured over modelled."""
         shape = -slope * np.maximum(self.log_q - log_q0, 0.0)
         shape += np.where(self.log_q > log_q0, blur(slope, self.shell), 0.0)
         shape -= tip_bias(curvature(self.tip, self.q, np.exp(level[self.scan] + shape)))
@@ -143,24 +141,22 @@ class _Data:
                 falling -= tip_bias(
                     curvature(self.tip[self.line, None], self.line_q, np.exp(amplitude))
                 )
-            shape[self.line] = np.log(np.sum(self.line_weight * np.exp(falling), axis=1))
+            along_line = np.sum(self.line_weight * np.exp(falling), axis=1)
+            shape[self.line] = np.log(along_line)
         return shape, self.psd * np.exp(-shape)
 
 
 def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[TrustedSpectrum]:
-    """Raise the lower bound of scans that begin beyond the knee, to where the blur is a small
-    correction.
+    """Raise the lower bound of scans that begin beyond the knee, to where the blur is small.
 
     On the plateau the window's blur does nothing; at the first shells of a scan too small to show
     the plateau it is large, and mixes plateau and power law."""
-    return [
-        (
-            replace(item, low=max(item.low, 5.0 * item.spectrum.spacing))
-            if item.low > q0 / 2 and not item.spectrum.sharp
-            else item
-        )
-        for item in spectra
-    ]
+    unblurred = []
+    for item in spectra:
+        begins_late = item.low > q0 / 2 and not item.spectrum.sharp
+        low = max(item.low, 5.0 * item.spectrum.spacing)
+        unblurred.append(replace(item, low=low) if begins_late else item)
+    return unblurred
 
 
 def fit(
@@ -180,10 +176,12 @@ def fit(
     if bins < 6:
         return None
 
-    level = np.array([np.log(np.median(item.spectrum.psd[item.trusted][:5])) for item in spectra])
+    first_shells = [item.spectrum.psd[item.trusted][:5] for item in spectra]
+    level = np.array([np.log(np.median(psd)) for psd in first_shells])
     spread = 1.0  # standard deviation of ln amplitude, updated below
 
-    low, high = data.log_q.min(), data.log_q.max()
+    low = data.log_q.min()
+    high = data.log_q.max()
 
     def objective(parameters: np.ndarray) -> float:
         outside = max(low - parameters[0], 0.0) + max(parameters[0] - high, 0.0)
@@ -191,9 +189,13 @@ def fit(
         inside = np.clip(parameters, [low, 0.0], [high, MAX_SLOPE])
         return _deviance(data, inside[0], inside[1], spread, level)[0] + 1e6 * outside
 
-    grid = [(q0, slope) for q0 in np.linspace(low, high, 14)[:-1] for slope in (1.0, 2.0, 3.0, 4.0)]
+    knees = np.linspace(low, high, 14)[:-1]
+    grid = [(log_q0, slope) for log_q0 in knees for slope in (1.0, 2.0, 3.0, 4.0)]
     best = np.array(min(grid, key=lambda point: objective(np.array(point))))
-    dispersion, raw, residual, between = 1.0, level, np.ones(bins), PlaceScatter()
+    dispersion = 1.0
+    raw = level
+    residual = np.ones(bins)
+    between = PlaceScatter()
     for _ in range(4):
         minimum = minimize(
             objective, best, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-3}
@@ -233,15 +235,12 @@ def fit(
 def _deviance(
     data: _Data, log_q0: float, slope: float, spread: float, level: np.ndarray
 ) -> tuple[float, np.ndarray, np.ndarray]:
-    """-2 ln L, marginal over the amplitudes in Gaussian approximation; amplitudes; measured over
-    shape.
-    """
+    """-2 ln L, marginal over amplitudes (Gaussian); amplitudes; measured over shape."""
     shape, ratio = data.ratio(log_q0, slope, level)
     mean = np.bincount(data.scan, data.weight * ratio, data.scans) / data.per_scan
     raw = np.log(np.maximum(mean, 1e-300))
-    per_scan = 2 * np.sum(data.weight * (shape - np.log(data.psd))) + 2 * np.sum(
-        data.per_scan * (1 + raw)
-    )
+    distance = 2 * np.sum(data.weight * (shape - np.log(data.psd)))
+    per_scan = distance + 2 * np.sum(data.per_scan * (1 + raw))
     variance = 1 / data.per_scan + spread**2
     typical = np.sum(raw / variance) / np.sum(1 / variance)
     # amplitudes at their own optimum cost nothing; the population pulls them together
@@ -250,8 +249,7 @@ def _deviance(
 
 
 def _misfit(residual: np.ndarray, modes: np.ndarray) -> float:
-    """RMS of ln of the bins' residuals less what chance makes of a mean over their modes (Gamma
-    distribution).
+    """RMS of ln of the bins' residuals, less the chance of a mean over their modes (Gamma).
 
     Bins of few modes say little and count little.
     """
@@ -266,16 +264,14 @@ def _misfit(residual: np.ndarray, modes: np.ndarray) -> float:
 
 
 def _between(raw: np.ndarray, variance: np.ndarray) -> PlaceScatter:
-    """Scatter between places of ln amplitudes known to `variance`, by their restricted
-    likelihood.
-    """
+    """Scatter between places of ln amplitudes of error `variance`, by restricted likelihood."""
     if len(raw) < 2:
         return PlaceScatter()
-    every = variance + SCATTERS[:, None] ** 2
-    mean = np.sum(raw / every, axis=1, keepdims=True) / np.sum(1 / every, axis=1, keepdims=True)
-    terms = np.sum(np.log(every) + (raw - mean) ** 2 / every, axis=1) + np.log(
-        np.sum(1 / every, axis=1)
-    )
+    variances = variance + SCATTERS[:, None] ** 2
+    weights = np.sum(1 / variances, axis=1)
+    mean = np.sum(raw / variances, axis=1, keepdims=True) / weights[:, None]
+    squares = np.log(variances) + (raw - mean) ** 2 / variances
+    terms = np.sum(squares, axis=1) + np.log(weights)
     return PlaceScatter.of(-0.5 * terms)
 
 
@@ -301,20 +297,21 @@ def _covariance(
         return total, _typical(raw, scale / data.per_scan, spread)[0]
 
     centre = value(best)[0]
-    hessian, gradient = np.zeros((2, 2)), np.zeros(2)
+    hessian = np.zeros((2, 2))
+    gradient = np.zeros(2)
     for i in range(2):
-        up, down = best.copy(), best.copy()
+        up = best.copy()
+        down = best.copy()
         up[i] += steps[i]
         down[i] -= steps[i]
-        (f_up, l_up), (f_down, l_down) = value(up), value(down)
+        (f_up, l_up) = value(up)
+        (f_down, l_down) = value(down)
         hessian[i, i] = (f_up + f_down - 2 * centre) / steps[i] ** 2
         gradient[i] = (l_up - l_down) / (2 * steps[i])
-    corners = [
-        value(best + steps * np.array(sign))[0] for sign in ((1, 1), (1, -1), (-1, 1), (-1, -1))
-    ]
-    hessian[0, 1] = hessian[1, 0] = (corners[0] - corners[1] - corners[2] + corners[3]) / (
-        4 * steps.prod()
-    )
+    signs = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+    corners = [value(best + steps * np.array(sign))[0] for sign in signs]
+    twist = corners[0] - corners[1] - corners[2] + corners[3]
+    hessian[0, 1] = hessian[1, 0] = twist / (4 * steps.prod())
     values, vectors = np.linalg.eigh(hessian / (2 * scale))
     shape = vectors @ np.diag(1 / np.maximum(values, 1e-6)) @ vectors.T
     full = np.zeros((3, 3))
@@ -327,53 +324,57 @@ def _covariance(
 def q0_interval(
     spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, reach: float
 ) -> tuple[float, float]:
-    """Ends of q0 (1/nm) where the deviance, lowest over the slope, is `reach` standard deviations
-    above its minimum.
+    """Ends of q0 (1/nm) where the deviance, lowest over the slope, rises by `reach` deviations.
 
     The curvature at the minimum does not do: where the knee is gradual (shallow spectra, lines) the
     deviance is far from a parabola, and its ends are up to three times as far away on one side."""
     from scipy.optimize import brentq, minimize_scalar
 
     data = _Data([item for item in spectra if item.trusted.sum() >= 3], fitted.q0)
-    level, best = np.log(fitted.amplitudes), np.log(fitted.q0)
+    level = np.log(fitted.amplitudes)
+    best = np.log(fitted.q0)
 
     def lowest(log_q0: float) -> float:
-        inside = max(fitted.slope - 1.0, 0.0), min(fitted.slope + 1.0, MAX_SLOPE)
+        slopes = max(fitted.slope - 1.0, 0.0), min(fitted.slope + 1.0, MAX_SLOPE)
+
+        def at_slope(slope: float) -> float:
+            return _deviance(data, log_q0, slope, fitted.amplitude_sd, level)[0]
+
         minimum: Any = minimize_scalar(
-            lambda slope: _deviance(data, log_q0, slope, fitted.amplitude_sd, level)[0],
-            bounds=inside,
-            method="bounded",
-            options={"xatol": 1e-3},
+            at_slope, bounds=slopes, method="bounded", options={"xatol": 1e-3}
         )
         return float(minimum.fun)
 
     allowed = lowest(best) + reach**2 * max(fitted.dispersion, 1.0)
-    ends, step, furthest = [], 0.04, 10.0  # no plateau within a factor of e^10 is none
+    # no plateau within a factor of e^10 is none
+    bounds = []
+    step = 0.04
+    furthest = 10.0
     for side in (-1, 1):
         distance = step
         while lowest(best + side * distance) < allowed and distance < furthest:
             distance *= 2
         if distance >= furthest:
-            ends.append(best + side * furthest)
+            bounds.append(best + side * furthest)
             continue
         start = distance / 2 if distance > step else 0.0
         end: Any = brentq(
-            lambda at, s=side: lowest(best + s * at) - allowed, start, distance, xtol=2e-3
+            lambda away, s=side: lowest(best + s * away) - allowed, start, distance, xtol=2e-3
         )
-        ends.append(best + side * end)
-    return float(np.exp(ends[0])), float(np.exp(ends[1]))
+        bounds.append(best + side * end)
+    return float(np.exp(bounds[0])), float(np.exp(bounds[1]))
 
 
 def single_scans(
     spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit
 ) -> tuple[np.ndarray, np.ndarray]:
-    """q0 of each scan that shows its own knee (the common slope kept), and slope of each with a
-    decade third.
+    """q0 of each scan with a knee (at the common slope), slope of each that falls far enough.
 
     Their range is the scatter between places; it includes the statistical error of single scans.
     """
     log_q0 = np.log(fitted.q0)
-    knees, slopes = [], []
+    knees = []
+    slopes = []
     for item in spectra:
         if item.trusted.sum() < 3:
             continue
@@ -381,19 +382,18 @@ def single_scans(
         level = np.array([np.log(fitted.plateau)])
 
         if item.low < fitted.q0 / 2 and item.high > 1.5 * fitted.q0:
-            knee = _lowest(
-                lambda at, d=data, a=level: _deviance(d, at, fitted.slope, 0.0, a)[0], log_q0, 1.0
-            )
+            single = partial(_single_deviance, data, level, slope=fitted.slope)
+            knee = _lowest(single, log_q0, 1.0)
             knees.append(float(np.exp(knee)))
         if item.high > 2.2 * max(fitted.q0, item.low):
-            slopes.append(
-                _lowest(
-                    lambda at, d=data, a=level: _deviance(d, log_q0, at, 0.0, a)[0],
-                    fitted.slope,
-                    2.0,
-                )
-            )
+            single = partial(_single_deviance, data, level, log_q0)
+            slopes.append(_lowest(single, fitted.slope, 2.0))
     return np.array(knees), np.array(slopes)
+
+
+def _single_deviance(data: _Data, level: np.ndarray, log_q0: float, slope: float) -> float:
+    """Deviance of one scan whose amplitude (ln) is fitted alone."""
+    return _deviance(data, log_q0, slope, 0.0, level)[0]
 
 
 def _lowest(function: Callable[[float], float], centre: float, reach: float) -> float:

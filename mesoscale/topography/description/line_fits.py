@@ -63,23 +63,23 @@ def points(spectra: Sequence[TrustedSpectrum], q0: float = np.inf, slope: float 
 
     Once knee and slope are known roughly, the window's blur beyond `q0` is taken out.
     """
-    parts = [np.empty((4, 0))]
+    rows = [np.empty((4, 0))]
     for number, item in enumerate(spectra):
-        q, modes = item.spectrum.q[item.trusted], item.spectrum.modes[item.trusted]
+        q = item.spectrum.q[item.trusted]
+        modes = item.spectrum.modes[item.trusted]
         log_c = np.log(item.corrected_psd()[item.trusted])
         log_c = log_c - np.where(q > q0, blur(slope, q / item.spectrum.spacing), 0)
         bins, index = np.unique(np.floor(12 * np.log10(q)), return_inverse=True)  # 12 a decade
         worth = np.bincount(index, modes)
-        log_q, log_c = (np.bincount(index, modes * part) / worth for part in (np.log(q), log_c))
+        log_q = np.bincount(index, modes * np.log(q)) / worth
+        log_c = np.bincount(index, modes * log_c) / worth
         # the mean of ln C lies below ln of the mean by about 1/(2 n)
-        parts.append(
-            np.stack(
-                [log_q, log_c + 0.5 / np.maximum(worth, 1.0), np.full(len(bins), number), bins]
-            )
-        )
-    table = np.concatenate(parts, axis=1)
+        log_c = log_c + 0.5 / np.maximum(worth, 1.0)
+        rows.append(np.stack([log_q, log_c, np.full(len(bins), number), bins]))
+    table = np.concatenate(rows, axis=1)
     table = table[:, np.lexsort((table[2], table[3]))]
-    return Points(table[0], table[1], table[2].astype(int), table[3].astype(int))
+    log_q, log_c, scan, bins = table
+    return Points(log_q, log_c, scan.astype(int), bins.astype(int))
 
 
 def pooled(data: Points) -> tuple[np.ndarray, np.ndarray]:
@@ -113,11 +113,11 @@ def line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
 
 
 def fit_lines(spectra: Sequence[TrustedSpectrum]) -> LineFit | None:
-    """The paper's procedure on the trusted spectra; None when there is no plateau or no power law
-    to fit.
-    """
+    """The paper's procedure on the trusted spectra; None without a plateau or a power law."""
     rough = _fit_points(points(spectra))
-    return None if rough is None else _fit_points(points(spectra, rough.q0, rough.slope))
+    if rough is None:
+        return None
+    return _fit_points(points(spectra, rough.q0, rough.slope))
 
 
 def _fit_points(data: Points) -> LineFit | None:
@@ -126,25 +126,30 @@ def _fit_points(data: Points) -> LineFit | None:
         return None
     x, y = pooled(data)
     end = plateau_end(x, y)
-    knee = None if end is None else _knee(x, y, end)
-    if end is None or knee is None:
+    if end is None:
+        return None
+    knee = _knee(x, y, end)
+    if knee is None:
         return None
     log_q0, level = knee
     first = int(np.searchsorted(x, log_q0 + 0.15))
-    fits = np.array([line(x[first:k], y[first:k]) for k in range(first + 4, len(x) + 1)])
+    last_bins = range(first + 4, len(x) + 1)
+    fits = np.array([line(x[first:last], y[first:last]) for last in last_bins])
     if not len(fits):
         return None
     reference = float(np.median(fits[len(fits) // 3 :, 1]))
     allowed = np.maximum(0.05, _threshold(len(x) - first) * fits[:, 2])
     last = int(np.flatnonzero(np.abs(fits[:, 1] - reference) <= allowed).max())
-    intercept, slope = fits[last, 0], -float(fits[last, 1])
+    intercept = fits[last, 0]
+    slope = -float(fits[last, 1])
     log_q0 = (intercept - level) / slope
     shape = -slope * np.maximum(data.log_q - log_q0, 0)
-    levels = [np.mean((data.log_c - shape)[data.scan == k]) for k in np.unique(data.scan)]
-    beyond = data.log_q > log_q0 + np.log(2)
-    if not beyond.any():
+    scan_levels = data.log_c - shape
+    levels = [np.mean(scan_levels[data.scan == scan]) for scan in np.unique(data.scan)]
+    falling = data.log_q > log_q0 + np.log(2)
+    if not falling.any():
         return None
-    slopes = (level - data.log_c[beyond]) / (data.log_q[beyond] - log_q0)
+    slopes = (level - data.log_c[falling]) / (data.log_q[falling] - log_q0)
     return LineFit(
         plateau=float(np.exp(level)),
         q0=float(np.exp(log_q0)),
@@ -159,12 +164,13 @@ def _fit_points(data: Points) -> LineFit | None:
 
 
 def plateau_end(x: np.ndarray, y: np.ndarray) -> int | None:
-    """Index of the last bin up to which the slope of y(x) from the start is not significantly
-    negative.
-    """
-    fits = np.array([line(x[:k], y[:k]) for k in range(3, len(x) + 1)])
+    """Index of the last bin up to which the slope of y(x) is not significantly negative."""
+    lengths = range(3, len(x) + 1)
+    fits = np.array([line(x[:length], y[:length]) for length in lengths])
     thresholds = np.array([_threshold(k) for k in range(1, len(x) - 1)])
-    flat = np.flatnonzero((fits[:, 1] >= -thresholds * fits[:, 2]) | (fits[:, 1] >= -0.1))
+    slopes = fits[:, 1]
+    errors = fits[:, 2]
+    flat = np.flatnonzero((slopes >= -thresholds * errors) | (slopes >= -0.1))
     if len(flat) == 0 or flat[-1] == len(fits) - 1:  # flat all the way: no power law
         return None
     return int(flat[-1]) + 2
@@ -179,9 +185,11 @@ def _threshold(freedom: int) -> float:
 
 def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float] | None:
     """Meeting point of plateau and power law: ln q0 and the plateau's level."""
-    log_q0, level = float(x[end]) - 0.2, 0.0
+    log_q0 = float(x[end]) - 0.2
+    level = 0.0
     for _ in range(20):
-        flat, fall = x < log_q0 - 0.1, x > log_q0 + 0.15
+        flat = x < log_q0 - 0.1
+        fall = x > log_q0 + 0.15
         if flat.sum() < 2 or fall.sum() < 4:
             return None
         level = float(y[flat].mean())

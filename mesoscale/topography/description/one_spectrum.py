@@ -31,6 +31,12 @@ from mesoscale.topography.description.trusted_range import TrustedSpectrum
 DRAWS = 500
 EXTENSION_DECADES = 1.0
 """The last slope is carried on this far beyond what is measured."""
+STATISTICS = {
+    "rms_height": (0, 1.0, "nm"),
+    "rms_slope": (2, 1.0, "1"),
+    "rms_curvature": (4, 0.5, "1/nm"),
+}
+"""Power of q under the integral, factor and unit of each number of the roughness."""
 
 
 @dataclass(frozen=True)
@@ -90,11 +96,12 @@ class OneSpectrum:
         return np.exp(self.log_psd - reach), np.exp(self.log_psd + reach)
 
     def draws(self, places: bool, count: int = DRAWS) -> np.ndarray:
-        """(count, m) spectra C in nm^4 that the measurements allow: of the typical place, or of a
-        place anywhere.
-        """
+        """(count, m) possible spectra C in nm^4, of the typical place or of any place."""
         rng = np.random.default_rng(0)  # the same draws whenever they are asked for
-        logs = self._normal_draws(rng, count) if self.logs is None else self.logs[:count]
+        logs = self.logs
+        if logs is None:
+            logs = self._normal_draws(rng, count)
+        logs = logs[:count]
         if places:
             logs = logs + self.place_sd * rng.standard_normal((count, 1))
         return np.exp(logs)
@@ -102,8 +109,7 @@ class OneSpectrum:
     def with_mean_square(
         self, mean_square: float, seen: Seen, count: int, common_error: float
     ) -> "OneSpectrum":
-        """The spectrum given besides the mean square height (nm^2) of the longest measurements,
-        levelled.
+        """The spectrum, conditioned on the mean square height (nm^2) of the longest measurements.
 
         Of spectra that the bands allow, those are drawn that the mean square allows (importance
         resampling). Waves of the bands are in both: what chance makes of them counts once.
@@ -119,25 +125,23 @@ class OneSpectrum:
         candidates = 10_000
         logs = self._normal_draws(rng, candidates)
         drawn = np.exp(logs)
-        whole = self.moment(0, low=seen.first, psd=drawn, counted=seen.share) + self.tail(drawn)
-        in_bands = self.moment(
-            0, low=seen.low, high=seen.high, psd=drawn, counted=seen.share_in_bands
-        )
-        rest = np.maximum(whole - seen.common * in_bands, 1e-12)
-        unseen, short = (
-            seen.scatter(self.q, logs, *ends)
-            for ends in ((seen.first, seen.low), (seen.low, self.q[-1]))
-        )
-        variance = (unseen * (whole - in_bands)) ** 2 + (1 - seen.common) * (short * in_bands) ** 2
-        modes = (
-            count * rest**2 / (variance + (self.place_sd * rest) ** 2)
-        )  # half of them: the shape of a Gamma law
+        measured = self.moment(0, low=seen.first, psd=drawn, counted=seen.share)
+        long_waves = measured + self.tail(drawn)
+        counted = seen.share_in_bands
+        in_bands = self.moment(0, low=seen.low, high=seen.high, psd=drawn, counted=counted)
+        remainder = np.maximum(long_waves - seen.common * in_bands, 1e-12)
+        unseen = seen.scatter(self.q, logs, seen.first, seen.low)
+        short = seen.scatter(self.q, logs, seen.low, self.q[-1])
+        unseen_variance = (unseen * (long_waves - in_bands)) ** 2
+        variance = unseen_variance + (1 - seen.common) * (short * in_bands) ** 2
+        # half of them: the shape of a Gamma law
+        modes = count * remainder**2 / (variance + (self.place_sd * remainder) ** 2)
         level, worth = np.polynomial.hermite_e.hermegauss(9)
         remaining = (
             mean_square * np.exp(np.hypot(common_error, 0.1) * level)
             - seen.common * seen.in_bands_nm2
         )
-        over = np.maximum(remaining, 0.01 * mean_square) / rest[:, None]
+        over = np.maximum(remaining, 0.01 * mean_square) / remainder[:, None]
         modes = modes[:, None]
         gamma = modes * (np.log(modes * over) - over) - gammaln(modes) + np.log(worth)
         chance = np.logaddexp.reduce(gamma, axis=1)
@@ -149,9 +153,7 @@ class OneSpectrum:
         return replace(self, log_psd=centre, covariance=covariance, logs=drawn, longest=seen.first)
 
     def with_error(self, error: np.ndarray) -> "OneSpectrum":
-        """The same with a further error of ln C: `error` (m,) times one normal variable for all
-        bands.
-        """
+        """The same with a further error of ln C: `error` (m,) times one normal variable for all."""
         logs = self.logs
         if logs is not None:
             logs = logs + np.random.default_rng(5).standard_normal((len(logs), 1)) * error
@@ -170,35 +172,36 @@ class OneSpectrum:
         psd: np.ndarray | None = None,
         counted: Callable[[np.ndarray], np.ndarray] = np.ones_like,
     ) -> np.ndarray:
-        """Integral of 2 pi q C q^power over low .. high (1/nm) for spectra (..., m); C is flat
-        below the first band.
+        """Integral of 2 pi q C q^power over low .. high (1/nm) of C (..., m), flat below q[0].
 
         Power 0 is the mean square height (nm^2), 2 the mean square slope, 4 that of the Laplacian
         (1/nm^2). Of the waves at q (1/nm) the share `counted` enters."""
-        psd = self.psd if psd is None else psd
-        start, end = float(low or self.q[0]), min(high, self.q[-1])
+        if psd is None:
+            psd = self.psd
+        start = float(low or self.q[0])
+        end = min(high, self.q[-1])
         if end <= start:
             return np.zeros(psd.shape[:-1])
-        below = 2 * np.pi * psd[..., 0] * start ** (power + 2) / (power + 2) if low == 0 else 0.0
-        edges = np.log([start, *self.q[(self.q > start) & (self.q < end)], end])
+        below = 0.0
+        if low == 0:  # flat below the longest wave
+            below = 2 * np.pi * psd[..., 0] * start ** (power + 2) / (power + 2)
+        between = self.q[(self.q > start) & (self.q < end)]
+        edges = np.log([start, *between, end])
         half = np.diff(edges)[:, None] / 2
-        place, weight = np.polynomial.legendre.leggauss(
-            3
-        )  # of a power law between two bands exact to 1e-6
+        # of a power law between two bands exact to 1e-6
+        place, weight = np.polynomial.legendre.leggauss(3)
         fine = np.exp(edges[:-1, None] + half * (1 + place)).ravel()
-        weight = (half * weight).ravel() * 2 * np.pi * fine ** (power + 2) * counted(fine)
-        return np.asarray(np.exp(at_points(fine, self.q, np.log(psd))) @ weight + below)
+        area = (half * weight).ravel() * 2 * np.pi * fine ** (power + 2)
+        psd_fine = np.exp(at_points(fine, self.q, np.log(psd)))
+        return np.asarray(psd_fine @ (area * counted(fine)) + below)
 
     def carried_on(self, psd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Points (1/nm, nm^4) of a spectrum (m,) on the bands, with its last slope carried on for a
-        decade.
-        """
+        """Points (1/nm, nm^4) of a spectrum (m,), its last slope continued by a decade."""
         end = float(self.q[-1])
-        beyond = end * 10 ** np.linspace(0.1, EXTENSION_DECADES, 10)
+        extension = end * 10 ** np.linspace(0.1, EXTENSION_DECADES, 10)
         slope = self._end_slope(psd)
-        return np.concatenate([self.q, beyond]), np.concatenate(
-            [psd, psd[-1] * (beyond / end) ** slope]
-        )
+        continued = psd[-1] * (extension / end) ** slope
+        return np.concatenate([self.q, extension]), np.concatenate([psd, continued])
 
     def tail(self, psd: np.ndarray) -> np.ndarray:
         """Mean square heights of the continuations of spectra (..., m), nm^2."""
@@ -214,37 +217,27 @@ class OneSpectrum:
         end = self.q > self.q[-1] * 10**-0.31
         logs = np.log(psd[..., end]).reshape(-1, np.count_nonzero(end))
         slopes = np.polyfit(np.log(self.q[end]), logs.T, 1)[0]
-        possible = (
-            -4.0,
-            -2.1,
-        )  # of a self-affine surface (0 < H < 1); shallower ones have no finite RMS height
+        # of a self-affine surface (0 < H < 1); shallower ones have no finite RMS height
+        possible = (-4.0, -2.1)
         unseen = slopes > possible[1]
         count = np.count_nonzero(unseen)
-        slopes[unseen] = np.interp((np.arange(count) + 0.5) / max(count, 1), (0, 1), possible)
+        places = (np.arange(count) + 0.5) / max(count, 1)
+        slopes[unseen] = np.interp(places, (0, 1), possible)
         return slopes.reshape(psd.shape[:-1])
 
     def statistics(self) -> dict[str, dict[str, Any]]:
-        """RMS height, slope and curvature of all waves that are measured, with intervals of the
-        typical place.
+        """RMS height, slope and curvature of the measured waves, with intervals.
 
         Curvature is half the RMS Laplacian, the mean of both principal ones.
         """
-        drawn, first = self.draws(places=False), self.first
+        drawn = self.draws(places=False)
+        first = self.first
         result = {}
-        for name, power, factor, unit in (
-            ("rms", 0, 1.0, "nm"),
-            ("slope", 2, 1.0, "1"),
-            ("curvature", 4, 0.5, "1/nm"),
-        ):
+        for key, (power, factor, unit) in STATISTICS.items():
             value = factor * float(np.sqrt(self.moment(power, first)))
-            low, high = np.quantile(
-                factor * np.sqrt(self.moment(power, first, psd=drawn)), QUANTILES
-            )
-            result[f"rms_{name}" if name != "rms" else "rms_height"] = {
-                "value": value,
-                "interval": [float(low), float(high)],
-                "unit": unit,
-            }
+            possible = factor * np.sqrt(self.moment(power, first, psd=drawn))
+            low, high = np.quantile(possible, QUANTILES)
+            result[key] = {"value": value, "interval": [float(low), float(high)], "unit": unit}
         return result
 
 
@@ -263,22 +256,25 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     # waves twice as long as the longest measurement still tilt and bow it
     names = {entry[0] for entry in measured}
     longest = min(item.spectrum.spacing for item in spectra if item.name in names) / 2
-    bands = np.arange(
-        min(seen.min(), int(np.floor(np.log10(longest) * BANDS_PER_DECADE))), seen.max() + 1
-    )
+    lowest = int(np.floor(np.log10(longest) * BANDS_PER_DECADE))
+    bands = np.arange(min(seen.min(), lowest), seen.max() + 1)
     index = np.concatenate([np.searchsorted(bands, entry[1]) for entry in measured])
     values = np.concatenate([entry[2] for entry in measured])
     weight = 1 / np.concatenate([entry[3] for entry in measured])
-    owner = np.concatenate([np.full(len(entry[1]), k) for k, entry in enumerate(measured)])
-    m, places = len(bands), len(measured)
+    lengths = [len(entry[1]) for entry in measured]
+    owner = np.repeat(np.arange(len(measured)), lengths)
+    m = len(bands)
+    places = len(measured)
     system = np.zeros((len(values), m + places))
     system[np.arange(len(values)), index] = 1.0
     system[np.arange(len(values)), m + owner] = 1.0
-    normal, right = system.T @ (weight[:, None] * system), system.T @ (weight * values)
+    normal = system.T @ (weight[:, None] * system)
+    right = system.T @ (weight * values)
     # standard deviation of the change of slope times the band's width, from band to band
     bends = np.diff(np.eye(m), 2, axis=0) / 0.35
     normal[:m, :m] += bends.T @ bends
-    unseen, width = int(np.searchsorted(bands, seen.min())), np.log(10) / BANDS_PER_DECADE
+    unseen = int(np.searchsorted(bands, seen.min()))
+    width = np.log(10) / BANDS_PER_DECADE
     first = min(measured, key=lambda entry: entry[1][0])
     slope, error = unseen_slope(first[1] * width, *first[2:])
     rise = np.diff(np.eye(m), axis=0)[:unseen] / width
@@ -289,33 +285,37 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     covariance = np.linalg.inv(normal)
     solution = covariance @ right
     centres = 10 ** ((bands + 0.5) / BANDS_PER_DECADE)
+    covered = [(bands >= entry[1][0]) & (bands <= entry[1][-1]) for entry in measured]
     result = OneSpectrum(
         centres,
         solution[:m],
         covariance[:m, :m] + common_error**2,
         between,
-        np.sum([(bands >= entry[1][0]) & (bands <= entry[1][-1]) for entry in measured], axis=0),
+        np.sum(covered, axis=0),
         tuple(entry[0] for entry in measured),
     )
-    rough = [(item, seen_by(item)) for item in spectra if item.name in names and item.rms_nm > 0]
-    longest = max((part.length_nm for _, part in rough if part), default=0.0)
-    if (
-        longest == 0 or result.first < 2 * np.pi / longest
-    ):  # of a line that has measured these waves
+    rough = [item for item in spectra if item.name in names and item.rms_nm > 0]
+    seen_waves = [(item, waves) for item in rough if (waves := seen_by(item)) is not None]
+    longest_nm = max((waves.length_nm for _, waves in seen_waves), default=0.0)
+    # of a line that has measured these waves
+    if longest_nm == 0 or result.first < 2 * np.pi / longest_nm:
         return result
-    alike = [(item, part) for item, part in rough if part and part.length_nm > 0.8 * longest]
-    kind = next(part for _, part in alike if part.length_nm == longest)
-    alike = [(item, part) for item, part in alike if part.line == kind.line]
+    kind = next(waves for _, waves in seen_waves if waves.length_nm == longest_nm)
+    alike = [
+        (item, waves)
+        for item, waves in seen_waves
+        if waves.length_nm > 0.8 * longest_nm and waves.line == kind.line
+    ]
     mean_square = np.mean([item.rms_nm**2 for item, _ in alike])
-    kind = replace(kind, in_bands_nm2=float(np.mean([part.in_bands_nm2 for _, part in alike])))
+    in_bands_nm2 = np.mean([waves.in_bands_nm2 for _, waves in alike])
+    kind = replace(kind, in_bands_nm2=float(in_bands_nm2))
     # what is form and what is roughness is unknown to what a parabola would take
     error = np.hypot(np.mean([item.form for item, _ in alike]), common_error)
     return result.with_mean_square(float(mean_square), kind, len(alike), float(error))
 
 
 def _between(normal: np.ndarray, right: np.ndarray, places: int) -> PlaceScatter:
-    """How much places differ, by the likelihood of the mixed model without bands and levels
-    (restricted likelihood).
+    """Scatter of places by the restricted likelihood of the mixed model (without bands and levels).
 
     Parameters
     ----------
@@ -325,19 +325,16 @@ def _between(normal: np.ndarray, right: np.ndarray, places: int) -> PlaceScatter
         return PlaceScatter()
     levels = np.diag(np.arange(len(normal)) >= len(normal) - places).astype(float)
     covariances = np.linalg.inv(normal + levels / SCATTERS[:, None, None] ** 2)
-    chance = (
-        np.linalg.slogdet(covariances)[1]
-        + right @ covariances @ right
-        - 2 * places * np.log(SCATTERS)
-    )
+    determinants = np.linalg.slogdet(covariances)[1]
+    fitted = right @ covariances @ right
+    chance = determinants + fitted - 2 * places * np.log(SCATTERS)
     return PlaceScatter.of(0.5 * chance)
 
 
 def unseen_slope(
     log_q: np.ndarray, log_psd: np.ndarray, variance: np.ndarray
 ) -> tuple[float, float]:
-    """Logarithmic slope of waves that are longer than all measured ones, and the deviation of each
-    band from it.
+    """Logarithmic slope of waves longer than all measured ones, and the deviation of each band.
 
     Self-affine surfaces have slopes of -2 to -4 (H of 0 to 1), and go on or roll off. What is
     shallower rolls off to a plateau, of slope 0. The longest bands leave a slope uncertain, in
@@ -347,8 +344,11 @@ def unseen_slope(
     ----------
     log_q, log_psd, variance : ln q, ln C and the variance of ln C of the bands of the longest
         measurement."""
-    end, possible = slice(None, BANDS_PER_DECADE // 2), np.linspace(-4.0, 0.0, 33)
-    q, level, weight = log_q[end], log_psd[end], 1 / variance[end]
+    end = slice(None, BANDS_PER_DECADE // 2)
+    possible = np.linspace(-4.0, 0.0, 33)
+    q = log_q[end]
+    level = log_psd[end]
+    weight = 1 / variance[end]
     q = q - weight @ q / weight.sum()
     precision = float(weight @ q**2)
     away = possible - np.clip(weight * q @ level / precision, -4.0, 0.0)

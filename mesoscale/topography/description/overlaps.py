@@ -38,13 +38,12 @@ class Overlap:
     misfit: float
 
     def one_surface(self, chance: float) -> bool:
-        """Can these be places of one surface? Of two whose RMS heights scatter by 40 % a share
-        `chance` is denied.
-        """
+        """Can these be places of one surface? A share `chance` of such pairs is denied."""
         from scipy.special import ndtri
 
-        most = np.hypot(np.log(self.expected), float(ndtri(1 - chance / 2)) * np.sqrt(2) * 0.8)
-        return bool(abs(np.log(self.ratio)) <= most and self.misfit <= MOST_MISFIT)
+        deviations = float(ndtri(1 - chance / 2))
+        largest = np.hypot(np.log(self.expected), deviations * np.sqrt(2) * 0.8)
+        return bool(abs(np.log(self.ratio)) <= largest and self.misfit <= MOST_MISFIT)
 
     @property
     def agrees(self) -> bool:
@@ -53,9 +52,7 @@ class Overlap:
 
 
 def overlaps(spectra: Sequence[TrustedSpectrum]) -> list[Overlap]:
-    """Every pair of measurements of different size or kind that sees common bands, the largest
-    shared range first.
-    """
+    """Pairs of unlike size or kind that share bands, the largest shared range first."""
     bands = [(item, *on_bands(item)) for item in spectra]
     pairs = []
     for i, (first, numbers, level, variance) in enumerate(bands):
@@ -66,7 +63,8 @@ def overlaps(spectra: Sequence[TrustedSpectrum]) -> list[Overlap]:
             weight = 1 / (variance[a] + other_variance[b])
             apart = other_level[b] - level[a]
             difference = float(np.sum(weight * apart) / weight.sum())
-            misfit = float(np.sum(weight * (apart - difference) ** 2)) / max(len(common) - 1, 1)
+            squares = float(np.sum(weight * (apart - difference) ** 2))
+            misfit = squares / max(len(common) - 1, 1)
             # errors of neighbouring bands go together: no more certain than a typical band
             spread = float(np.sqrt(1 / weight.mean()))
             edges = 10 ** (np.array([common[0], common[-1] + 1]) / BANDS_PER_DECADE)

@@ -1,6 +1,4 @@
-"""Roughness parameters of a set of scans: q0, q1, slope, Hurst exponent and RMS, with ranges and
-doubts.
-"""
+"""Roughness parameters of a set of scans: q0, q1, slope, Hurst exponent and RMS, with doubts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -62,9 +60,14 @@ def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) ->
         spectra = likelihood.skip_blurred_shells(spectra, fitted.q0)
         fitted = likelihood.fit(spectra, knee=fitted.q0) or fitted
     line_fit = line_fits.fit_lines(spectra)
-    estimates = _estimates(spectra, fitted, cutoff, settings) if fitted is not None else {}
-    q1 = line_fit.q1 if line_fit else max((item.high for item in spectra), default=0.0)
-    limited = line_fit.q1_limited if line_fit else True
+    estimates = {}
+    if fitted is not None:
+        estimates = _estimates(spectra, fitted, cutoff, settings)
+    q1 = max((item.high for item in spectra), default=0.0)
+    limited = True
+    if line_fit is not None:
+        q1 = line_fit.q1
+        limited = line_fit.q1_limited
     return Topography(
         fitted, line_fit, q1, limited, cutoff, estimates, _doubts(spectra, fitted, lowest, settings)
     )
@@ -97,10 +100,8 @@ def _doubts(
         )
     doubts = []
     highest = max(item.high for item in spectra)
-    least_gain, least_span = (
-        12.0,
-        2.5,
-    )  # of 2 ln L by a plateau or a power law; of the trusted range over q0
+    least_gain = 12.0  # of 2 ln L by a plateau or a power law
+    least_span = 2.5  # of the trusted range over q0
     if fitted.power_gain < least_gain or fitted.slope < 0.5:
         text = "not identifiable: no power law, the spectrum is flat (noise, or pixels too coarse)"
         doubts.append(
@@ -140,12 +141,9 @@ def _doubts(
     hurst = hurst_from_slope(fitted.slope, settings.convention)
     if not 0 < hurst < 1:
         other: Convention = "profile" if settings.convention == "areal" else "areal"
-        inside = 0 < hurst_from_slope(fitted.slope, other) < 1
-        hint = (
-            f" (with topography.convention and contact.reading.convention: {other} it is in)"
-            if inside
-            else ""
-        )
+        hint = ""
+        if 0 < hurst_from_slope(fitted.slope, other) < 1:
+            hint = f" (with topography.convention and contact.reading.convention: {other} it is in)"
         text = f"H = {hurst:.2f} is outside 0 ... 1 in convention {settings.convention}{hint}"
         doubts.append(Doubt("hurst_outside", text, use_measured, "slope"))
     return tuple(doubts)
@@ -158,7 +156,8 @@ def _estimates(
     settings: TopographySettings,
 ) -> dict[str, Estimate]:
     """Values of the fit; intervals of the typical place; scatter between the scans."""
-    centre = np.array([np.log(fitted.plateau), np.log(fitted.q0), fitted.slope])
+    log_plateau = np.log(fitted.plateau)
+    centre = np.array([log_plateau, np.log(fitted.q0), fitted.slope])
     slope_error = min(float(np.sqrt(fitted.covariance[2, 2])), 10.0)
     q0_interval = likelihood.q0_interval(spectra, fitted, REACH)
     slope_interval = (
@@ -166,38 +165,38 @@ def _estimates(
         float(fitted.slope + REACH * slope_error),
     )
 
-    def log_rms(at: np.ndarray) -> float:
-        return 0.5 * float(np.log(mean_square(np.exp(at[0]), np.exp(at[1]), at[2], cutoff)))
+    def log_rms(point: np.ndarray) -> float:
+        square = mean_square(np.exp(point[0]), np.exp(point[1]), point[2], cutoff)
+        return 0.5 * float(np.log(square))
 
     step = 1e-4
-    gradient = np.array(
-        [(log_rms(centre + step * e) - log_rms(centre - step * e)) / (2 * step) for e in np.eye(3)]
-    )
+    steps = step * np.eye(3)
+    gradient = np.array([log_rms(centre + e) - log_rms(centre - e) for e in steps]) / (2 * step)
     # unidentified: a factor of e^10 is wide enough
     rms_error = min(float(np.sqrt(gradient @ fitted.covariance @ gradient)), 10.0)
     rms = float(np.exp(log_rms(centre)))
     low, high = rms * np.exp(REACH * rms_error * np.array([-1, 1]))
     own_q0, own_slope = likelihood.single_scans(spectra, fitted)
     slope = Estimate(fitted.slope, slope_interval, union(slope_interval, own_slope))
+    rms_interval = (float(low), float(high))
+    rms_scatter = union(rms_interval, fitted.scan_rms(cutoff))
     return {
         "q0": Estimate(fitted.q0, q0_interval, union(q0_interval, own_q0)),
         "slope": slope,
         "hurst": _hurst(slope, settings.convention),
-        "rms": Estimate(
-            rms, (float(low), float(high)), union([low, high], fitted.scan_rms(cutoff))
-        ),
+        "rms": Estimate(rms, rms_interval, rms_scatter),
     }
 
 
 def _hurst(slope: Estimate, convention: Convention) -> Estimate:
-    """H of a slope; ranges are clipped to 0.05 ... 1 where H lies inside (the paper clips 1.20 to
-    1.0).
-    """
+    """H of a slope; ranges are clipped to 0.05 ... 1 where H lies inside (paper: 1.20 to 1.0)."""
     value = hurst_from_slope(slope.value, convention)
-    interval, scatter = (
-        (hurst_from_slope(low, convention), hurst_from_slope(high, convention))
-        for low, high in (slope.interval, slope.scatter)
-    )
-    if 0.05 < value < 1:
-        interval, scatter = ((max(low, 0.05), min(high, 1.0)) for low, high in (interval, scatter))
-    return Estimate(value, interval, scatter)
+    ranges = []
+    for low, high in (slope.interval, slope.scatter):
+        hurst_low = hurst_from_slope(low, convention)
+        hurst_high = hurst_from_slope(high, convention)
+        if 0.05 < value < 1:
+            hurst_low = max(hurst_low, 0.05)
+            hurst_high = min(hurst_high, 1.0)
+        ranges.append((hurst_low, hurst_high))
+    return Estimate(value, *ranges)

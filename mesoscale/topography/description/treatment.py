@@ -1,5 +1,4 @@
-"""Maps that were smoothed, filtered or interpolated after they were measured: how they betray it,
-and what they show.
+"""Maps that were smoothed, filtered or interpolated: how they betray it, and what they show.
 
 Three signs, each of which measured maps lack (evidence: `python -m evidence topography.treated`):
 
@@ -24,14 +23,17 @@ PASSED = 0.15
 """Share of C that a filter passes at the end of what is trusted. Up to there G is known to 30 %, on
 made maps.
 """
-STEEPEST, OVER = -8.5, 1.3
+STEEPEST = -8.5
+OVER = 1.3
 """d ln C / d ln q, over this ratio of wave vectors, that no measured map has."""
 FIRST_SHELL, SHELLS = 4.0, 4.0  # the first, and how many apart at least: single ones scatter
 WIDTH, LAST = (
     0.12,
     0.95,
 )  # of means, and of the Nyquist wave vector, where waves that a computer made may end
-POWERS, WALL = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 40.0), 6.0  # from a Gaussian to a wall
+# from a Gaussian to a wall
+POWERS = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 40.0)
+WALL = 6.0
 NEAR = 2.5  # times below its end a fall is compared with a straight one: a knee lies further away
 CREASED = 5.0  # -d ln C / d ln q of creases: a filter leaves less, all the way to the end
 SLOPES = (1.5, CREASED)  # of -d ln C / d ln q of roughness
@@ -91,7 +93,9 @@ def treatment_of(raw: Scan, cleaned: Scan, spectrum: Spectrum) -> Treatment | No
     spectrum : of `cleaned`.
     """
     step_nm = max(cleaned.pixel_nm)
-    signs = [_fall(spectrum) if _is_smooth(cleaned.heights_nm) else None]
+    signs = []
+    if _is_smooth(cleaned.heights_nm):
+        signs.append(_fall(spectrum))
     if size := repeated_pixels(raw.heights_nm):
         q_f = MEDIAN_FALL / (size * step_nm)
         signs.append(Treatment("median", q_f * np.log(1 / PASSED) ** 0.5, q_f))
@@ -101,29 +105,26 @@ def treatment_of(raw: Scan, cleaned: Scan, spectrum: Spectrum) -> Treatment | No
 
 
 def _is_smooth(heights: np.ndarray) -> bool:
-    """Are most pixels smoother than their neighbourhood? Between tall particles a measured map is
-    rough.
-    """
+    """Are most pixels smoother than their neighbourhood? A measured map is rough."""
     return min(_roughness_left(heights), _roughness_left(heights.T)) < LEFT
 
 
 def _roughness_left(heights: np.ndarray) -> float:
-    """Fourth differences along the first axis over second ones, each by its median, where heights
-    are not tall.
-    """
+    """Median fourth over median second difference along the first axis, tall points left out."""
     second = heights[1:-1] - (heights[:-2] + heights[2:]) / 2
     fourth = second[1:-1] - (second[:-2] + second[2:]) / 2
     tall = np.abs(heights - np.median(heights))
     usual = (tall < 4 * np.median(tall))[2:-2]
-    second, fourth = second[1:-1][usual], fourth[usual]
+    second = second[1:-1][usual]
+    fourth = fourth[usual]
     middle = float(np.median(np.abs(second - np.median(second))))
-    return float(np.median(np.abs(fourth - np.median(fourth)))) / middle if middle > 0 else np.inf
+    if middle <= 0:
+        return np.inf
+    return float(np.median(np.abs(fourth - np.median(fourth)))) / middle
 
 
 def restored(spectrum: Spectrum, treated: Treatment, rms_nm: float) -> tuple[Spectrum, float]:
-    """The spectrum and the RMS height (nm) that a map had before a filter, as far as what it passed
-    is known.
-    """
+    """Spectrum and RMS height (nm) of a map before a filter, as far as what it passed is known."""
     raised = np.maximum(treated.passed(spectrum.q), PASSED)
     psd = spectrum.psd / raised
     seen = spectrum.q <= treated.end
@@ -134,36 +135,39 @@ def restored(spectrum: Spectrum, treated: Treatment, rms_nm: float) -> tuple[Spe
 
 def _fall(spectrum: Spectrum) -> Treatment | None:
     """A filter by the fall of a spectrum."""
-    q, log_psd = spectrum.q, np.log(spectrum.psd)
+    q = spectrum.q
+    log_psd = np.log(spectrum.psd)
     last = LAST * spectrum.nyquist / (1 + WIDTH) / OVER
     starts = np.geomspace(
         FIRST_SHELL * spectrum.spacing, max(last, FIRST_SHELL * spectrum.spacing), 100
     )
     if starts[-1] < 2 * starts[0]:
         return None
-    ends = starts * np.maximum(OVER, 1 + SHELLS * spectrum.spacing / starts)
-    low, high = (_mean_about(q, log_psd, centres) for centres in (starts, ends))
-    slopes = (high - low) / np.log(ends / starts)
+    centres = starts * np.maximum(OVER, 1 + SHELLS * spectrum.spacing / starts)
+    low = _mean_about(q, log_psd, starts)
+    high = _mean_about(q, log_psd, centres)
+    slopes = (high - low) / np.log(centres / starts)
     falls = slopes < STEEPEST
     if not falls.any():
         return None
     first = int(np.argmax(falls))
     goes_on = [*(slopes[first:] < -CREASED), False]  # up to the first side lobe
     steepest = first + int(np.argmin(slopes[first : first + int(np.argmin(goes_on))]))
-    start, end = float(starts[first]), float(ends[steepest])
-    beyond = (q > end) & (q < LAST * spectrum.nyquist)
-    rest = log_psd[beyond] + CREASED * np.log(q[beyond] / start)
-    if len(rest) and np.mean(rest) > low[first] - 0.5:  # the fall behind the peak of a pattern
+    start = float(starts[first])
+    end = float(centres[steepest])
+    behind = (q > end) & (q < LAST * spectrum.nyquist)
+    level = log_psd[behind] + CREASED * np.log(q[behind] / start)
+    # the fall behind the peak of a pattern
+    if len(level) and np.mean(level) > low[first] - 0.5:
         return None
     return _fitted_filter(spectrum, end)
 
 
 def _fitted_filter(spectrum: Spectrum, end: float) -> Treatment | None:
-    """The filter of a spectrum that falls up to `end`; beyond are side lobes, or what digits
-    leave.
-    """
+    """The filter of a spectrum that falls up to `end`; beyond are side lobes, or digits."""
     points = np.geomspace(max(2.5 * spectrum.spacing, end / 8), end, 60)
-    level = np.interp(np.log(points), np.log(spectrum.q), np.log(spectrum.psd))
+    log_psd = np.log(spectrum.psd)
+    level = np.interp(np.log(points), np.log(spectrum.q), log_psd)
     if not _steepens(points / end, level):
         return None
     fits = [_fitted(points / end, level, power) for power in POWERS]
@@ -173,16 +177,18 @@ def _fitted_filter(spectrum: Spectrum, end: float) -> Treatment | None:
     fall_q = end * strength ** (-1 / power)
     trusted = fall_q * np.log(1 / PASSED) ** (1 / power)
     if power >= WALL:  # nothing is taken before it, and nothing is left beyond
-        fall_q, trusted = np.inf, fall_q * np.log(2) ** (1 / power)
-    return Treatment("smoothed", trusted, fall_q, power) if trusted < spectrum.nyquist else None
+        trusted = fall_q * np.log(2) ** (1 / power)
+        fall_q = np.inf
+    if trusted >= spectrum.nyquist:
+        return None
+    return Treatment("smoothed", trusted, fall_q, power)
 
 
 def _steepens(u: np.ndarray, level: np.ndarray) -> bool:
-    """Does a spectrum bend down where it falls, so that no straight line does as well as a
-    filter?
-    """
+    """Does a spectrum bend down in its fall, so that no straight line does as well as a filter?"""
     near = u > 1 / NEAR
-    log_u, level = np.log(u[near]), level[near]
+    log_u = np.log(u[near])
+    level = level[near]
     straight = level - np.polyval(np.polyfit(log_u, level, 1), log_u)
     bent = min(_fitted(u[near], level, power)[0] for power in POWERS)
     return bool(bent < 0.5 * (straight @ straight))
@@ -198,25 +204,22 @@ def _mean_about(q: np.ndarray, values: np.ndarray, centres: np.ndarray) -> np.nd
 
 
 def _fitted(u: np.ndarray, level: np.ndarray, power: float) -> tuple[float, float, float]:
-    """Squared misfit, strength and power of ln C = a - s ln u - strength u^power, s within
-    `SLOPES`.
-    """
-    log_u, fall = np.log(u), u**power
+    """Squared misfit, strength, power of ln C = a - s ln u - strength u^power."""
+    log_u = np.log(u)
+    fall = u**power
     system = np.stack([np.ones_like(u), -log_u, -fall], axis=1)
     level_at_end, slope, strength = np.linalg.lstsq(system, level, rcond=None)[0]
     if not SLOPES[0] <= slope <= SLOPES[1]:
         slope = float(np.clip(slope, *SLOPES))
-        level_at_end, strength = np.linalg.lstsq(system[:, ::2], level + slope * log_u, rcond=None)[
-            0
-        ]
+        straight = level + slope * log_u
+        fitted = np.linalg.lstsq(system[:, ::2], straight, rcond=None)
+        level_at_end, strength = fitted[0]
     misfit = level - system @ (level_at_end, slope, strength)
     return float(misfit @ misfit), float(strength), power
 
 
 def repeated_pixels(heights: np.ndarray) -> int:
-    """Side (pixels) of the window of a median, or of repeated pixels; 0 where neighbours differ as
-    heights do.
-    """
+    """Side (pixels) of a median's window, or of repeated pixels; 0 where neighbours differ."""
     values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
     if len(values) < 1000:
         return 0
@@ -227,9 +230,7 @@ def repeated_pixels(heights: np.ndarray) -> int:
 
 
 def _repeats(heights: np.ndarray) -> int:
-    """Pixels along the first axis over which a height repeats itself; 0 where no more do than
-    digits let.
-    """
+    """Pixels along the first axis over which a height repeats; 0 where digits explain it."""
     away = np.abs(np.diff(heights, axis=0))
     away = away[np.isfinite(away)]
     if len(away) == 0 or not away.any():
@@ -249,9 +250,7 @@ def _repeats(heights: np.ndarray) -> int:
 
 
 def rhythm(heights: np.ndarray) -> float:
-    """Distance in pixels of the points between which levelled heights (nx, ny) were interpolated; 0
-    for none.
-    """
+    """Distance (pixels) of points between which heights were interpolated; 0 for none."""
     periods = [_period(heights), _period(heights.T)]
     powers = [power for power, _ in periods]
     frequencies = [frequency for _, frequency in periods]
@@ -263,7 +262,9 @@ def rhythm(heights: np.ndarray) -> float:
     else:
         return 0.0
     # points further apart than two pixels have the same period as others that are nearer
-    return 1 / frequency if _is_enlarged_twofold(heights) else 1 / (1 - frequency)
+    if _is_enlarged_twofold(heights):
+        return 1 / frequency
+    return 1 / (1 - frequency)
 
 
 def _is_enlarged_twofold(heights: np.ndarray) -> bool:
@@ -277,24 +278,24 @@ def _is_enlarged_twofold(heights: np.ndarray) -> bool:
 
 
 def _period(heights: np.ndarray) -> tuple[float, float]:
-    """Power over that of others, and frequency (1/pixel), of the rhythm of roughness along the
-    first axis.
-    """
+    """Relative power and frequency (1/pixel) of the rhythm of roughness along the first axis."""
     bends = heights[1:-1] - (heights[:-2] + heights[2:]) / 2
     common = np.mean(bends, axis=1)
     roughness = np.var(bends, axis=1)
     if roughness.sum() == 0 or np.sum(common**2) > PATTERN * roughness.sum():
         return 0.0, 0.0
     count = len(roughness)
-    wave = np.abs(np.fft.rfft((roughness / roughness.mean() - 1) * np.hanning(count))) ** 2
+    relative = roughness / roughness.mean() - 1
+    wave = np.abs(np.fft.rfft(relative * np.hanning(count))) ** 2
     frequency = np.arange(len(wave)) / count
     short = frequency > 1 / LONGEST_PERIOD
     first = int(np.argmax(np.where(short, wave, 0.0)))
-    if (
-        wave[DRIFTS:][~short[DRIFTS:]].max(initial=0.0) > 0.1 * wave[first]
-    ):  # a pattern, and a harmonic of it
+    drifts = wave[DRIFTS:][~short[DRIFTS:]]
+    if drifts.max(initial=0.0) > 0.1 * wave[first]:  # a pattern, and a harmonic of it
         return 0.0, 0.0
-    near = np.r_[wave[max(first - 8, 0) : max(first - 3, 0)], wave[first + 4 : first + 9]]
+    below = wave[max(first - 8, 0) : max(first - 3, 0)]
+    above = wave[first + 4 : first + 9]
+    near = np.r_[below, above]
     usual = max(float(np.median(wave[short])), float(np.median(near)))
     modulation = 4 * float(np.sqrt(wave[first])) / count  # a Hann window halves a wave
     if usual == 0 or modulation < MODULATION:

@@ -1,5 +1,4 @@
-"""The range of wave vectors in which an instrument leaves a spectrum undisturbed, and what its tip
-and window change.
+"""The wave vectors that an instrument leaves undisturbed, and what its tip and window change.
 
 Levelling and the window change the longest waves, pixels, noise and the tip the shortest.
 """
@@ -62,9 +61,7 @@ TRUST = Trust()
 def curvature(
     radius_nm: np.ndarray | float, q: np.ndarray, psd: np.ndarray, raised: np.ndarray | float = 1
 ) -> np.ndarray:
-    """A tip's radius times the curvature per octave of roughness of spectrum `psd` times
-    `raised`.
-    """
+    """A tip's radius times the curvature per octave of roughness of spectrum `psd` x `raised`."""
     return radius_nm * np.sqrt(2 * np.pi * psd * raised) * q**3
 
 
@@ -122,7 +119,8 @@ class TrustedSpectrum:
     def corrected_psd(self) -> np.ndarray:
         """(m,) C with the tip's bias taken out, nm^4; meaningful inside the trusted range."""
         q, psd = self.spectrum.q, self.spectrum.psd
-        smooth, bias = _smooth(psd, q), np.zeros_like(q)
+        smooth = _smooth(psd, q)
+        bias = np.zeros_like(q)
         for _ in range(5):
             bias = tip_bias(curvature(self.tip_radius_nm, q, smooth, np.exp(bias)))
         return psd * np.exp(bias)
@@ -145,11 +143,8 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     curved = bias = np.zeros_like(q)
     for _ in range(12):
         curved = curvature(item.tip_radius_nm, q, smooth, np.exp(bias))
-        bias = np.where(
-            curved < 0.5,
-            tip_bias(curved),
-            TRUST.blunt_bias * np.minimum(curved, 2 * TRUST.most_curved),
-        )
+        blunt = TRUST.blunt_bias * np.minimum(curved, 2 * TRUST.most_curved)
+        bias = np.where(curved < 0.5, tip_bias(curved), blunt)
     use = (q >= item.low) & (q <= max(item.high, item.reach))
     blunt = curved > TRUST.most_curved
     if (blunt & use).any():
@@ -160,8 +155,10 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
         not item.spectrum.sharp and use.sum() > 3
     ):  # the window lifts long waves, levelling takes the longest
         long = (q < item.low) & (q > 0.9 * item.spectrum.spacing)
-        start = np.flatnonzero(use)[: max(4, int(np.sum(use & (q < 3 * item.low))))]
-        slope = float(np.clip(-np.polyfit(np.log(q[start]), np.log(psd[start]), 1)[0], 0.0, 6.0))
+        first_shells = max(4, int(np.sum(use & (q < 3 * item.low))))
+        start = np.flatnonzero(use)[:first_shells]
+        slope = -np.polyfit(np.log(q[start]), np.log(psd[start]), 1)[0]
+        slope = float(np.clip(slope, 0.0, 6.0))
         psd = psd * np.exp(-blur(slope, q / item.spectrum.spacing))
         error = np.where(long, TRUST.levelled_error, error)
         use |= long
@@ -170,22 +167,25 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 def trusted_map(cleaned: Scan, measured: Measurement) -> TrustedSpectrum:
     """Spectrum of a cleaned scan within what its instrument shows."""
-    white = (measured.noise_nm or 0.0) ** 2 * float(np.prod(cleaned.pixel_nm)) / (2 * np.pi) ** 2
-    spectrum, rms_nm, shortest_nm = (
-        hann_spectrum(cleaned),
-        cleaned.rms_nm,
-        measured.shortest_wave_nm,
-    )
+    pixel_nm2 = float(np.prod(cleaned.pixel_nm))
+    white = (measured.noise_nm or 0.0) ** 2 * pixel_nm2 / (2 * np.pi) ** 2
+    spectrum = hann_spectrum(cleaned)
+    rms_nm = cleaned.rms_nm
+    shortest_nm = measured.shortest_wave_nm
     raw = measured.data
-    treated = treatment_of(raw, cleaned, spectrum) if isinstance(raw, Scan) else None
+    treated = None
+    if isinstance(raw, Scan):
+        treated = treatment_of(raw, cleaned, spectrum)
     if treated is not None:
         spectrum, rms_nm = restored(spectrum, treated, rms_nm)
         shortest_nm = max(shortest_nm or 0.0, 2 * np.pi / treated.end)
     limits = trusted_range(
         cleaned.name, spectrum, measured.tip_radius_nm, rms_nm, shortest_nm, white
     )
-    side_nm, form = float(np.sqrt(np.prod(cleaned.lengths_nm))), form_share(cleaned.heights_nm)
-    return replace(limits, side_nm=side_nm, form=form, treatment=treated.kind if treated else "")
+    side_nm = float(np.sqrt(np.prod(cleaned.lengths_nm)))
+    form = form_share(cleaned.heights_nm)
+    treatment = treated.kind if treated is not None else ""
+    return replace(limits, side_nm=side_nm, form=form, treatment=treatment)
 
 
 def trusted_range(
@@ -217,25 +217,24 @@ def trusted_range(
     low = TRUST.lowest_shell * spectrum.spacing
     tail = float(psd[-1])
     if len(q) > 20:  # a converted profile ends before, where its noise has been looked for
-        end = psd[q > 0.93 * spectrum.nyquist]
-        tail = float(np.median(end)) if len(end) else 0.0
+        shortest = psd[q > 0.93 * spectrum.nyquist]
+        tail = float(np.median(shortest)) if len(shortest) else 0.0
     smooth = _smooth(psd, q)
     limits = {"pixels": TRUST.pixels * spectrum.nyquist}
     if shortest_wave_nm:
         limits["filter"] = 2 * np.pi / shortest_wave_nm
     end = q > 0.7 * spectrum.nyquist
-    falls = (
-        end.sum() > 8
-        and np.polyfit(np.log(q[end]), np.log(smooth[end]), 1)[0] < -1.0
-        and noise_psd < tail
-    )
+    falls = False
+    if end.sum() > 8 and noise_psd < tail:
+        slope = np.polyfit(np.log(q[end]), np.log(smooth[end]), 1)[0]
+        falls = bool(slope < -1.0)
     # noise is flat at the end; what still falls there are short waves that the pixels fold back
-    ends = _first(
-        "pixels" if falls else "noise", q, (q > low) & (smooth < TRUST.noise * max(tail, noise_psd))
-    )
-    limits |= {name: min(value, limits.get(name, np.inf)) for name, value in ends.items()}
+    drowned = smooth < TRUST.noise * max(tail, noise_psd)
+    for cause, end_q in _first("pixels" if falls else "noise", q, (q > low) & drowned).items():
+        limits[cause] = min(end_q, limits.get(cause, np.inf))
     reach = min(limits.values())
-    limits |= _first("tip", q, (q > low) & (curvature(tip_radius_nm, q, smooth) > TRUST.curved))
+    blunt = curvature(tip_radius_nm, q, smooth) > TRUST.curved
+    limits |= _first("tip", q, (q > low) & blunt)
     limit = min(limits, key=lambda key: limits[key])
     return TrustedSpectrum(name, spectrum, low, limits[limit], limit, tip_radius_nm, rms_nm, reach)
 
@@ -251,28 +250,24 @@ def trusted_profile(cleaned: Profile, measured: Measurement) -> TrustedSpectrum:
     InputError : hardly a wave between the ends of what is trusted.
     """
     k, c1 = line_spectrum(cleaned)
-    nyquist, radius = np.pi / cleaned.step_nm, measured.tip_radius_nm
-    low = (
-        (TRUST.lowest_wave_bow if cleaned.bow else TRUST.lowest_wave)
-        * 2
-        * np.pi
-        / cleaned.length_nm
-    )
-    limits = {"pixels": (TRUST.uneven_line if cleaned.resampled else TRUST.even_line) * nyquist}
+    nyquist = np.pi / cleaned.step_nm
+    radius = measured.tip_radius_nm
+    lowest_wave = TRUST.lowest_wave_bow if cleaned.bow else TRUST.lowest_wave
+    low = lowest_wave * 2 * np.pi / cleaned.length_nm
+    pixels = TRUST.uneven_line if cleaned.resampled else TRUST.even_line
+    limits = {"pixels": pixels * nyquist}
     if measured.shortest_wave_nm:
         limits["filter"] = 2 * np.pi / measured.shortest_wave_nm
-    limits |= _first(
-        "noise",
-        k,
-        (k > low) & (_smooth_line(k, c1) < TRUST.noise * _noise_level(k, c1, cleaned, measured)),
-    )
+    noise = TRUST.noise * _noise_level(k, c1, cleaned, measured)
+    limits |= _first("noise", k, (k > low) & (_smooth_line(k, c1) < noise))
     limit = min(limits, key=lambda key: limits[key])
     high = reach = limits[limit]
     _check_span(cleaned, low, high, limit)
     spectrum = isotropic_spectrum(cleaned, low, reach)
     curved = curvature(radius, spectrum.q, spectrum.psd)
     if blunt := _first("tip", spectrum.q, curved > TRUST.curved):
-        limit, high = "tip", blunt["tip"]
+        limit = "tip"
+        high = blunt["tip"]
         _check_span(cleaned, low, high, limit)
         # what the tip has taken beyond would pull the waves below down with it
         reach = float(spectrum.q[curved < TRUST.most_curved][-1])
@@ -304,18 +299,20 @@ def _check_span(profile: Profile, low: float, high: float, limit: str) -> None:
 
 def _first(name: str, q: np.ndarray, reached: np.ndarray) -> dict[str, float]:
     """A limit at the first wave vector where it is reached; none where it never is."""
-    return {name: float(q[reached][0])} if reached.any() else {}
+    if not reached.any():
+        return {}
+    return {name: float(q[reached][0])}
 
 
 def _smooth(psd: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Geometric mean over 12 % to each side of q."""
-    return np.exp(_windowed_mean(np.log(psd), q, q * (1 - 0.12), q * (1 + 0.12), "right"))
+    low = q * (1 - 0.12)
+    high = q * (1 + 0.12)
+    return np.exp(_windowed_mean(np.log(psd), q, low, high, "right"))
 
 
 def _smooth_line(k: np.ndarray, c1: np.ndarray) -> np.ndarray:
-    """Mean over a quarter to each side, at least 8 wave numbers: single ones scatter by as much as
-    they are.
-    """
+    """Mean over a quarter to each side, at least 8 wave numbers: single ones scatter by 100 %."""
     width = np.maximum(0.25 * k, 8 * (k[1] - k[0]))
     return _windowed_mean(c1, k, k - width, k + width, "left")
 
@@ -328,5 +325,6 @@ def _windowed_mean(
     side: Literal["left", "right"],
 ) -> np.ndarray:
     total = np.concatenate([[0.0], np.cumsum(values)])
-    first, last = np.searchsorted(q, low), np.searchsorted(q, high, side=side)
+    first = np.searchsorted(q, low)
+    last = np.searchsorted(q, high, side=side)
     return (total[last] - total[first]) / (last - first)

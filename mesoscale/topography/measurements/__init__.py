@@ -1,6 +1,4 @@
-"""What instruments measured: files and their formats, levelling, and what each instrument can
-see.
-"""
+"""What instruments measured: files and formats, levelling, and what each instrument can see."""
 
 import glob
 import os
@@ -20,7 +18,7 @@ def files_in(path: str | Path) -> list[str]:
     return sorted(filter(os.path.isfile, glob.glob(f"{glob.escape(str(Path(path)))}/*")))
 
 
-def check_count(given: str, files: Sequence[object]) -> None:
+def check_count(source: str, files: Sequence[object]) -> None:
     """Refuse more files than are described together.
 
     Raises
@@ -29,6 +27,6 @@ def check_count(given: str, files: Sequence[object]) -> None:
     """
     if len(files) > MOST_FILES:
         raise InputError(
-            f"{given}: {len(files)} files; at most {MOST_FILES} are described together: move those"
+            f"{source}: {len(files)} files; at most {MOST_FILES} are described together: move those"
             " of this surface into a folder of their own, or name some of them"
         )

@@ -1,5 +1,4 @@
-"""What the names of channels and of columns say: which hold heights, and in which direction they
-were scanned.
+"""Names of channels and columns: which hold heights, and the direction of their scan.
 
 The words stand in config/channels.yaml.
 """
@@ -47,30 +46,28 @@ def words(kind: str) -> frozenset[str]:
 
 
 def parts_of(name: str) -> list[str]:
-    """A name in small letters, split at capitals, digits, blanks and underscores; arrows are parts,
-    too.
-    """
-    plain = ACROSS.sub(
-        lambda match: " forward " if match[1] else " backward ", unicodedata.normalize("NFC", name)
-    )
+    """A name in small letters, split at capitals, digits, blanks, underscores and arrows."""
+
+    def in_words(arrow: re.Match[str]) -> str:
+        return " forward " if arrow[1] else " backward "
+
+    plain = ACROSS.sub(in_words, unicodedata.normalize("NFC", name))
     spaced = CAPITALS.sub(" ", plain)
-    return [part.lower() for part in PARTS.findall(spaced)]
+    return [name_part.lower() for name_part in PARTS.findall(spaced)]
 
 
 def says(kind: str, name: str) -> bool:
     """Has a name a word of this section?"""
     name = ANGSTROM.sub(" ", name)
-    parts = parts_of(name)
-    joined = " ".join(parts)
+    name_parts = parts_of(name)
+    joined = " ".join(name_parts)
     for word in words(kind):
-        if word in parts and (len(word) > WHOLE or kind != "no_height" or base_of(name) == word):
-            return True
-        inside = len(word) > ALONE or not word.isascii() or " " in word
-        if (
-            inside
-            and (word in joined or word in name.lower())
-            and not (word.isascii() and len(word) <= ALONE)
+        if word in name_parts and (
+            len(word) > WHOLE or kind != "no_height" or base_of(name) == word
         ):
+            return True
+        inside = len(word) > ALONE or not word.isascii()
+        if inside and (word in joined or word in name.lower()):
             return True
     return False
 
@@ -81,28 +78,30 @@ def names_other_unit(head: str) -> bool:
 
 
 def base_of(name: str) -> str:
-    """A name without its words of direction, also where they end another word, as in
-    HEIGHTTRACE.
-    """
+    """A name without its words of direction, even those that end a word, as in HEIGHTTRACE."""
     directions = words("backward") | words("forward") | words("slow")
-    kept = [_without_end(part) for part in parts_of(name) if part not in directions]
-    return " ".join(part for part in kept if part)
+    stems = [_without_end(part) for part in parts_of(name) if part not in directions]
+    return " ".join(part for part in stems if part)
 
 
 def is_backward(name: str) -> bool:
     """Was a channel of this name scanned on the way back?"""
-    parts = parts_of(name)
-    ends = tuple(word for word in words("backward") if _may_end(word))
-    return any(part in words("backward") or part.endswith(ends) for part in parts)
+    name_parts = parts_of(name)
+    endings = tuple(word for word in words("backward") if _may_end(word))
+    return any(
+        name_part in words("backward") or name_part.endswith(endings) for name_part in name_parts
+    )
 
 
 def _may_end(word: str) -> bool:
     return len(word) > ALONE or word in ("fwd", "bwd")
 
 
-def _without_end(part: str) -> str:
-    ends = sorted(filter(_may_end, words("backward") | words("forward")), key=len, reverse=True)
-    return next((part.removesuffix(end) for end in ends if part.endswith(end)), part)
+def _without_end(name_part: str) -> str:
+    endings = sorted(filter(_may_end, words("backward") | words("forward")), key=len, reverse=True)
+    return next(
+        (name_part.removesuffix(end) for end in endings if name_part.endswith(end)), name_part
+    )
 
 
 def holds_heights(name: str) -> bool:
@@ -114,7 +113,10 @@ def holds_heights(name: str) -> bool:
 def listed(names: Sequence[str]) -> str:
     """Names in a message, some of many."""
     more = len(names) - MOST_NAMES
-    return (", ".join(names[:MOST_NAMES]) or "none") + (f" and {more} more" if more > 0 else "")
+    text = ", ".join(names[:MOST_NAMES]) or "none"
+    if more > 0:
+        text += f" and {more} more"
+    return text
 
 
 def with_lengths(channels: Iterable[Any], reader: str) -> list[Any]:
@@ -125,37 +127,33 @@ def with_lengths(channels: Iterable[Any], reader: str) -> list[Any]:
     reader : the format, by its name in SurfaceTopography.
     """
     # some readers call a phase a height, but then its unit is no length
-    lengths = [
-        item
-        for item in channels
-        if item.is_height_channel and (item.unit is None or isinstance(item.unit, str))
-    ]
+    heights = [item for item in channels if item.is_height_channel]
+    lengths = [item for item in heights if item.unit is None or isinstance(item.unit, str)]
     return [item for item in lengths if not (reader in AMPERE and _unit_of(item) == "A")]
 
 
 def _unit_of(channel: Any) -> str | None:
     """The unit of the heights as the file states it."""
     raw = (getattr(channel, "info", None) or {}).get("raw_metadata", {})
-    for key, value in raw.items() if isinstance(raw, dict) else ():
+    if not isinstance(raw, dict):
+        raw = {}
+    for key, value in raw.items():
         if str(key).endswith("/data") and isinstance(value, dict):  # Gwyddion's
-            return str(
-                value.get("GwyDataField", {})
-                .get("si_unit_z", {})
-                .get("GwySIUnit", {})
-                .get("unitstr", "")
-            )
+            field = value.get("GwyDataField", {})
+            unit = field.get("si_unit_z", {}).get("GwySIUnit", {})
+            return str(unit.get("unitstr", ""))
     return getattr(channel, "data_unit", None) or channel.unit
 
 
 def height_channel(
-    where: str, channels: Sequence[Any], reader: str, wanted: str | None, also: Callable[[Any], str]
+    where: str, channels: Sequence[Any], reader: str, stated: str | None, also: Callable[[Any], str]
 ) -> tuple[Any, tuple[str, ...]]:
     """The channel of heights, and a note where there was a choice.
 
     Parameters
     ----------
     reader : the format, by its name in SurfaceTopography.
-    wanted : the name that the user states.
+    stated : the name that the user states.
     also : what else the file leaves open of a channel, in words for a message.
 
     Raises
@@ -163,23 +161,25 @@ def height_channel(
     InputError : none, or several and none of them stated.
     """
     lengths = with_lengths(channels, reader)
-    pixels = {id(item): int(np.prod(getattr(item, "nb_grid_pts", None) or 1)) for item in lengths}
-    most = max(pixels.values(), default=0) / 16  # of a thumbnail
+    pixels = {}
+    for item in lengths:
+        pixels[id(item)] = int(np.prod(getattr(item, "nb_grid_pts", None) or 1))
+    smallest = max(pixels.values(), default=0) / 16  # of a thumbnail
     heights = [
-        item for item in lengths if holds_heights(str(item.name)) and pixels[id(item)] > most
+        item for item in lengths if holds_heights(str(item.name)) and pixels[id(item)] > smallest
     ]
     names = list(dict.fromkeys(str(item.name) for item in heights))
     present = list(dict.fromkeys(str(item.name) for item in channels))
-    if wanted is not None:
-        chosen = [item for item in heights if str(item.name) == wanted]
-        if not chosen and wanted in present:
+    if stated is not None:
+        chosen = [item for item in heights if str(item.name) == stated]
+        if not chosen and stated in present:
             raise InputError(
-                f"{where}: channel {wanted!r} holds no heights; those that do (--channel):"
+                f"{where}: channel {stated!r} holds no heights; those that do (--channel):"
                 f" {listed(names)}"
             )
         if not chosen:
             raise InputError(
-                f"{where}: no height channel {wanted!r} (--channel, topography.channel); it has:"
+                f"{where}: no height channel {stated!r} (--channel, topography.channel); it has:"
                 f" {listed(names)}"
             )
         heights = chosen
@@ -198,7 +198,7 @@ def height_channel(
             " topography too, or calibrate heights that are in V"
         )
     forward = next((item for item in heights if not is_backward(str(item.name))), heights[0])
-    others = len(heights) - 1
-    return forward, (
-        (f"took {forward.name}, one of {others + 1} channels of heights",) if others else ()
-    )
+    further = len(heights) - 1
+    if not further:
+        return forward, ()
+    return forward, (f"took {forward.name}, one of {further + 1} channels of heights",)

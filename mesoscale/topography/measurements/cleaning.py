@@ -77,9 +77,7 @@ class Scan:
 
 
 def stand_in_steps(stand_ins: Sequence[StandIn], points: int) -> tuple[str, ...]:
-    """In words which numbers were taken for missing points, and the share of `points` that had
-    them.
-    """
+    """In words: the numbers taken for missing points, and the share of `points` with them."""
     return tuple(
         f"{STAND_INS} {item.count / points:.2%} of the points ({item.count}), which lie "
         f"{'exactly at' if item.exact else 'far from all others, about'} {item.value_nm:.6g} nm"
@@ -97,8 +95,7 @@ def without_missing(scan: Scan) -> Scan:
 
 
 def measured_part(scan: Scan) -> Scan:
-    """A scan without lines that nobody measured: without a value, at one value, or the line before
-    once more.
+    """A scan without unmeasured lines: without a value, at one value, or a copy of the line before.
 
     At the ends, as an aborted scan has them, such lines are cut off, between others they are
     missing. A scan of nothing else stays as it is.
@@ -108,22 +105,25 @@ def measured_part(scan: Scan) -> Scan:
     InputError : more lines between others than `MAX_MISSING` repeat the one before.
     """
     heights = scan.heights_nm
-    same = np.append(False, (heights[:, 1:] == heights[:, :-1]).all(axis=0))
+    repeats = (heights[:, 1:] == heights[:, :-1]).all(axis=0)
+    same = np.append(False, repeats)
     empty = np.isnan(heights).all(axis=0)
-    measured = np.flatnonzero(~same & ~empty & (np.ptp(heights, axis=0) != 0))
+    changing = np.ptp(heights, axis=0) != 0
+    measured = np.flatnonzero(~same & ~empty & changing)
     lines = heights.shape[1]
     if len(measured) < 2 or len(measured) == lines:
         return scan
-    first, last = measured[0], measured[-1] + 1
-    repeated = float(
-        np.mean((same & ~empty)[first:last] & (np.ptp(heights, axis=0) != 0)[first:last])
-    )
+    first = measured[0]
+    last = measured[-1] + 1
+    copied = same & ~empty & changing
+    repeated = float(np.mean(copied[first:last]))
     if repeated > MAX_MISSING:
         raise InputError(
             f"{scan.name}: {repeated:.0%} of the scan lines repeat the line before: the map was"
             " enlarged after it was measured; give it as it was measured"
         )
-    kept, steps = np.array(heights[:, first:last], dtype=float), scan.steps
+    lines_nm = np.array(heights[:, first:last], dtype=float)
+    steps = scan.steps
     if last - first < lines:
         steps = (
             *steps,
@@ -131,10 +131,10 @@ def measured_part(scan: Scan) -> Scan:
         )
     lost = np.setdiff1d(np.arange(first, last), measured) - first
     if len(lost):
-        kept[:, lost] = np.nan
+        lines_nm[:, lost] = np.nan
         steps = (*steps, f"took {len(lost)} scan lines without measurement for missing")
     lengths_nm = scan.lengths_nm[0], scan.lengths_nm[1] * (last - first) / lines
-    return replace(scan, heights_nm=kept, lengths_nm=lengths_nm, steps=steps)
+    return replace(scan, heights_nm=lines_nm, lengths_nm=lengths_nm, steps=steps)
 
 
 def clean(scan: Scan, settings: TopographySettings) -> Scan:
@@ -173,7 +173,9 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
         steps.append(f"filled {int(missing.sum())} missing pixels from their neighbours")
     heights, spikes = without_spikes(heights)
     if spikes:
-        words = MANY_SPIKES if spikes > MANY * heights.size else "replaced spikes"
+        words = "replaced spikes"
+        if spikes > MANY * heights.size:
+            words = MANY_SPIKES
         steps.append(
             f"{words} by the median of their neighbours: {spikes} of {heights.size} pixels"
         )
@@ -182,8 +184,7 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
 
 
 def alignment_effect(scan: Scan, settings: TopographySettings) -> tuple[float, float]:
-    """What the alignment of lines does to a raw scan, tilt apart: share of the RMS height taken,
-    skewness added.
+    """Effect of aligning the lines of a raw scan: share of the RMS height taken, skewness added.
 
     Offsets between lines are the instrument's; where there are none, this is roughness that is
     lost. A line that crosses few grains has its median between them, so that aligning medians lifts
@@ -194,20 +195,22 @@ def alignment_effect(scan: Scan, settings: TopographySettings) -> tuple[float, f
     heights = np.where(np.isfinite(scan.heights_nm), scan.heights_nm, np.nan)
     heights, _ = levelled(heights, settings)
     aligned = heights - _line_medians(heights)
-    before, after = float(np.nanstd(heights)), float(np.nanstd(aligned))
+    before = float(np.nanstd(heights))
+    after = float(np.nanstd(aligned))
     if min(before, after) == 0:
         return 0.0, 0.0
-    centred = [z - np.nanmean(z) for z in (heights, aligned)]
-    skewness = [
-        float(np.nanmean(z * z * z)) / sd**3 for z, sd in zip(centred, (before, after), strict=True)
-    ]
-    return 1 - after / before, skewness[1] - skewness[0]
+    skewness_before = _skewness(heights, before)
+    return 1 - after / before, _skewness(aligned, after) - skewness_before
+
+
+def _skewness(heights: np.ndarray, deviation: float) -> float:
+    """Skewness of heights of a standard deviation; NaN are left out."""
+    z = heights - np.nanmean(heights)
+    return float(np.nanmean(z * z * z)) / deviation**3
 
 
 def _line_medians(heights: np.ndarray) -> np.ndarray:
-    """Median of each scan line of heights (nx, ny); NaN for lines without any value, which are
-    filled later.
-    """
+    """Median of each scan line of heights (nx, ny); NaN for empty lines, which are filled later."""
     if np.isfinite(heights).all():
         return np.median(np.ascontiguousarray(heights.T), axis=1)  # eight times as fast
     with warnings.catch_warnings():
@@ -238,48 +241,51 @@ def form_step(form: float) -> str:
 
 
 def form_share(heights: np.ndarray) -> float:
-    """ln of the mean square of levelled heights (nx, ny) over what a parabola leaves of it: how
-    much is form.
-    """
-    rest = heights - fitted_trend(heights, order=2)
-    before, after = float(np.nanvar(heights)), float(np.nanvar(rest))
-    return float(np.log(before / after)) if after > 0 else 0.0
+    """ln of the mean square of levelled heights (nx, ny) over that less a parabola."""
+    without_form = heights - fitted_trend(heights, order=2)
+    before = float(np.nanvar(heights))
+    after = float(np.nanvar(without_form))
+    if after <= 0:
+        return 0.0
+    return float(np.log(before / after))
 
 
 def cut_off_share(heights: np.ndarray) -> float:
     """Share of pixels at the very highest or lowest value; 0 where all heights are equal."""
-    top, bottom = np.nanmax(heights), np.nanmin(heights)
+    top = np.nanmax(heights)
+    bottom = np.nanmin(heights)
     if top == bottom:
         return 0.0
-    at_top, at_bottom = np.mean(heights == top), np.mean(heights == bottom)
+    at_top = np.mean(heights == top)
+    at_bottom = np.mean(heights == bottom)
     return float(max(at_top, at_bottom))
 
 
 def fitted_trend(heights: np.ndarray, order: int) -> np.ndarray:
-    """Least-squares plane (order 1) or quadratic (order 2) through heights (nx, ny); NaN are left
-    out.
-    """
+    """Least-squares plane (order 1) or quadratic (order 2) through heights (nx, ny) without NaN."""
     nx, ny = heights.shape
-    x, y = np.linspace(-1, 1, nx), np.linspace(-1, 1, ny)
-    powers = [(0, 0), (1, 0), (0, 1), *([(2, 0), (1, 1), (0, 2)] if order >= 2 else [])]
-    x, y = (
-        np.stack([u**k for k in range(2 * order + 1)]) for u in (x, y)
-    )  # all terms are products
+    powers = [(0, 0), (1, 0), (0, 1)]
+    if order >= 2:
+        powers += [(2, 0), (1, 1), (0, 2)]
+    # all terms are products of powers of x and y
+    degrees = range(2 * order + 1)
+    x = np.linspace(-1, 1, nx)
+    y = np.linspace(-1, 1, ny)
+    x = np.stack([x**k for k in degrees])
+    y = np.stack([y**k for k in degrees])
     known = np.isfinite(heights)
-    weights, sums = (
-        x @ values @ y.T for values in (known.astype(float), np.where(known, heights, 0.0))
-    )
+    weights = x @ known.astype(float) @ y.T
+    sums = x @ np.where(known, heights, 0.0) @ y.T
     gram = np.array([[weights[i + k, j + m] for k, m in powers] for i, j in powers])
     right = np.array([sums[i, j] for i, j in powers])
     table = np.zeros((2 * order + 1, 2 * order + 1))
-    table[tuple(np.transpose(powers))] = np.linalg.lstsq(gram, right, rcond=None)[0]
+    fitted = np.linalg.lstsq(gram, right, rcond=None)
+    table[tuple(np.transpose(powers))] = fitted[0]
     return x.T @ table @ y
 
 
 def fill_missing(heights: np.ndarray) -> np.ndarray:
-    """Fill NaN by linear interpolation along the scan line; lines without any value become the
-    mean.
-    """
+    """Fill NaN by linear interpolation along the scan line; empty lines become the mean."""
     filled = heights.copy()
     positions = np.arange(heights.shape[0])
     for j in np.flatnonzero(~np.isfinite(heights).all(axis=0)):
@@ -290,9 +296,7 @@ def fill_missing(heights: np.ndarray) -> np.ndarray:
 
 
 def without_spikes(heights: np.ndarray) -> tuple[np.ndarray, int]:
-    """Replace pixels far from the median of their 3 x 3 neighbourhood; returns heights and their
-    number.
-    """
+    """Replace pixels far from the median of their 3 x 3 neighbourhood; heights and their number."""
     from scipy.ndimage import median_filter
 
     local = median_filter(heights.astype(np.float32), size=3, mode="nearest")

@@ -37,12 +37,12 @@ class Columns:
     units: tuple[str | None, str | None]
 
 
-def columns_of(where: str, text: Text, wanted: str | None) -> Columns:
+def columns_of(where: str, text: Text, stated: str | None) -> Columns:
     """The columns of a table that hold positions and heights, by their heads or by their order.
 
     Parameters
     ----------
-    wanted : the column of heights that the user names.
+    stated : the column of heights that the user names.
 
     Raises
     ------
@@ -55,39 +55,39 @@ def columns_of(where: str, text: Text, wanted: str | None) -> Columns:
         )
     values = text.values()
     if text.heads:
-        places, height = _by_heads(where, text.heads, wanted)
+        places, height = _by_heads(where, text.heads, stated)
     else:
-        if wanted is not None:
+        if stated is not None:
             raise InputError(
-                f"{where}: no line names the columns, so that none is {wanted!r} (--channel)"
+                f"{where}: no line names the columns, so that none is {stated!r} (--channel)"
             )
         places, height = _by_order(where, values)
     places = _without_constant(values, places)
-    names = tuple(text.heads[k] for k in (*places, height)) if text.heads else ()
+    names: tuple[str, ...] = ()
+    if text.heads:
+        names = tuple(text.heads[k] for k in (*places, height))
     units = [unit_of_head(name) for name in names]
     position_unit = next((unit for unit in units[:-1] if unit), None)
-    return Columns(
-        values[:, places], values[:, height], names, (position_unit, units[-1] if units else None)
-    )
+    height_unit = units[-1] if units else None
+    return Columns(values[:, places], values[:, height], names, (position_unit, height_unit))
 
 
-def _by_heads(where: str, heads: tuple[str, ...], wanted: str | None) -> tuple[list[int], int]:
+def _by_heads(where: str, heads: tuple[str, ...], stated: str | None) -> tuple[list[int], int]:
     """Places of the columns of positions, and of the one of heights."""
     names = [without_unit(head) for head in heads]
     lengths = [not names_other_unit(head) for head in heads]
     may_be = [length and holds_heights(name) for length, name in zip(lengths, names, strict=True)]
     positions = [k for k, name in enumerate(names) if lengths[k] and says("position", name)]
-    heights = [
-        k
-        for k, name in enumerate(names)
-        if may_be[k] and says("height", name) and k not in positions
+    called_height = [
+        length and says("height", name) for length, name in zip(may_be, names, strict=True)
     ]
-    if wanted is not None:
-        heights = [k for k, head in enumerate(heads) if wanted in (head, names[k])]
+    heights = [k for k in range(len(names)) if called_height[k] and k not in positions]
+    if stated is not None:
+        heights = [k for k, head in enumerate(heads) if stated in (head, names[k])]
         if not heights:
-            raise InputError(f"{where}: no column {wanted!r} (--channel); it has: {listed(heads)}")
+            raise InputError(f"{where}: no column {stated!r} (--channel); it has: {listed(heads)}")
         if not may_be[heights[0]]:
-            raise InputError(f"{where}: column {wanted!r} holds no heights (--channel)")
+            raise InputError(f"{where}: column {stated!r} holds no heights (--channel)")
     if not heights and len(heads) <= 3 and may_be[-1]:  # X and y1, distance and raw
         heights = [len(heads) - 1]
         positions = [k for k in positions if k < len(heads) - 1]
@@ -109,11 +109,8 @@ def _by_heads(where: str, heads: tuple[str, ...], wanted: str | None) -> tuple[l
     if not positions and len(heads) == 1:
         return [], height
     if not positions and len(heads) <= 3:
-        positions = [
-            k
-            for k in range(len(heads))
-            if k != height and may_be[k] and not says("height", names[k])
-        ]
+        other = [k for k in range(len(heads)) if k != height and may_be[k]]
+        positions = [k for k in other if not says("height", names[k])]
     if not 1 <= len(positions) <= 2:
         raise InputError(
             f"{where}: a table of {listed(heads)}: {heads[height]} stands over no distance along"
@@ -138,7 +135,8 @@ def _by_order(where: str, values: np.ndarray) -> tuple[list[int], int]:
 def _runs_with(first: np.ndarray, second: np.ndarray) -> bool:
     """Is one column a linear function of the other?"""
     known = np.isfinite(first) & np.isfinite(second)
-    first, second = first[known], second[known]
+    first = first[known]
+    second = second[known]
     if len(first) < 3 or np.ptp(first) == 0 or np.ptp(second) == 0:
         return False
     fitted = np.polyval(np.polyfit(second, first, 1), second)
@@ -149,5 +147,7 @@ def _without_constant(values: np.ndarray, places: list[int]) -> list[int]:
     """Positions that change: a line across a map has one place along the other axis."""
     if len(places) < 2:
         return places
-    changing = [k for k in places if np.nanmax(values[:, k]) > np.nanmin(values[:, k])]
+    highest = np.nanmax(values[:, places], axis=0)
+    lowest = np.nanmin(values[:, places], axis=0)
+    changing = [k for k, top, bottom in zip(places, highest, lowest, strict=True) if top > bottom]
     return changing or places[:1]

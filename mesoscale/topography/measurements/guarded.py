@@ -1,5 +1,4 @@
-"""A file of a stranger is read in a process of its own, which may take so much time and memory and
-no more.
+"""A stranger's file is read in a process of its own, with limits of time and memory.
 
 Readers of 40 formats meet files that point at themselves, unfold to gigabytes, or fill the terminal
 with warnings. The process is a fork, which costs some milliseconds and needs no second import of
@@ -23,8 +22,7 @@ CPU_S, MEMORY_MB = 8.0, 2000.0
 
 
 def guarded(path: Path, read: Callable[[], Any]) -> Any:
-    """What `read` returns, from a process with limits; on systems without fork, read in this
-    process.
+    """What `read` returns, from a process with limits; without fork, from this process.
 
     Raises
     ------
@@ -37,20 +35,21 @@ def guarded(path: Path, read: Callable[[], Any]) -> Any:
         raise InputError(f"{path}: {size_MB:.0f} MB; at most 4000 MB are accepted: crop the scan")
     # measured: 6 s and 2.6 GB for a map of 8192² pixels (512 MB), 9 s and 0.8 GB for one of 4096²
     # as text (147 MB)
-    cpu_s, memory_MB = min(CPU_S + size_MB, 50.0), min(MEMORY_MB + 20.0 * size_MB, 16000.0)
+    cpu_s = min(CPU_S + size_MB, 50.0)
+    memory_MB = min(MEMORY_MB + 20.0 * size_MB, 16000.0)
     with tempfile.TemporaryDirectory(
         prefix="asperity-"
     ) as folder:  # ours: the process may be killed
-        here, there = multiprocessing.Pipe(duplex=False)
+        receiver, sender = multiprocessing.Pipe(duplex=False)
         child = os.fork()  # not multiprocessing.Process, which a worker of a pool may not start
         if child == 0:
-            _in_child(read, there, folder, cpu_s, memory_MB)
-        there.close()
-        with here:
+            _in_child(read, sender, folder, cpu_s, memory_MB)
+        sender.close()
+        with receiver:
             outcome, result = "slow", None
             try:
-                if here.poll(3.0 * cpu_s):  # by the clock: the machine may be busy
-                    outcome, result = here.recv()
+                if receiver.poll(3.0 * cpu_s):  # by the clock: the machine may be busy
+                    outcome, result = receiver.recv()
             except EOFError:  # ended by a limit or by a fault of a reader
                 outcome = "ended"
             finally:
@@ -98,13 +97,14 @@ def _limit(folder: str, cpu_s: float, memory_MB: float) -> None:
     sys.stdout = sys.stderr = os.fdopen(nothing, "w")  # a notebook's go elsewhere
     tempfile.tempdir = folder
     used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-    for limit, value in (
+    limits = (
         (resource.RLIMIT_AS, used + int(memory_MB * 2**20)),
         (resource.RLIMIT_CPU, int(cpu_s) + 1),
         (resource.RLIMIT_FSIZE, 600 * 2**20),  # a container is unpacked while it is read
         (resource.RLIMIT_CORE, 0),
-    ):
+    )
+    for limit, value in limits:
         hard = resource.getrlimit(limit)[1]
-        resource.setrlimit(
-            limit, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard)
-        )
+        if hard != resource.RLIM_INFINITY:
+            value = min(value, hard)
+        resource.setrlimit(limit, (value, hard))

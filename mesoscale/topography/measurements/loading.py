@@ -1,5 +1,4 @@
-"""Scans and line profiles from files and published containers, through the readers of
-SurfaceTopography.
+"""Scans and line profiles from files and containers, by the readers of SurfaceTopography.
 
 Files come from strangers: each is read in a process with limits (`guarded`). The list of a
 container, which its reader takes by PyYAML's full loader, must hold plain values and tuples alone.
@@ -79,8 +78,7 @@ class Measurement:
 def load_measurements(
     path: str | Path, name: str | None = None, settings: TopographySettings | None = None
 ) -> list[Measurement]:
-    """Everything that a file holds of one surface, in nm: a scan, a line profile, or all of a
-    container.
+    """All that a file holds of one surface, in nm: a scan, a line profile, or a whole container.
 
     Parameters
     ----------
@@ -95,7 +93,8 @@ def load_measurements(
         physical size or
         unit; a container of several surfaces.
     """
-    path, settings = Path(path), settings or TopographySettings()
+    path = Path(path)
+    settings = settings or TopographySettings()
     if not os.path.isfile(path):  # unlike Path.is_file, False for a name that is too long
         raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
     if is_of_the_system(path):
@@ -124,18 +123,14 @@ def with_limits(
     instrument: InstrumentSettings = NO_LIMITS,
     file_radius_nm: float | None = None,
 ) -> Measurement:
-    """A scan or line profile with the limits of its instrument; what it leaves open is the file's
-    or the settings'.
-    """
-    radius = file_radius_nm if instrument.tip_radius_nm is None else instrument.tip_radius_nm
-    used = settings.tip_nm if radius is None else radius
-    return Measurement(
-        data,
-        used,
-        radius is not None or settings.tip_radius_nm is not None,
-        instrument.shortest_wave_nm,
-        instrument.noise_nm,
-    )
+    """A scan or profile with its instrument's limits; what is open comes from file or settings."""
+    radius = instrument.tip_radius_nm
+    if radius is None:
+        radius = file_radius_nm
+    stated = radius is not None or settings.tip_radius_nm is not None
+    if radius is None:
+        radius = settings.tip_nm
+    return Measurement(data, radius, stated, instrument.shortest_wave_nm, instrument.noise_nm)
 
 
 def _instrument(name: str, settings: TopographySettings) -> InstrumentSettings:
@@ -162,15 +157,18 @@ def _alone(path: Path, file: Path, name: str, settings: TopographySettings) -> M
     file : what is read: the same, or what was packed in it.
     """
     instrument = _instrument(path.name, settings)
-    where, head = str(path), _head_of(file)
-    wanted = instrument.channel or settings.channel
+    where = str(path)
+    head = _head_of(file)
+    channel = instrument.channel or settings.channel
     if named := foreign(file, head, by_name=False):
         raise InputError(named.replace(str(file), where, 1))
-    text = None if _is_known(head) or decoded(head) is None else text_of(file.read_bytes())
+    text = None
+    if not _is_known(head) and decoded(head) is not None:
+        text = text_of(file.read_bytes())
     if text is None and (named := foreign(file, head, by_name=True)):
         raise InputError(named.replace(str(file), where, 1))
     if text is not None and _is_table(text):
-        columns = columns_of(where, text, wanted)
+        columns = columns_of(where, text, channel)
         return _of_table(where, name, columns, _word_steps(text), settings, instrument)
     if instrument.points is not None:
         raise InputError(
@@ -200,13 +198,13 @@ def _is_known(head: bytes) -> bool:
 
 
 def _is_table(text: Text) -> bool:
-    """Are these columns of positions and heights, and no map? A map has 32 pixels a side, or a
-    header with its size.
-    """
+    """Are these columns of positions and heights? A map has 32 a side or a size."""
     stated = any(re.search(r"[=:]", line) and re.search(r"\d", line) for line in text.header)
     if text.width == 1:
         return not stated
-    return text.width <= (3 if stated and not text.heads else BROADEST_TABLE)
+    if stated and not text.heads:
+        return text.width <= 3
+    return text.width <= BROADEST_TABLE
 
 
 def _of_channels(
@@ -218,65 +216,57 @@ def _of_channels(
     instrument: InstrumentSettings,
 ) -> Measurement:
     """The measurement of the channel of heights that a reader of SurfaceTopography finds."""
-    where, head = str(path), _head_of(file)
+    where = str(path)
+    head = _head_of(file)
     try:
         reader = opened(file, head)
     except InputError as error:
         raise InputError(str(error).replace(str(file), where, 1)) from None
     channels = _tried(where, lambda: list(reader.channels))
     _check_unit_of(where, file, channels, instrument)
+    in_length = [item for item in channels if not _is_ampere(text, item)]
     channel, note = height_channel(
         where,
-        [item for item in channels if not _is_ampere(text, item)],
+        in_length,
         reader.format(),
         instrument.channel or settings.channel,
         lambda item: _also(path.name, item, instrument),
     )
     if min(getattr(channel, "nb_grid_pts", None) or [MIN_SIDE]) < MIN_SIDE and channel.dim == 2:
         raise InputError(_too_small(where, channel.nb_grid_pts))
-    given = _given(where, channel, instrument)
+    user_values = _given(where, channel, instrument)
     if channel.dim == 2 or getattr(
         channel, "is_uniform", False
     ):  # uneven lines have positions instead
         _check_sized(where, channel, instrument)
-    topography = _tried(where, lambda: channel.topography(**given))
+    topography = _tried(where, lambda: channel.topography(**user_values))
     _check_whole(where, text, topography, channels)
-    marked = None
-    if masks := getattr(
-        reader, "_masks", None
-    ):  # Gwyddion's mask is over what is missing, and over grains
+    steps = [f"read channel {channel.name}", *note]
+    masks = getattr(reader, "_masks", None)
+    if masks:  # Gwyddion's mask is over what is missing, and over grains
         lost = np.ma.getmaskarray(_tried(where, topography.heights))
         masks.clear()
-        whole = _tried(where, lambda: channel.topography(**given))
-        below = np.asarray(_tried(where, whole.heights))[lost]
+        unmasked = _tried(where, lambda: channel.topography(**user_values))
+        below = np.asarray(_tried(where, unmasked.heights))[lost]
         if len(np.unique(below[np.isfinite(below)])) > 1:  # what is missing has one value
-            topography, marked = (
-                whole,
-                f"{MARKED} {lost.mean():.1%} of the pixels, which have heights: kept them",
-            )
-    steps = (
-        f"read channel {channel.name}",
-        *note,
-        *([marked] if marked else []),
-        *_word_steps(text),
-    )
-    return _measurement(where, name, topography, head, steps, settings, instrument)
+            topography = unmasked
+            steps.append(f"{MARKED} {lost.mean():.1%} of the pixels, which have heights: kept them")
+    all_steps = (*steps, *_word_steps(text))
+    return _measurement(where, name, topography, head, all_steps, settings, instrument)
 
 
 def _word_steps(text: Text | None) -> tuple[str, ...]:
     """What words among the numbers of a text stand for; NaN and BAD say it themselves."""
-    said = {
-        word: count
-        for word, count in (text.words if text else {}).items()
-        if word.lower() not in PLAIN_WORDS
-    }
-    if text is None or not said:
+    if text is None:
         return ()
-    most, count = max(said, key=lambda word: said[word]), sum(said.values())
+    counts = {word: n for word, n in text.words.items() if word.lower() not in PLAIN_WORDS}
+    if not counts:
+        return ()
+    commonest = max(counts, key=lambda word: counts[word])
+    count = sum(counts.values())
     share = count / (len(text.rows) * text.width)
-    return (
-        f"{STAND_INS} {share:.2%} of the values ({count}), which are words such as {most[:20]!r}",
-    )
+    example = repr(commonest[:20])
+    return (f"{STAND_INS} {share:.2%} of the values ({count}), which are words such as {example}",)
 
 
 def _is_ampere(text: Text | None, channel: Any) -> bool:
@@ -323,11 +313,9 @@ def _of_table(
 ) -> Measurement:
     """A line or a map from columns of positions and heights."""
     factors = _factors(where, columns, instrument)
-    taken = (
-        f"read columns {', '.join(columns.names)}"
-        if columns.names
-        else "read columns by their order"
-    )
+    taken = "read columns by their order"
+    if columns.names:
+        taken = f"read columns {', '.join(columns.names)}"
     steps = (taken, *steps)
     places = columns.positions.shape[1]
     if instrument.points is not None and places != 2:
@@ -342,10 +330,9 @@ def _of_table(
     if places == 2:
         x, y = columns.positions.T
         grid, lengths, step = on_grid(where, x, y, columns.heights, instrument.points)
-        x_nm, y_nm = (factors[0] * length for length in lengths)
-        return _scan(
-            where, name, factors[1] * grid, (x_nm, y_nm), (*steps, step), settings, instrument
-        )
+        lengths_nm = (factors[0] * lengths[0], factors[0] * lengths[1])
+        heights_nm = factors[1] * grid
+        return _scan(where, name, heights_nm, lengths_nm, (*steps, step), settings, instrument)
     heights = columns.heights
     if places == 1:
         positions = columns.positions[:, 0]
@@ -364,24 +351,30 @@ def _of_table(
 def _factors(where: str, columns: Columns, instrument: InstrumentSettings) -> tuple[float, float]:
     """Factors to nm of positions and heights, by the heads of the columns or by the user."""
     across, up = columns.units
-    asked = instrument.unit, instrument.height_unit or instrument.unit
+    stated_units = instrument.unit, instrument.height_unit or instrument.unit
     if across and up and (instrument.unit or instrument.height_unit):
         stated = [nm_of(where, unit) for unit in (across, up)]
-        if stated != [nm_of(where, unit or "nm") for unit in asked]:
+        if stated != [nm_of(where, unit or "nm") for unit in stated_units]:
             raise InputError(
                 f"{where}: states a unit itself, {across} and {up}; leave out that of"
                 " topography.instruments (--unit)"
             )
-    across = across or asked[0] or (up if not columns.positions.shape[1] else None)
-    up = up or asked[1]
+    heights_alone = not columns.positions.shape[1]
+    across = across or stated_units[0]
+    if not across and heights_alone:
+        across = up
+    up = up or stated_units[1]
     if not across or not up:
-        size = "" if columns.positions.shape[1] or instrument.size else "size: [1], "
-        option = "" if not size else "--size 1 "
+        size = ""
+        option = ""
+        if heights_alone and not instrument.size:
+            size = "size: [1], "
+            option = "--size 1 "
+        kind = "points" if columns.positions.shape[1] == 2 else "a profile"
         raise InputError(
-            f"{where}: {'points' if columns.positions.shape[1] == 2 else 'a profile'} without"
-            f" length unit; state it in topography.instruments (files: {Path(where).name!r},"
-            f" {size}unit: um, height_unit: nm; {option}--unit um,nm) or in the heads of its"
-            " columns"
+            f"{where}: {kind} without length unit; state it in topography.instruments (files:"
+            f" {Path(where).name!r}, {size}unit: um, height_unit: nm; {option}--unit um,nm) or in"
+            " the heads of its columns"
         )
     return nm_of(where, across), nm_of(where, up)
 
@@ -394,10 +387,8 @@ def _given(where: str, channel: Any, instrument: InstrumentSettings) -> dict[str
     InputError : the file states it itself.
     """
     sized = channel.physical_sizes is not None
-    for name, stated, added in (
-        ("a unit", channel.unit, instrument.unit),
-        ("a size", sized, instrument.size),
-    ):
+    twice_stated = [("a unit", channel.unit, instrument.unit), ("a size", sized, instrument.size)]
+    for name, stated, added in twice_stated:
         if stated and added:
             raise InputError(
                 f"{where}: states {name} itself; leave out that of topography.instruments (--unit,"
@@ -405,14 +396,13 @@ def _given(where: str, channel: Any, instrument: InstrumentSettings) -> dict[str
             )
     if sized or not instrument.size:
         return {}
-    sides = instrument.size if channel.dim == 1 else (instrument.size[0], instrument.size[-1])
-    return {"physical_sizes": sides[: channel.dim] if channel.dim == 2 else sides[0]}
+    if channel.dim == 2:
+        return {"physical_sizes": (instrument.size[0], instrument.size[-1])}
+    return {"physical_sizes": instrument.size[0]}
 
 
 def _contained(path: Path, name: str, settings: TopographySettings) -> Iterator[Measurement]:
-    """The measurements of the one surface in a container, as they were taken: filters of its list
-    are not applied.
-    """
+    """Measurements of the one surface in a container; its filters do not act."""
     from SurfaceTopography.Container.IO import CEReader
 
     try:
@@ -454,9 +444,9 @@ def _check_member(where: str, member: Any, source: Any, head: bytes) -> None:
     from SurfaceTopography.IO import open_topography
 
     channels = _tried(where, lambda: list(open_topography(member.open).channels))
-    called = (
-        str(channels[source].name) if isinstance(source, int) and source < len(channels) else ""
-    )
+    called = ""
+    if isinstance(source, int) and source < len(channels):
+        called = str(channels[source].name)
     if called and not holds_heights(called):
         raise InputError(
             f"{where}: takes channel {called!r}, which holds no heights; remove it from the"
@@ -476,16 +466,15 @@ def _measurement(
     settings: TopographySettings,
     instrument: InstrumentSettings,
 ) -> Measurement:
-    """A topography of SurfaceTopography in nm, by the unit of the file, of its columns, or of the
-    scene.
-    """
+    """A topography of SurfaceTopography in nm, by the unit of file, columns or scene."""
     unit = topography.unit or instrument.unit
     factors = (nm_of(where, unit),) * 2 if unit else _column_factors(where, head)
     if factors is None:
+        kind = "profile" if topography.dim == 1 else "map"
         raise InputError(
-            f"{where}: a {'profile' if topography.dim == 1 else 'map'} without length unit; state"
-            f" it in topography.instruments (files: {Path(where).name!r}, unit: um, height_unit:"
-            " nm; --unit um,nm) or in the heads of its columns"
+            f"{where}: a {kind} without length unit; state it in topography.instruments (files:"
+            f" {Path(where).name!r}, unit: um, height_unit: nm; --unit um,nm) or in the heads of"
+            " its columns"
         )
     if instrument.height_unit and not topography.unit:
         factors = factors[0], nm_of(where, instrument.height_unit)
@@ -494,9 +483,8 @@ def _measurement(
         x, z = _tried(where, lambda: _points(*topography.positions_and_heights()))
         data = _profile(where, name, x * factors[0], z * factors[1])
         bow = topography.info.get("detrend_mode") == "curvature"
-        return with_limits(
-            replace(data, bow=bow, steps=(*steps, *data.steps)), settings, instrument, radius
-        )
+        data = replace(data, bow=bow, steps=(*steps, *data.steps))
+        return with_limits(data, settings, instrument, radius)
     _check_sized(where, topography, instrument)
     heights = factors[1] * _tried(where, lambda: _filled(topography.heights()))
     x_nm, y_nm = (factors[0] * float(size) for size in topography.physical_sizes)
@@ -513,9 +501,7 @@ def _scan(
     instrument: InstrumentSettings,
     radius_nm: float | None = None,
 ) -> Measurement:
-    """A map with the limits of its instrument, cut as asked; numbers that stand for missing points
-    are NaN.
-    """
+    """A map with its instrument's limits, cut as asked; missing points are NaN."""
     if min(heights_nm.shape) < MIN_SIDE:
         raise InputError(_too_small(where, heights_nm.shape))
     _check_size(where, *lengths_nm)
@@ -526,21 +512,18 @@ def _scan(
     return with_limits(scan, settings, instrument, radius_nm)
 
 
-def _cut(where: str, scan: Scan, asked: Any) -> Scan:
+def _cut(where: str, scan: Scan, crop: Any) -> Scan:
     """The part of a map that the user asks for."""
-    heights, part = cropped(where, scan.heights_nm, asked)
+    heights, window = cropped(where, scan.heights_nm, crop)
     if min(heights.shape) < MIN_SIDE:
         raise InputError(_too_small(where, heights.shape))
     pixels = scan.pixel_nm
     lengths = heights.shape[0] * pixels[0], heights.shape[1] * pixels[1]
-    ranges = ", ".join(f"{side.start}:{side.stop}" for side in part)
+    ranges = ", ".join(f"{side.start}:{side.stop}" for side in window)
     step = f"cut to the pixels {ranges} of {scan.heights_nm.shape[0]} x {scan.heights_nm.shape[1]}"
-    return replace(
-        scan,
-        heights_nm=np.ascontiguousarray(heights),
-        lengths_nm=lengths,
-        steps=(*scan.steps, step),
-    )
+    steps = (*scan.steps, step)
+    heights = np.ascontiguousarray(heights)
+    return replace(scan, heights_nm=heights, lengths_nm=lengths, steps=steps)
 
 
 def _too_small(where: str, shape: Sequence[int]) -> str:
@@ -558,29 +541,28 @@ def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profi
 
 
 def _column_factors(where: str, head: bytes) -> tuple[float, float] | None:
-    """Factors to nm of positions and heights, by the heads of the columns of a text in a container;
-    None without.
-    """
+    """Factors to nm of positions and heights by column heads; None without."""
     text = text_of(head)
     if text is None or not 1 < text.width <= BROADEST_TABLE or not text.heads:
         return None
     across, up = columns_of(where, replace(text, odd=0), None).units
-    return (nm_of(where, across), nm_of(where, up)) if across and up else None
+    if not across or not up:
+        return None
+    return nm_of(where, across), nm_of(where, up)
 
 
 def _stated_radius(where: str, info: Any) -> float | None:
-    """Radius of the tip in nm, as files and containers state it with their instrument; None where
-    they do not.
-    """
+    """Radius of the tip in nm as files and containers state it with their instrument; else None."""
     for key in ("instrument", "parameters", "tip_radius"):
-        info = info.get(key) if isinstance(info, dict) else None
-    if (
-        not isinstance(info, dict)
-        or not isinstance(info.get("value"), (int, float))
-        or info["value"] <= 0
-    ):
+        if not isinstance(info, dict):
+            return None
+        info = info.get(key)
+    if not isinstance(info, dict):
         return None
-    return float(info["value"]) * nm_of(f"{where}: tip_radius", str(info.get("unit")))
+    radius = info.get("value")
+    if not isinstance(radius, (int, float)) or radius <= 0:
+        return None
+    return float(radius) * nm_of(f"{where}: tip_radius", str(info.get("unit")))
 
 
 def _points(x: Any, z: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -603,17 +585,13 @@ def _check_sized(where: str, item: Any, instrument: InstrumentSettings) -> None:
 def _also(name: str, item: Any, instrument: InstrumentSettings) -> str:
     """What a file leaves open besides its channel, in words for a message."""
     lacks, keys = _lacking(name, item, instrument)
-    return (
-        f"; they have no {lacks}: state them, too, in topography.instruments {keys}"
-        if lacks
-        else ""
-    )
+    if not lacks:
+        return ""
+    return f"; they have no {lacks}: state them, too, in topography.instruments {keys}"
 
 
 def _lacking(name: str, item: Any, instrument: InstrumentSettings) -> tuple[str, str]:
-    """What neither a file nor its user says of the size and unit of a map, and the keys and options
-    to fill.
-    """
+    """Size and unit that neither file nor user states, with keys and options."""
     sizes = item.physical_sizes or instrument.size
     sized = sizes is not None and all(
         np.isfinite(size) and size > 0 for size in np.atleast_1d(sizes)
@@ -622,19 +600,15 @@ def _lacking(name: str, item: Any, instrument: InstrumentSettings) -> tuple[str,
     size_words = ("physical size", "size: [1, 1]", "--size 1x1")
     if item.dim == 1:
         size_words = ("length", "size: [1]", "--size 1")
-    asked = [
-        words
-        for words, stated in (
-            (size_words, sized),
-            (("length unit", "unit: um", "--unit um"), named),
-        )
-        if not stated
-    ]
-    lacks, keys, options = ([words[k] for words in asked] for k in range(3))
-    return (
-        " and no ".join(lacks),
-        f"({', '.join([f'files: {name!r}', *keys])}; {' '.join(options)})",
-    )
+    missing = []
+    if not sized:
+        missing.append(size_words)
+    if not named:
+        missing.append(("length unit", "unit: um", "--unit um"))
+    lacks = " and no ".join(words for words, _, _ in missing)
+    keys = ", ".join([f"files: {name!r}", *(key for _, key, _ in missing)])
+    options = " ".join(option for _, _, option in missing)
+    return lacks, f"({keys}; {options})"
 
 
 def _check_size(where: str, *lengths_nm: float) -> None:
@@ -681,9 +655,7 @@ def _tried(where: str, read: Callable[[], Any], file: Path | None = None, head: 
 
 
 def write_gwy(path: str | Path, scan: Scan) -> None:
-    """Write heights to a Gwyddion file, in metres as Gwyddion wants them; missing pixels as its
-    mask.
-    """
+    """Write heights to a Gwyddion file in metres; missing pixels become its mask."""
     metre = 1e-9
     x, y = (length * metre for length in scan.lengths_nm)
     write_channels(path, {"Height": (scan.heights_nm * metre, "m")}, (x, y))

@@ -48,9 +48,7 @@ class StandIn:
 
 
 def without_stand_ins(heights: np.ndarray) -> tuple[np.ndarray, list[StandIn]]:
-    """Heights (n,) or (nx, ny) with NaN in place of numbers that stand for missing points, and
-    these numbers.
-    """
+    """Heights (n,) or (nx, ny) with NaN for stand-ins of missing points; these."""
     stand_ins: list[StandIn] = []
     while len(stand_ins) < MOST_VALUES:
         known = heights[np.isfinite(heights)]
@@ -67,25 +65,32 @@ def without_stand_ins(heights: np.ndarray) -> tuple[np.ndarray, list[StandIn]]:
         if marked is None:
             break
         values = heights[marked]
-        stand_ins.append(StandIn(float(np.median(values)), len(values), bool(np.ptp(values) == 0)))
+        exact = bool(np.ptp(values) == 0)
+        stand_ins.append(StandIn(float(np.median(values)), len(values), exact))
         heights = np.where(marked, np.nan, heights)
     return heights, stand_ins
 
 
 def _lonely(heights: np.ndarray, known: np.ndarray) -> np.ndarray | None:
-    """Points below or above a gap in the values that is wide beside all others; None where there is
-    no such gap.
-    """
-    most = max(1, int(MOST_ALONE * len(known)))
-    few = np.partition(known, (most, len(known) - most - 1))
-    for below in (True, False):
-        tail = np.sort(few[: most + 1] if below else few[len(known) - most - 1 :])
-        gaps = np.diff(tail)
-        rest = few[most:].max() - tail[1:] if below else tail[:-1] - few[: len(known) - most].min()
-        wide = np.flatnonzero((gaps > LONE * rest) & (rest > 0))  # else a surface of two levels
-        if len(wide):
-            return heights <= tail[wide[-1]] if below else heights >= tail[wide[0] + 1]
+    """Points beyond a gap in the values that is wide beside all others, or None."""
+    largest = max(1, int(MOST_ALONE * len(known)))
+    last = len(known) - largest - 1
+    few = np.partition(known, (largest, last))
+    lowest = np.sort(few[: largest + 1])
+    wide = _wide_gaps(lowest, few[largest:].max() - lowest[1:])
+    if len(wide):
+        return heights <= lowest[wide[-1]]
+    highest = np.sort(few[last:])
+    wide = _wide_gaps(highest, highest[:-1] - few[: last + 1].min())
+    if len(wide):
+        return heights >= highest[wide[0] + 1]
     return None
+
+
+def _wide_gaps(tail: np.ndarray, spread: np.ndarray) -> np.ndarray:
+    """Places of gaps between sorted values that are wide beside the spread of all others."""
+    gaps = np.diff(tail)
+    return np.flatnonzero((gaps > LONE * spread) & (spread > 0))  # else a surface of two levels
 
 
 def _is_damage(heights: np.ndarray, marked: np.ndarray) -> bool:
@@ -96,34 +101,37 @@ def _is_damage(heights: np.ndarray, marked: np.ndarray) -> bool:
 
 def _common(known: np.ndarray) -> Iterator[float]:
     """Values that far more points have than any value nearby, the most common first."""
-    sample = known if len(known) <= SAMPLE else known[:: -(-len(known) // SAMPLE)]
+    sample = known
+    if len(known) > SAMPLE:
+        sample = known[:: -(-len(known) // SAMPLE)]
     values, counts = np.unique(sample, return_counts=True)
-    least = max(TIES, TIED_SHARE * len(sample))
+    fewest = max(TIES, TIED_SHARE * len(sample))
     for place in np.argsort(counts)[::-1][:MOST_VALUES]:
-        if counts[place] < least:
+        if counts[place] < fewest:
             return
-        near = np.r_[counts[max(place - 10, 0) : place], counts[place + 1 : place + 11]]
-        few_values = len(near) < 10  # steps and gratings without noise
-        if (
-            not few_values
-            and counts[place] > MORE_THAN_NEAR * near.max()
-            and counts[place] < MOST_TIED * len(sample)
-        ):
+        below = counts[max(place - 10, 0) : place]
+        near = np.r_[below, counts[place + 1 : place + 11]]
+        if len(near) < 10:  # steps and gratings without noise
+            continue
+        if MORE_THAN_NEAR * near.max() < counts[place] < MOST_TIED * len(sample):
             yield float(values[place])
 
 
 def _jumps(heights: np.ndarray, marked: np.ndarray) -> bool:
-    """Does the surface jump where it meets these points? A plateau it meets as it meets any other
-    point.
-    """
-    steps, met = [], []
+    """Does the surface jump at these points? A true plateau it meets as any other point."""
+    steps = []
+    met = []
     for axis in range(heights.ndim):
         step = np.abs(np.diff(heights, axis=axis))
-        first, second = (np.take(marked, range(k, k + step.shape[axis]), axis) for k in (0, 1))
+        count = step.shape[axis]
+        first = np.take(marked, range(count), axis)
+        second = np.take(marked, range(1, count + 1), axis)
         steps.append(step[~first & ~second])
         met.append(step[first ^ second])
-    usual, across = np.concatenate(steps), np.concatenate(met)
-    usual, across = usual[np.isfinite(usual)], across[np.isfinite(across)]
+    usual = np.concatenate(steps)
+    across = np.concatenate(met)
+    usual = usual[np.isfinite(usual)]
+    across = across[np.isfinite(across)]
     if not len(usual) or not len(across):
         return False
     return bool(np.median(across) > JUMP * np.quantile(usual, 0.9))
@@ -134,7 +142,7 @@ SMALL_HOLE = 1e-3
 
 
 def cropped(
-    where: str, heights: np.ndarray, asked: str | tuple[int, int, int, int]
+    where: str, heights: np.ndarray, crop: str | tuple[int, int, int, int]
 ) -> tuple[np.ndarray, tuple[slice, slice]]:
     """A part of heights (nx, ny), and which.
 
@@ -148,18 +156,18 @@ def cropped(
     ------
     InputError : a part that lies outside the map.
     """
-    if isinstance(asked, str):
-        part = _largest_rectangle(~_large_holes(heights))
+    if isinstance(crop, str):
+        window = _largest_rectangle(~_large_holes(heights))
     else:
-        x1, x2, y1, y2 = asked
+        x1, x2, y1, y2 = crop
         nx, ny = heights.shape
         if not (x1 < x2 <= nx and y1 < y2 <= ny):
             raise InputError(
                 f"{where}: cut to {x1}:{x2}, {y1}:{y2} of {nx} x {ny} pixels (--crop,"
                 f" topography.instruments crop); accepted are 0:{nx}, 0:{ny} and what lies inside"
             )
-        part = slice(x1, x2), slice(y1, y2)
-    return heights[part], part
+        window = slice(x1, x2), slice(y1, y2)
+    return heights[window], window
 
 
 def _large_holes(heights: np.ndarray) -> np.ndarray:
@@ -178,7 +186,8 @@ def _largest_rectangle(known: np.ndarray) -> tuple[slice, slice]:
 
     Row by row, each column is as high as what is true above it; a stack finds the largest rectangle
     under these."""
-    best, largest = 0, (slice(0, 0), slice(0, 0))
+    best = 0
+    largest = (slice(0, 0), slice(0, 0))
     high = np.zeros(known.shape[1], dtype=int)
     for row, line in enumerate(known):
         high = np.where(line, high + 1, 0)

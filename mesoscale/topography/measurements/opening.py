@@ -1,6 +1,4 @@
-"""What a file is: packed files are unpacked, two more formats are converted, and others are named
-with a way out.
-"""
+"""What a file is: packed files are unpacked, two formats converted, others named with a remedy."""
 
 import bz2
 import gzip
@@ -31,8 +29,7 @@ LONGEST = 160  # characters of a reader's reason
 
 
 def foreign(path: Path, head: bytes, by_name: bool) -> str | None:
-    """Name of a format that nothing here reads (config/formats.yaml), and what to do; None of other
-    files.
+    """Name of a format that nothing here reads (config/formats.yaml), and a remedy; else None.
 
     Parameters
     ----------
@@ -45,10 +42,11 @@ def foreign(path: Path, head: bytes, by_name: bool) -> str | None:
         begins += [bytes.fromhex(text) for text in item.get("hex", ())]
         if begins and head.startswith(tuple(begins)):
             return _named(path, item)
-    ends = (
-        item for item in _formats() if path.name.lower().endswith(tuple(item.get("ends", ("\0",))))
-    )
-    return next((_named(path, item) for item in ends), None) if by_name else None
+    if not by_name:
+        return None
+    name = path.name.lower()
+    by_ending = (item for item in _formats() if name.endswith(tuple(item.get("ends", ("\0",)))))
+    return next((_named(path, item) for item in by_ending), None)
 
 
 def _named(path: Path, item: Mapping[str, Any]) -> str:
@@ -61,8 +59,7 @@ def _formats() -> list[dict[str, Any]]:
 
 
 def unpacked(path: Path, head: bytes) -> Path:
-    """The file, or the only file in an archive or a compressed file; a container of
-    contact.engineering stays.
+    """The file, or the only file in an archive; a container of contact.engineering stays.
 
     Raises
     ------
@@ -70,7 +67,9 @@ def unpacked(path: Path, head: bytes) -> Path:
     """
     opens = next((opens for begins, opens in PACKED.items() if head.startswith(begins)), None)
     if opens is not None:
-        name = path.stem if path.suffix.lower() in (".gz", ".bz2", ".xz") else path.name
+        name = path.name
+        if path.suffix.lower() in (".gz", ".bz2", ".xz"):
+            name = path.stem
         if Path(name).suffix == ".tar":
             raise InputError(f"{path}: is an archive of files; unpack it and give them")
         try:
@@ -102,7 +101,7 @@ def unpacked(path: Path, head: bytes) -> Path:
 
 
 def _hidden(name: str) -> bool:
-    return any(part.startswith((".", "__MACOSX")) for part in Path(name).parts)
+    return any(folder.startswith((".", "__MACOSX")) for folder in Path(name).parts)
 
 
 def _copied(stream: Any, name: str) -> Path:
@@ -113,8 +112,7 @@ def _copied(stream: Any, name: str) -> Path:
 
 
 def converted(path: Path, head: bytes) -> Path:
-    """The file, or a Gwyddion file with the channels of a Gwyddion Simple Field or of a scan of
-    Nanonis.
+    """The file, or a Gwyddion file made of a Gwyddion Simple Field or a scan of Nanonis.
 
     Raises
     ------
@@ -144,11 +142,12 @@ Channels = dict[str, tuple[np.ndarray, str]]
 def _simple_field(path: Path) -> tuple[Channels, tuple[float, float]]:
     with needs("scans"):
         from gsffile import read_gsf
-    data, said = read_gsf(path)
-    if said.get("XYUnits", "m") != "m":
-        raise InputError(f"lateral unit {said['XYUnits']}; accepted is m")
-    lengths = float(said.get("XReal", 1.0)), float(said.get("YReal", 1.0))
-    return {said.get("Title", "Height"): (data.T.astype(float), said.get("ZUnits", ""))}, lengths
+    data, head = read_gsf(path)
+    if head.get("XYUnits", "m") != "m":
+        raise InputError(f"lateral unit {head['XYUnits']}; accepted is m")
+    lengths = float(head.get("XReal", 1.0)), float(head.get("YReal", 1.0))
+    heights = data.T.astype(float)
+    return {head.get("Title", "Height"): (heights, head.get("ZUnits", ""))}, lengths
 
 
 def _nanonis(path: Path) -> tuple[Channels, tuple[float, float]]:
@@ -159,14 +158,13 @@ def _nanonis(path: Path) -> tuple[Channels, tuple[float, float]]:
         copy.symlink_to(path.resolve())
         path = copy
     scan = NanonisScan(str(path))
-    units = dict(
-        zip(scan.header["data_info"]["Name"], scan.header["data_info"]["Unit"], strict=True)
-    )
-    channels = {
-        f"{name} ({direction})": (np.asarray(values, dtype=float).T, units[name])
-        for name, both in scan.signals.items()
-        for direction, values in both.items()
-    }
+    info = scan.header["data_info"]
+    units = dict(zip(info["Name"], info["Unit"], strict=True))
+    channels = {}
+    for name, both in scan.signals.items():
+        for direction, values in both.items():
+            heights = np.asarray(values, dtype=float).T
+            channels[f"{name} ({direction})"] = (heights, units[name])
     x_m, y_m = (float(length) for length in scan.header["scan_range"])
     return channels, (x_m, y_m)
 
@@ -201,9 +199,9 @@ def with_unit(path: Path, unit: str) -> Path:
 
     content, keys = _fields(path)
     for key in keys:
-        for part in ("si_unit_xy", "si_unit_z"):
-            if not _unit(content[key], part):
-                content[key][part] = GwySIUnit(unitstr=unit)
+        for entry in ("si_unit_xy", "si_unit_z"):
+            if not _unit(content[key], entry):
+                content[key][entry] = GwySIUnit(unitstr=unit)
     copy = Path(tempfile.mkdtemp()) / path.name
     content.tofile(str(copy))
     return copy
@@ -228,8 +226,8 @@ def _fields(path: Path) -> tuple[Any, list[str]]:
     return content, [key for key in content if re.fullmatch(r"/\d+/data", key)]
 
 
-def _unit(field: Any, part: str) -> str:
-    return str((field.get(part) or {}).get("unitstr") or "")
+def _unit(field: Any, entry: str) -> str:
+    return str((field.get(entry) or {}).get("unitstr") or "")
 
 
 def opened(path: Path, head: bytes) -> Any:
@@ -269,8 +267,7 @@ def opened(path: Path, head: bytes) -> Any:
 
 
 def why_not_read(path: Path, head: bytes, tried: str) -> str:
-    """Why no reader takes a file: its format where it is known, else the reason of the reader that
-    it is meant for.
+    """Why no reader takes a file: its known format, else the reason of the most likely reader.
 
     Parameters
     ----------
@@ -280,17 +277,17 @@ def why_not_read(path: Path, head: bytes, tried: str) -> str:
 
     if named := foreign(path, head, by_name=True):
         return named
-    parts = re.split(r"tried (\w+): *\n", tried)
-    said = {
-        name: " ".join(text.split()) for name, text in zip(parts[1::2], parts[2::2], strict=False)
-    }
+    reasons = re.split(r"tried (\w+): *\n", tried)
+    readers_and_reasons = zip(reasons[1::2], reasons[2::2], strict=False)
+    reason_by_reader = {name: " ".join(text.split()) for name, text in readers_and_reasons}
     suffix = path.suffix.lower().lstrip(".")
     by_bytes = [item for item in readers if item.can_read(head) == MagicMatch.YES]
     by_name = [item for item in readers if suffix and suffix in (item.file_extensions() or ())]
-    first = [item for item in (*by_bytes, *by_name) if item.__name__ in said]
-    reason = (
-        f" ({first[0].name()}: {said[first[0].__name__][:LONGEST]})" if first else _begins(head)
-    )
+    first = [item for item in (*by_bytes, *by_name) if item.__name__ in reason_by_reader]
+    reason = _begins(head)
+    if first:
+        said = reason_by_reader[first[0].__name__]
+        reason = f" ({first[0].name()}: {said[:LONGEST]})"
     return (
         f"{path}: no reader understands this file{reason}; accepted are the formats of"
         " SurfaceTopography (gwy, ibw, di, jpk, mi, nid, ps tiff, ...; all: docs/topography.md,"
@@ -300,14 +297,13 @@ def why_not_read(path: Path, head: bytes, tried: str) -> str:
 
 def _begins(head: bytes) -> str:
     start = head[:16]
-    words = (
-        start.decode("ascii")
-        if start.isascii() and start.decode("ascii").isprintable()
-        else start[:8].hex(" ")
-    )
+    words = start[:8].hex(" ")
+    if start.isascii() and start.decode("ascii").isprintable():
+        words = start.decode("ascii")
     return f" (it begins with {words!r})"
 
 
 def first_line(error: Exception) -> str:
     """What an error says, in its first line."""
-    return (str(error).strip().splitlines() or [type(error).__name__])[0][:LONGEST]
+    lines = str(error).strip().splitlines() or [type(error).__name__]
+    return lines[0][:LONGEST]

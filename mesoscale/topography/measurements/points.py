@@ -1,6 +1,4 @@
-"""Points of a surface, x, y and z, put on the grid that they lie on; places without a point are
-missing.
-"""
+"""Points x, y, z of a surface, put on the grid that they lie on; empty places are missing."""
 
 from dataclasses import dataclass
 
@@ -26,8 +24,7 @@ class Axis:
 def on_grid(
     where: str, x: np.ndarray, y: np.ndarray, z: np.ndarray, stated: tuple[int, int] | None
 ) -> tuple[np.ndarray, tuple[float, float], str]:
-    """Heights (nx, ny) of points (n,), the side lengths in the unit of the positions, and this step
-    in words.
+    """Heights (nx, ny) of points (n,), side lengths in the positions' unit, and this step in words.
 
     Parameters
     ----------
@@ -39,16 +36,21 @@ def on_grid(
     InputError : no regular grid, or too few points on it.
     """
     known = np.isfinite(x) & np.isfinite(y)
-    x, y, z = x[known], y[known], z[known]
+    x = x[known]
+    y = y[known]
+    z = z[known]
     if len(x) < 4:
         raise InputError(f"{where}: {len(x)} points with a position; give a map")
     if min(np.ptp(x), np.ptp(y)) <= 0:
         raise InputError(
             f"{where}: all points lie on one line; give positions along it and heights"
         )
-    along_x, along_y = (
-        (_sorted_in(x, stated[0]), _sorted_in(y, stated[1])) if stated else (_places(x), _places(y))
-    )
+    if stated:
+        along_x = _sorted_in(x, stated[0])
+        along_y = _sorted_in(y, stated[1])
+    else:
+        along_x = _places(x)
+        along_y = _places(y)
     if along_x is None or along_y is None:
         raise InputError(f"{where}: the points lie on no regular grid; {_advice(x, y)}")
     counts = along_x.count, along_y.count
@@ -61,12 +63,13 @@ def on_grid(
     measured = np.isfinite(z)
     total = np.bincount(sites[measured], z[measured], size)
     number = np.bincount(sites[measured], minlength=size)
-    heights = np.where(number > 0, total / np.maximum(number, 1), np.nan).reshape(counts)
+    mean = total / np.maximum(number, 1)
+    heights = np.where(number > 0, mean, np.nan).reshape(counts)
     holes = int(np.count_nonzero(number == 0))
     lengths = along_x.count * along_x.step, along_y.count * along_y.step
-    step = f"put {len(x)} points on a grid of {counts[0]} x {counts[1]}" + (
-        f", {holes} without a point" * bool(holes)
-    )
+    step = f"put {len(x)} points on a grid of {counts[0]} x {counts[1]}"
+    if holes:
+        step += f", {holes} without a point"
     return heights, lengths, step
 
 
@@ -76,7 +79,8 @@ def _places(values: np.ndarray) -> Axis | None:
     extent = order[-1] - order[0]
     mean = extent / np.sqrt(len(values))
     starts = np.flatnonzero(np.diff(order) > APART * mean) + 1
-    centres = np.add.reduceat(order, np.r_[0, starts]) / np.diff(np.r_[0, starts, len(order)])
+    bounds = np.r_[0, starts, len(order)]
+    centres = np.add.reduceat(order, bounds[:-1]) / np.diff(bounds)
     step = extent / max(1, round(extent / float(np.median(np.diff(centres)))))
     place = np.rint((values - order[0]) / step).astype(int)
     if np.abs(values - order[0] - place * step).max() > OFF_GRID * step:
@@ -107,9 +111,8 @@ def _advice(x: np.ndarray, y: np.ndarray) -> str:
 
 def _empty_share(x: np.ndarray, y: np.ndarray, counts: np.ndarray) -> float:
     """Share of the places that have no point, but have some that do on both sides along x."""
-    along_x, along_y = (
-        _sorted_in(values, int(count)) for values, count in zip((x, y), counts, strict=True)
-    )
+    along_x = _sorted_in(x, int(counts[0]))
+    along_y = _sorted_in(y, int(counts[1]))
     filled = np.zeros(tuple(counts), dtype=bool)
     filled[along_x.place, along_y.place] = True
     before = np.maximum.accumulate(filled, axis=0)

@@ -1,6 +1,4 @@
-"""Heights along a line, as a stylus or a side view in an electron microscope gives them, made ready
-for a spectrum.
-"""
+"""Heights along a line, from a stylus or a side view, made ready for a spectrum."""
 
 import itertools
 from dataclasses import dataclass, field, replace
@@ -93,18 +91,19 @@ def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> P
             "give the longer part alone"
         )
     # text files round positions: a step that is even to 1 % is even
-    even = np.abs(gaps - step).max() < 0.01 * step + 1e-4 * (x[-1] - x[0]) / len(x)
-    rounded = np.abs(x - (x[0] + step * np.arange(len(x)))).max() < 0.05 * step
+    places = x[0] + step * np.arange(len(x))
+    tolerance = 0.01 * step + 1e-4 * (x[-1] - x[0]) / len(x)
+    even = np.abs(gaps - step).max() < tolerance
+    rounded = np.abs(x - places).max() < 0.05 * step
     if even or rounded:
         return Profile(z, len(x) * step, name, steps=notes)
-    heights = np.interp(x[0] + step * np.arange(len(x)), x, z)
+    heights = np.interp(places, x, z)
     note = f"read at even steps of {step:.3g} nm between {len(x)} uneven points"
     return Profile(heights, len(x) * step, name, resampled=True, steps=(*notes, note))
 
 
 def _without_missing(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Heights whose few missing points are filled from their neighbours along the line, and this in
-    words.
+    """Heights with few missing points filled from neighbours along the line, and this in words.
 
     Numbers that stand for missing points are told. Where more are missing, they stay NaN, and so do
     those at the ends."""
@@ -116,24 +115,25 @@ def _without_missing(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, tuple[st
     if not missing.any() or not in_order or missing.mean() > MAX_MISSING:
         return z, steps
     first, last = np.flatnonzero(~missing)[[0, -1]]
-    inside = missing & (np.arange(len(z)) > first) & (np.arange(len(z)) < last)
+    number = np.arange(len(z))
+    inside = missing & (number > first) & (number < last)
     z = np.where(inside, np.interp(x, x[~missing], z[~missing]), z)
     return z, (*steps, f"filled {int(inside.sum())} missing points from their neighbours")
 
 
 def _from_above(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
-    """Points in rising order of x, one height at each place, and in words what was done to get
-    them.
-    """
+    """Points in rising order of x, one height a place, and in words what was done for that."""
     order = np.argsort(x, kind="stable")
     steps = np.diff(x)
     forth = steps if steps.sum() >= 0 else -steps
     if len(x) < MIN_POINTS or (forth >= 0).all():
         return x[order], z[order], ()
     turn = int(np.argmax(np.abs(x - x[0])))  # the far end of the way there
-    there = steps[:turn] * np.sign(x[turn] - x[0])
-    if abs(x[turn] - x[0]) > 0.9 * np.ptp(x) and (there >= 0).all() and turn < 0.8 * len(x):
-        x, z = x[: turn + 1], z[: turn + 1]
+    outward = steps[:turn] * np.sign(x[turn] - x[0])
+    goes_far = abs(x[turn] - x[0]) > 0.9 * np.ptp(x)
+    if goes_far and (outward >= 0).all() and turn < 0.8 * len(x):
+        x = x[: turn + 1]
+        z = z[: turn + 1]
         order = np.argsort(x, kind="stable")
         return x[order], z[order], (f"{THERE_AND_BACK}: took the {len(x)} points of the way there",)
     back = int(np.count_nonzero(forth < 0))
@@ -142,14 +142,12 @@ def _from_above(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, t
     # upper envelope of all pieces of the line, on as many points
     even = np.linspace(x.min(), x.max(), len(x))
     seen = np.full(len(x), -np.inf)
-    for (x1, x2), (z1, z2) in zip(itertools.pairwise(x), itertools.pairwise(z), strict=True):
-        first, last = np.searchsorted(even, [min(x1, x2) - 1e-12, max(x1, x2) + 1e-12])
-        place = even[first:last]
-        heights = (
-            np.interp(place, (x1, x2), (z1, z2))
-            if x2 >= x1
-            else np.interp(place, (x2, x1), (z2, z1))
-        )
+    pieces = zip(itertools.pairwise(x), itertools.pairwise(z), strict=True)
+    for (x1, x2), (z1, z2) in pieces:
+        if x2 < x1:
+            x1, x2, z1, z2 = x2, x1, z2, z1
+        first, last = np.searchsorted(even, [x1 - 1e-12, x2 + 1e-12])
+        heights = np.interp(even[first:last], (x1, x2), (z1, z2))
         seen[first:last] = np.maximum(seen[first:last], heights)
     return (
         even,
@@ -169,19 +167,22 @@ def clean_profile(profile: Profile, settings: TopographySettings) -> Profile:
         raise InputError(
             f"{profile.name}: all heights are equal; this is no measurement of a surface"
         )
-    heights, steps = profile.heights_nm - profile.heights_nm.mean(), profile.steps
+    heights = profile.heights_nm - profile.heights_nm.mean()
+    steps = profile.steps
     if settings.detrend != "none":
         x = np.linspace(-1, 1, len(heights))
-        line, parabola = (
-            heights - np.polynomial.Polynomial.fit(x, heights, order)(x) for order in (1, 2)
-        )
-        form = float(np.log(max(np.var(line), 1e-300) / max(np.var(parabola), 1e-300)))
+        line = heights - np.polynomial.Polynomial.fit(x, heights, 1)(x)
+        parabola = heights - np.polynomial.Polynomial.fit(x, heights, 2)(x)
+        line_square = max(np.var(line), 1e-300)
+        form = float(np.log(line_square / max(np.var(parabola), 1e-300)))
         if profile.bow or settings.detrend == "quadratic":
             heights, note = parabola, "subtracted a parabola"
         elif (
             settings.detrend == "auto" and form > 3.5
         ):  # 400 lines across C ~ q^-4 without a plateau reach 3.3
-            heights, note, profile = parabola, form_step(form), replace(profile, bow=True)
+            heights = parabola
+            note = form_step(form)
+            profile = replace(profile, bow=True)
         else:
             heights, note = line, "subtracted a line"
         steps = (*steps, note)

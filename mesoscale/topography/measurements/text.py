@@ -50,12 +50,15 @@ class Text:
 
     def values(self) -> np.ndarray:
         """(rows, width) numbers; NaN where there is none."""
-        return np.array([[self._number(word) for word in self._split(row)] for row in self.rows])
+        split = (self._split(row) for row in self.rows)
+        return np.array([[self._number(word) for word in words] for words in split])
 
     @cached_property
     def words(self) -> Counter[str]:
         """Words among the numbers, which stand for missing points, and how often each does."""
-        split = (self._split(row) for row in (() if self.plain else self.rows))
+        if self.plain:
+            return Counter()
+        split = (self._split(row) for row in self.rows)
         return Counter(word for words in split for word in words if not self._is_number(word))
 
     @cached_property
@@ -66,28 +69,21 @@ class Text:
         if not named or not named[-1]:
             return ()
         last = named[-1]
-        if (
-            len(named) > 1
-            and named[0]
-            and all(re.fullmatch(r"[\[(]?[^\s\])]{0,12}[\])]?", word) for word in last)
-        ):
-            first = named[0]
-            if not any(
-                re.search(r"[(\[]", word) for word in first
-            ):  # a line of names, then one of units
-                return tuple(
-                    f"{name} ({unit.strip('[]()')})" for name, unit in zip(first, last, strict=True)
-                )
-        return last
+        units = all(re.fullmatch(r"[\[(]?[^\s\])]{0,12}[\])]?", word) for word in last)
+        if len(named) < 2 or not named[0] or not units:
+            return last
+        first = named[0]
+        if any(re.search(r"[(\[]", word) for word in first):
+            return last
+        # a line of names, then one of units
+        pairs = zip(first, last, strict=True)
+        return tuple(f"{name} ({unit.strip('[]()')})" for name, unit in pairs)
 
     def _names(self, line: str) -> tuple[str, ...]:
         """As many names as there are columns; none where the line has another number of them."""
-        for parts in (
-            _split(line, self.separator),
-            NAME.findall(line),
-            re.split(r"\s{2,}|\t", line),
-        ):
-            words = [word for word in (word.strip() for word in parts) if word]
+        by_separator = _split(line, self.separator)
+        for pieces in (by_separator, NAME.findall(line), re.split(r"\s{2,}|\t", line)):
+            words = [word for word in (word.strip() for word in pieces) if word]
             if len(words) == self.width and all(re.search(r"[^\W\d]|#", word) for word in words):
                 return tuple(words)
         return ()
@@ -98,7 +94,8 @@ class Text:
         header = self.header
         if self.comma:
             header = tuple(re.sub(r"(?<=\d),(?=\d)", ".", line) for line in header)
-        rows = ("\t".join(self._plain(word) for word in self._split(row)) for row in self.rows)
+        split = (self._split(row) for row in self.rows)
+        rows = ("\t".join(self._plain(word) for word in words) for words in split)
         path.write_text("\n".join((*header, *rows)) + "\n", encoding="utf-8")
         return path
 
@@ -130,18 +127,15 @@ def text_of(raw: bytes) -> Text | None:
     places, rows, width = _rows(lines, separator, comma)
     if not places:
         return None
-    first, last = places[0], places[-1]
-    others = set(range(first, min(last + 2, len(lines)))) - set(
-        places
-    )  # a line more: the last may be cut
-    odd = sum(_numeric(_split(lines[k], separator), comma) for k in others)
+    first = places[0]
+    last = places[-1]
+    # a line more: the last may be cut
+    all_lines = range(first, min(last + 2, len(lines)))
+    between = set(all_lines) - set(places)
+    odd = sum(_numeric(_split(lines[k], separator), comma) for k in between)
     as_it_is = raw.isascii() or (raw[:3] != b"\xef\xbb\xbf" and _is_utf8(raw))
-    plain = (
-        as_it_is
-        and separator in ("\t", None)
-        and not comma
-        and all(isinstance(row, str) for row in rows)
-    )
+    unbroken = all(isinstance(row, str) for row in rows)
+    plain = as_it_is and separator in ("\t", None) and not comma and unbroken
     return Text(tuple(lines[:first]), tuple(rows), separator, width, odd, comma, plain)
 
 
@@ -176,12 +170,14 @@ def _layout(lines: Sequence[str]) -> tuple[str | None, bool]:
     ]  # past most of a header
     if _one_column(sample):
         return None, True
-    best, layout = 0.0, (None, False)
+    best = 0.0
+    layout = (None, False)
     for comma in (False, True):
         for separator in SEPARATORS:
             score = _understood(sample, separator, comma)
             if score > best:
-                best, layout = score, (separator, comma)
+                best = score
+                layout = (separator, comma)
     return layout
 
 
@@ -201,18 +197,17 @@ def _one_column(sample: Sequence[str]) -> bool:
     """Are these heights with decimal commas, one a line, and no pairs of whole numbers?"""
     if not sample or not all(WITH_COMMA.fullmatch(line.strip().strip('"')) for line in sample):
         return False
-    first = np.array([float(re.sub(r"[^\d-]", "", line.split(",")[0]) or 0) for line in sample])
+    whole_words = (line.split(",")[0] for line in sample)
+    first = np.array([float(re.sub(r"[^\d-]", "", word) or 0) for word in whole_words])
     return not (np.diff(first) > 0).all()
 
 
 def _rows(
     lines: Sequence[str], separator: str | None, comma: bool
 ) -> tuple[list[int], list[Sequence[str] | str], int]:
-    """Places of the rows, the rows and their width; a row that readers take as it is stays a
-    line.
-    """
+    """Places of the rows, the rows and their width; a row that readers take stays a line."""
     plain: dict[int, int] = {}  # width by place
-    others: dict[int, list[str]] = {}
+    worded: dict[int, list[str]] = {}
     for place, line in enumerate(lines):
         if separator in ("\t", None) and not line.translate(PLAIN) and not BARE_SIGNS.search(line):
             count = len(line.split())
@@ -220,33 +215,30 @@ def _rows(
                 plain[place] = count
                 continue
         if line.strip():
-            others[place] = list(_split(line, separator))
-    numeric = {place for place, words in others.items() if _numeric(words, comma)}
-    widths = Counter(plain.values()) + Counter(len(others[place]) for place in numeric)
+            worded[place] = list(_split(line, separator))
+    numeric = {place for place, words in worded.items() if _numeric(words, comma)}
+    widths = Counter(plain.values()) + Counter(len(worded[place]) for place in numeric)
     if not widths:
         return [], [], 0
     width = widths.most_common(1)[0][0]
-    kept: dict[int, Sequence[str] | str] = {
-        place: lines[place] for place, count in plain.items() if count == width
-    }
+    rows: dict[int, Sequence[str] | str] = {}
+    rows |= {place: lines[place] for place, count in plain.items() if count == width}
     for place in numeric:
-        words = others[place]
+        words = worded[place]
         if separator is not None and len(words) < width <= lines[place].count(separator) + 1:
             words += [""] * (width - len(words))  # the last values are missing
         if len(words) == width:
-            kept[place] = words
-    first, last = min(kept), max(kept)
-    for place, words in others.items():  # a row of words alone, among rows of numbers
+            rows[place] = words
+    first = min(rows)
+    last = max(rows)
+    for place, words in worded.items():  # a row of words alone, among rows of numbers
         may_be_lost = len(words) == width and (width > 3 or width == 1 or len(set(words)) == 1)
-        if (
-            first < place < last
-            and place not in numeric
-            and may_be_lost
-            and not any(len(word) > 12 for word in words)
-        ):
-            kept[place] = words
-    places = sorted(kept)
-    return places, [kept[place] for place in places], width
+        inside = first < place < last and place not in numeric
+        short = not any(len(word) > 12 for word in words)
+        if inside and may_be_lost and short:
+            rows[place] = words
+    places = sorted(rows)
+    return places, [rows[place] for place in places], width
 
 
 def _numeric(words: Sequence[str], comma: bool) -> bool:
@@ -256,16 +248,14 @@ def _numeric(words: Sequence[str], comma: bool) -> bool:
 
 
 def _split(line: str, separator: str | None) -> Sequence[str]:
-    """Words of a line; an empty place between two separators is one, after the last one it is
-    none.
-    """
+    """Words of a line; an empty place between separators is a word, after the last it is none."""
     if separator is None:
         return line.replace('"', "").split()
     if '"' in line:
-        parts = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+        pieces = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
     else:
-        parts = line.split(separator)
-    words = [word.strip().strip('"').strip() for word in parts]
+        pieces = line.split(separator)
+    words = [word.strip().strip('"').strip() for word in pieces]
     while words and not words[-1]:
         words.pop()
     return words
@@ -273,8 +263,8 @@ def _split(line: str, separator: str | None) -> Sequence[str]:
 
 def _as_number(word: str, comma: bool) -> str | None:
     """A number as Python reads it; None of what is none."""
-    if comma:
-        word = word.replace(",", ".", 1) if word.count(",") == 1 and "." not in word else word
+    if comma and word.count(",") == 1 and "." not in word:
+        word = word.replace(",", ".", 1)
     if not NUMBER.fullmatch(word):
         return None
     return word.replace("D", "e").replace("d", "e").replace("\u2212", "-")

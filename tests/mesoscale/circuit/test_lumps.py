@@ -276,7 +276,9 @@ def test_ngspice_closes_the_switch_as_fast_and_as_deep(tmp_path, compiled_lump):
 
 @needs_ngspice
 def test_the_example_of_the_docs_runs_in_batch(tmp_path):
-    example = re.search(r"```\n(\* a step.*?)```", Path("docs/switch.md").read_text(), re.DOTALL)[1]
+    example = re.search(r"```\n(\* a step.*?)```", Path("docs/circuit.md").read_text(), re.DOTALL)[
+        1
+    ]
     lumps, closes_V = lumps_of(BEAM, 12), BeamSwitch(BEAM).states_on(LAW).pull_in_V
     (tmp_path / "central.sub").write_text(spice_switch(lumps, EXACT, LAW, 256, closes_V))
     assert "reltol=1e-5" in example  # 1e-3 allows 3 nm in the depth that the pad remembers

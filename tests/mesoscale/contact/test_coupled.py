@@ -11,6 +11,7 @@ from scipy.integrate import quad
 
 from evidence.contact import half_space, plain_coupled
 from evidence.contact.draws import draw_inputs
+from mesoscale import theory
 from mesoscale.contact import ContactInputs, run_cycle
 from mesoscale.contact.coupled import dense, grid, validity
 from mesoscale.contact.coupled.engine import CoupledContact
@@ -19,7 +20,6 @@ from mesoscale.contact.numerics import Numerics
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
-from tests.mesoscale.contact import exact
 
 INPUTS = ContactInputs(
     hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0
@@ -71,12 +71,12 @@ def pressed_sphere(sites: float, pixels: int):
     bowl, distance, settings = sphere(sites, contact_radius, radius, pixels)
     contact = CoupledContact(bowl.copy(), INPUTS, settings)
     approach = contact_radius**2 / radius
-    force = exact.hertz_force(approach, radius, e_star)
+    force = theory.hertz_force(approach, radius, e_star)
     # the neighbouring cells and the mean that is left out lower the surface below the sphere
     contact.move_to(-approach + LATTICE * force / (np.pi * e_star * settings.length_nm), False)
     assert worst_condition(contact) < 1e-6
     p = on_grid(contact)
-    wanted = exact.hertz_pressure(distance, force, radius, e_star)
+    wanted = theory.hertz_pressure(distance, force, radius, e_star)
     inner = distance < 0.9 * contact_radius
     return abs(contact.force / force - 1), np.sqrt(np.mean((p - wanted)[inner] ** 2)) / wanted.max()
 
@@ -120,7 +120,7 @@ def test_a_sphere_attracts_over_the_rim_of_its_contact_as_hertzs_gap_does(radius
     contact_radius, pixels = 4.0, 20 * sites
     spacing = contact_radius / sites
     settings = coupled(pixels, pixels * spacing, model="elastic", attraction=law)
-    force = exact.hertz_force(contact_radius**2 / radius, radius, INPUTS.e_star)
+    force = theory.hertz_force(contact_radius**2 / radius, radius, INPUTS.e_star)
     separation = -(contact_radius**2) / radius + LATTICE * force / (
         np.pi * INPUTS.e_star * settings.length_nm
     )
@@ -141,9 +141,9 @@ def test_a_wave_is_westergaards(share):
     pixels, amplitude, wavelength, e_star = 256, 1.0, 100.0, INPUTS.e_star
     x = np.arange(pixels) * wavelength / pixels
     surface = np.repeat(-amplitude * np.cos(2 * np.pi * x / wavelength)[:, None], pixels, axis=1)
-    mean = exact.wave_mean_pressure(share, amplitude, wavelength, e_star)
+    mean = theory.wave_mean_pressure(share, amplitude, wavelength, e_star)
     contact = CoupledContact(surface, INPUTS, coupled(pixels, wavelength, model="elastic"))
-    moved = contact.move_to(exact.wave_separation(mean, amplitude, wavelength, e_star), False)
+    moved = contact.move_to(theory.wave_separation(mean, amplitude, wavelength, e_star), False)
     assert worst_condition(contact) < 1e-6
     assert moved.force == pytest.approx(mean * wavelength**2, rel=0.01)
     # the edge is known to a site
@@ -377,7 +377,7 @@ def test_roughness_of_waves_is_exact():
     assert crossed.curvature == pytest.approx(amplitude * 5 * k**2 / 2, rel=1e-12)
     wave = validity.roughness(np.repeat(amplitude * np.cos(k * x)[:, None], pixels, axis=1), length)
     assert wave.flattening * 91.0 == pytest.approx(
-        exact.wave_full_pressure(amplitude, length, 91.0), rel=1e-12
+        theory.wave_full_pressure(amplitude, length, 91.0), rel=1e-12
     )
 
 

@@ -1,4 +1,4 @@
-"""Reader of uq/surrogate.json."""
+"""Reader of uncertainty/surrogate.json."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -9,7 +9,7 @@ from mesoscale.uncertainty.surrogate import Below, Response, Surrogate
 
 
 def from_json(content: Mapping[str, Any]) -> dict[str, Response]:
-    """The responses of uq/surrogate.json by the name of their output."""
+    """The responses of uncertainty/surrogate.json by the name of their output."""
     ranges = np.array([[row["low"], row["high"]] for row in content["inputs"]], float)
     sums = {
         output["name"]: Surrogate(

@@ -4,17 +4,18 @@ Every module offers `describe(results) -> Section | None`; None where the scene 
 the stage."""
 
 from workflow.report.stages import (
+    answer,
     budget,
     calibration,
     circuit,
     contact,
-    device,
     elastic,
     failure,
     hardness,
     history,
     humidity,
     inputs,
+    law,
     pad,
     sensitivity,
     topography,
@@ -23,7 +24,7 @@ from workflow.report.stages import (
 
 PARTS = (
     ("budget", "What it costs in volts", (budget,)),
-    ("switch", "The switch", (device, pad, humidity, circuit, failure, history)),
-    ("contact", "The contact", (contact, uncertainty, sensitivity)),
+    ("switch", "The switch", (answer, pad, humidity, circuit, failure, history)),
+    ("contact", "The contact", (contact, law, uncertainty, sensitivity)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

@@ -7,8 +7,9 @@ import numpy as np
 
 from mesoscale.settings import DeviceSettings
 from workflow.report.available import CsvRow, Results
+from workflow.report.drawing import BLUE, draw
 from workflow.report.numbers import column, number, show
-from workflow.report.page import Block, stage, table
+from workflow.report.page import Block, Figure, stage, table
 from workflow.report.verdict import NAMES, in_words
 
 HOW = {
@@ -22,7 +23,7 @@ LITTLE_V = 0.1
 
 
 @stage(
-    "What the budget leaves small, and its sources", "device/budget.csv", "device/pad_switch.json"
+    "What the budget leaves small, and its sources", "answer/budget.csv", "answer/pad_switch.json"
 )
 def describe(results: Results) -> Iterator[Block]:
     """The effects, the largest first: what the interval holds, then what it leaves out; what is not
@@ -40,6 +41,11 @@ def describe(results: Results) -> Iterator[Block]:
     large = [row for row in rows if not number(row["volts"]) < LITTLE_V]
     held = [row for row in large if row["held"] == "True"]
     if held:
+        yield Figure(
+            bars(held),
+            "Volts by which each effect moves the release.",
+            front=True,
+        )
         yield table(_caption(results, rows), held, HELD, front=True)
     left_out = "What the interval leaves out, by the volts that the release moves"
     yield table(left_out, [row for row in large if row["held"] != "True"], LEFT_OUT, front=True)
@@ -49,16 +55,32 @@ def describe(results: Results) -> Iterator[Block]:
     yield table("Sources", rows, {"effect": _effect, "source": "source"})
 
 
+def bars(rows: list[CsvRow]) -> str:
+    """A bar an effect, the largest on top, with its volts at its end."""
+    names = [_effect(row) for row in rows]
+    moved_V = column(rows, "volts")
+
+    def plot(axis):
+        places = np.arange(len(rows))[::-1]
+        drawn = axis.barh(places, moved_V, color=BLUE, height=0.62)
+        axis.bar_label(drawn, [f"{show(value, 2)} V" for value in moved_V], padding=4)
+        axis.set_yticks(places, names)
+        axis.set(xlabel="release moves by (V)", xlim=(0.0, 1.12 * np.nanmax(moved_V)))
+        axis.grid(False, axis="y")
+
+    return draw("budget-bars", "Volts by effect", plot, (5.0, 0.6 + 0.3 * len(rows)))
+
+
 def _rows(results: Results) -> list[CsvRow]:
     """The budget, with what the target `humidity` computed where it ran."""
     computed = {"humid air": _by_humidity(results)}
-    rows = [{**row, **computed.get(row["effect"], {})} for row in results.csv("device/budget.csv")]
+    rows = [{**row, **computed.get(row["effect"], {})} for row in results.csv("answer/budget.csv")]
     return sorted(rows, key=lambda row: -np.nan_to_num(number(row["volts"]), nan=-1.0))
 
 
 def _by_humidity(results: Results) -> CsvRow:
     """From the least to the largest release of the humidities that were computed."""
-    rows = results.csv("device/humidity.csv") if results.has("device/humidity.csv") else []
+    rows = results.rows("humidity/humidity.csv")
     if len(solved := [row for row in rows if row["release_V"]]) < 2:
         return {}
     release, humidity = column(solved, "release_V"), column(solved, "humidity")
@@ -70,7 +92,7 @@ def _by_humidity(results: Results) -> CsvRow:
         "volts": str(np.ptp(release)),
         "about": about,
         "how": "computed",
-        "source": "device/humidity.csv",
+        "source": "humidity/humidity.csv",
     }
 
 
@@ -107,7 +129,7 @@ def _caption(results: Results, rows: list[CsvRow]) -> str:
         f" at central inputs. Together they are {show(float(np.sqrt(np.nansum(np.square(held)))))}"
         " V, added in quadrature"
     )
-    if answer := results.json("device/pad_switch.json").get("answer"):
+    if answer := results.json("answer/pad_switch.json").get("answer"):
         ends = [answer["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]
         return f"{said}; the interval is {show(ends[1] - ends[0])} V wide"
     return said

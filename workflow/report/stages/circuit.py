@@ -13,15 +13,18 @@ from workflow.report.verdict import volts
 
 @stage(
     "In a circuit",
-    *(f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "failure.csv")),
+    "circuit/circuit.json",
+    "circuit/circuit.csv",
+    "circuit/loop.csv",
+    "failure/failure.csv",
 )
 def describe(results: Results) -> Iterator[Block]:
     """C-V loop with its band, and failure rate; pull-in and release of the corners."""
-    circuit, rows = results.json("device/circuit.json"), results.csv("device/circuit.csv")
+    circuit, rows = results.json("circuit/circuit.json"), results.csv("circuit/circuit.csv")
     errors = circuit["lumps"]
     corners = [row for row in rows if float(row["deviations"]) > 0]
     yield (
-        "The folder device/circuit has the switch as SPICE netlists: central, four corners and"
+        "The folder circuit/models has the switch as SPICE netlists: central, four corners and"
         f" {len(rows) - len(corners)} draws. {errors['lumps']} pairs of lumps stand for the"
         f" electrode. Beside finite elements pull-in differs by {errors['pull_in']:.1%}, release by"
         f" {errors['release']:.1%}; these themselves err by {errors['reference']:.1%}."
@@ -45,7 +48,7 @@ def describe(results: Results) -> Iterator[Block]:
 
 
 def _figure(results: Results) -> str:
-    loop, failing = results.csv("device/loop.csv"), results.csv("device/failure.csv")
+    loop, failing = results.csv("circuit/loop.csv"), results.csv("failure/failure.csv")
 
     def plot(slow, rare):
         voltage = column(loop, "voltage_V")

@@ -20,7 +20,7 @@ MODELS = {
 }
 
 
-@stage("Curves of one cell at central inputs", "curves/nominal.h5", also=("law/nominal.csv",))
+@stage("Curves of one cell at central inputs", "contact/nominal.h5")
 def describe(results: Results) -> Iterator[Block]:
     """The picture of the contact, and figures 4 and 11."""
     contact, coupled = results.contact, results.coupled
@@ -52,9 +52,9 @@ def describe(results: Results) -> Iterator[Block]:
 
 def spots(results: Results) -> str | None:
     """Heights of the surface, and where the flat touches it under rising load."""
-    if not results.has("curves/spots.h5"):
+    if not results.has("contact/spots.h5"):
         return None
-    groups, attributes, _ = results.h5("curves/spots.h5")
+    groups, attributes, _ = results.h5("contact/spots.h5")
     steps, side = groups["spots"], float(attributes["length_nm"])
     heights, step, load = steps["towards_flat_nm"], steps["step"], steps["repulsive_nN"] / 1e3
     shades = matplotlib.colormaps["gray"]((heights - heights.min()) / (np.ptp(heights) or 1.0))
@@ -89,7 +89,7 @@ def spots(results: Results) -> str | None:
 
 def nominal_models(results: Results) -> str | None:
     """Figure 4: the three models of plasticity up to 1e4 nN."""
-    groups, attributes, curve_attributes = results.h5("curves/nominal.h5")
+    groups, attributes, curve_attributes = results.h5("contact/nominal.h5")
     present = [model for model in MODELS if f"{model}/closing" in groups]
     if not present:
         return None
@@ -117,12 +117,12 @@ def nominal_models(results: Results) -> str | None:
 
 def nominal_loads(results: Results) -> str | None:
     """Figure 11: cycles to various largest loads, with the fitted law as thin lines."""
-    groups, attributes, curve_attributes = results.h5("curves/nominal.h5")
+    groups, attributes, curve_attributes = results.h5("contact/nominal.h5")
     loads = sorted({name.split("/")[0] for name in groups if name.startswith("load_")}, key=_load)
     if not loads:
         return None
     area = float(attributes["cell_area_nm2"])
-    fits = results.csv("law/nominal.csv") if results.has("law/nominal.csv") else []
+    fits = results.rows("law/nominal.csv")
 
     def plot(axis, zoom):
         for panel in (axis, zoom):

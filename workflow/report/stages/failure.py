@@ -12,10 +12,10 @@ from workflow.report.page import Block, Figure, stage, table
 from workflow.report.verdict import in_words, volts
 
 
-@stage("How often it fails", "device/failure.json", "device/failure.csv")
+@stage("How often it fails", "failure/failure.json", "failure/failure.csv")
 def describe(results: Results) -> Iterator[Block]:
     """Failure rate against hold voltage, and the largest voltage that is allowed."""
-    rate = results.json("device/failure.json")
+    rate = results.json("failure/failure.json")
     event = f"is still closed at {volts(rate['release_V'])}" if rate["release_V"] else "sticks"
     yield (
         f"A switch fails where it {event}. Allowed is a share of {rate['allowed']:g}. Nothing here"
@@ -77,7 +77,7 @@ def _or_none(value: float | None, unit: str, digits: int = 3) -> str:
 
 
 def _curve(results: Results) -> str:
-    rows = results.csv("device/failure.csv")
+    rows = results.csv("failure/failure.csv")
 
     def plot(axis):
         laws = list(dict.fromkeys(row["attraction"] for row in rows))
@@ -98,7 +98,7 @@ def _curve(results: Results) -> str:
                 color=color,
             )
         axis.axhline(
-            results.json("device/failure.json")["allowed"],
+            results.json("failure/failure.json")["allowed"],
             linewidth=0.8,
             color=INK,
             label="allowed",

@@ -13,10 +13,10 @@ OPENINGS = {
 }
 
 
-@stage("Humid air", "device/humidity.csv")
+@stage("Humid air", "humidity/humidity.csv")
 def describe(results: Results) -> Iterator[Block]:
     """Release and sticking against humidity."""
-    rows = results.csv("device/humidity.csv")
+    rows = results.csv("humidity/humidity.csv")
     yield (
         "Water condenses in narrow gaps and pulls. While the switch opens it stays in balance with"
         " the vapour, or its volume stays, where opening is too fast to evaporate it: both limits"

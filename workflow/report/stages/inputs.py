@@ -42,7 +42,7 @@ def describe(results: Results) -> Iterator[Block]:
             "the other median moves the release",
         )
         yield PageTable("Stated, although a stage computes it", header, beside, front=True)
-    of_pad = results.csv("pad/inputs.csv") if results.has("pad/inputs.csv") else []
+    of_pad = results.rows("pad/inputs.csv")
     if other := [row for row in of_pad if row not in rows]:
         yield table("Of a pad, which holds all places of the film", other, columns, front=True)
 
@@ -73,7 +73,7 @@ def _effect_V(results: Results, name: str, stated: Distribution, computed: Distr
     """By how much the release moves, to first order, from the part of its variance that the stated
     spread makes.
     """
-    switch = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
+    switch = results.json("answer/pad_switch.json") if results.has("answer/pad_switch.json") else {}
     answer: dict[str, Any] = switch.get("answer") or {"sensitivity": []}
     share = next(
         (row["share_of_variance"] for row in answer["sensitivity"] if row["name"] == name), None

@@ -22,10 +22,10 @@ KINDS = {
 }
 
 
-@stage("From a cell to a pad", "pad/curves.csv", "device/pad_switch.json", also=("pad/model.h5",))
+@stage("From a cell to a pad", "pad/curves.csv", "answer/pad_switch.json", also=("pad/model.h5",))
 def describe(results: Results) -> Iterator[Block]:
     """The pad's curves, and what the answer is made of."""
-    switch = results.json("device/pad_switch.json")
+    switch = results.json("answer/pad_switch.json")
     yield (
         f"{switch['cells_computed']} cells, squares of rough surface of their own, stand for the"
         f" {show(switch['cells_of_pad'])} of the pad, the whole area that lands. They are brought"

@@ -8,11 +8,11 @@ from workflow.report.numbers import OUTPUTS, SYMBOLS, number, show
 from workflow.report.page import Block, PageTable, stage
 
 
-@stage("What matters for the law of one cell", "uq/sensitivity.csv")
+@stage("What matters for the law of one cell", "uncertainty/sensitivity.csv")
 def describe(results: Results) -> Iterator[Block]:
     """Table 3."""
     paper, faint = results.beside_paper, faint_outputs(results)
-    rows = results.csv("uq/sensitivity.csv")
+    rows = results.csv("uncertainty/sensitivity.csv")
     names = list(dict.fromkeys(row["input"] for row in rows))
     part = {(row["output"], row["input"]): row for row in rows}
     lines, grey = [], []

@@ -14,9 +14,9 @@ COLORS = {"closing": BLUE, "opening": ORANGE}
 
 
 @stage(
-    "The law of one cell, and its uncertainty",
-    *("uq/outputs.csv", "uq/samples.csv"),
-    also=("uq/surrogate.json", "uq/validation.csv"),
+    "The uncertainty of the law",
+    *("uncertainty/outputs.csv", "uncertainty/samples.csv"),
+    also=("uncertainty/surrogate.json", "uncertainty/validation.csv"),
 )
 def describe(results: Results) -> Iterator[Block]:
     """The law's band, and Table 2."""
@@ -27,7 +27,7 @@ def describe(results: Results) -> Iterator[Block]:
         + " Beside it the paper's method, a plane through 2n + 1 runs of each surface, and its "
         "Table 2." * paper
     )
-    if results.has("uq/law.csv", "uq/surrogate.json"):
+    if results.has("uncertainty/law.csv", "uncertainty/surrogate.json"):
         yield Figure(
             band(results),
             "The law of one cell, closing and after the largest load, up to the pressure that it"
@@ -51,7 +51,7 @@ def band(results: Results) -> str:
     """Median and spread of the law over the samples of the inputs, up to the pressure that it was
     fitted to.
     """
-    rows = results.csv("uq/law.csv")
+    rows = results.csv("uncertainty/law.csv")
     highest = results.fitted_MPa
     spread = {}
     for name in COLORS:
@@ -86,8 +86,8 @@ def band(results: Results) -> str:
 def _table2(results: Results) -> PageTable:
     """Table 2, each number under the method that gave it."""
     paper = results.beside_paper
-    rows = {row["output"]: row for row in results.csv("uq/outputs.csv")}
-    checks = results.csv("uq/validation.csv") if results.has("uq/validation.csv") else []
+    rows = {row["output"]: row for row in results.csv("uncertainty/outputs.csv")}
+    checks = results.rows("uncertainty/validation.csv")
     explained = {row["output"]: number(row["explained"]) for row in checks}
     header = ("output", "by the response (mean ± dev)")
     if paper:

@@ -61,7 +61,7 @@ rule observe_cycles:
         contact=settings("contact"),
         bounds=lambda wildcards: MEASUREMENT_CHUNKS[wildcards.chunk],
     message:
-        f"compute what can be measured of contact cycles, chunk {{wildcards.chunk}} of {len(MEASUREMENT_CHUNKS)}"
+        f"observe contact cycles, chunk {{wildcards.chunk}} of {len(MEASUREMENT_CHUNKS)}"
     script:
         "../scripts/observe_cycles.py"
 
@@ -76,10 +76,10 @@ use rule press_pads as press_prior_pads with:
     log:
         f"{RESULTS}/logs/press_prior_pads_{{chunk}}.log",
     message:
-        f"press pads {{wildcards.chunk}} over the prior (central, 000 to {len(POINT_CHUNKS) - 2:03})"
+        f"press pads {{wildcards.chunk}} over the prior ({ALL_CHUNKS})"
 
 
-rule calibrate:
+rule calibration:
     """inputs narrowed by your measurements of contacts"""
     input:
         required(
@@ -97,7 +97,7 @@ rule calibrate:
         predictive=f"{RESULTS}/calibration/predictive.csv",
         posterior=f"{RESULTS}/calibration/posterior.json",
     log:
-        f"{RESULTS}/logs/calibrate.log",
+        f"{RESULTS}/logs/calibration.log",
     resources:
         mem_mb=CONTACT_MB,
     params:
@@ -111,5 +111,5 @@ rule calibrate:
 
 
 if SCENE.measurements.tables:
-    SHOWN += rules.calibrate.output
-    KEPT += rules.calibrate.input.cycles
+    SHOWN += rules.calibration.output
+    KEPT += rules.calibration.input.cycles

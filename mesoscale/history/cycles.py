@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.contact.energy import dissipated_energy
-from mesoscale.contact.history import HeldCycle, follow, hardness_factor
+from mesoscale.history.creep import HeldCycle, follow, hardness_factor
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.branches import fit_cycle
 from mesoscale.law.parameters import PARAMETERS

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import fft, integrate
 
-from tests.mesoscale.contact import exact
+from mesoscale import theory
 
 E_STAR = 91.0
 WAVE = {"amplitude": 3.0, "wavelength": 50.0, "e_star": E_STAR}
@@ -27,19 +27,19 @@ def test_a_sphere_by_hand():
     """R = 100 nm, indentation 1 nm, E* = 91 GPa: 1213.3 nN, contact radius 10 nm, highest pressure
     5.793 GPa.
     """
-    force = exact.hertz_force(1.0, 100.0, E_STAR)
+    force = theory.hertz_force(1.0, 100.0, E_STAR)
     assert force == pytest.approx(1213.333, rel=1e-6)
-    assert exact.hertz_contact_radius(force, 100.0, E_STAR) == pytest.approx(10.0, rel=1e-12)
-    assert exact.hertz_pressure(0.0, force, 100.0, E_STAR) == pytest.approx(5.7932, rel=1e-5)
-    assert exact.hertz_indentation(force, 100.0, E_STAR) == pytest.approx(1.0, rel=1e-12)
+    assert theory.hertz_contact_radius(force, 100.0, E_STAR) == pytest.approx(10.0, rel=1e-12)
+    assert theory.hertz_pressure(0.0, force, 100.0, E_STAR) == pytest.approx(5.7932, rel=1e-5)
+    assert theory.hertz_indentation(force, 100.0, E_STAR) == pytest.approx(1.0, rel=1e-12)
 
 
 def test_nothing_pulls():
-    assert exact.hertz_force(-1.0, 100.0, E_STAR) == 0.0
-    assert exact.punch_force(-1.0, 10.0, E_STAR) == 0.0
-    assert exact.hertz_pressure(11.0, 1213.3, 100.0, E_STAR) == 0.0
-    assert exact.punch_pressure(11.0, 1.0, 10.0) == 0.0
-    assert exact.wave_pressure(25.0, 1.0, **WAVE) == 0.0
+    assert theory.hertz_force(-1.0, 100.0, E_STAR) == 0.0
+    assert theory.punch_force(-1.0, 10.0, E_STAR) == 0.0
+    assert theory.hertz_pressure(11.0, 1213.3, 100.0, E_STAR) == 0.0
+    assert theory.punch_pressure(11.0, 1.0, 10.0) == 0.0
+    assert theory.wave_pressure(25.0, 1.0, **WAVE) == 0.0
 
 
 def test_pressures_carry_the_forces():
@@ -47,10 +47,10 @@ def test_pressures_carry_the_forces():
     force, radius = 700.0, 40.0
     for contact, profile in (
         (
-            exact.hertz_contact_radius(force, radius, E_STAR),
-            lambda r: exact.hertz_pressure(r, force, radius, E_STAR),
+            theory.hertz_contact_radius(force, radius, E_STAR),
+            lambda r: theory.hertz_pressure(r, force, radius, E_STAR),
         ),
-        (12.0, lambda r: exact.punch_pressure(r, force, 12.0)),
+        (12.0, lambda r: theory.punch_pressure(r, force, 12.0)),
     ):
 
         def ring(angle, a=contact, pressure=profile):
@@ -64,8 +64,8 @@ def test_pressures_carry_the_forces():
 
 @pytest.mark.parametrize("share", [*SHARES, 1.0])
 def test_the_pressure_of_a_wave_has_its_mean(share):
-    mean = exact.wave_mean_pressure(share, **WAVE)
-    assert exact.wave_area_share(mean, **WAVE) == pytest.approx(
+    mean = theory.wave_mean_pressure(share, **WAVE)
+    assert theory.wave_area_share(mean, **WAVE) == pytest.approx(
         share, rel=1e-7
     )  # arcsine loses half the digits at 1
     edge = np.sin(0.5 * np.pi * share)
@@ -73,7 +73,7 @@ def test_the_pressure_of_a_wave_has_its_mean(share):
     def strip(t):  # sin(pi x / wavelength) = sin(pi a / wavelength) sin(t)
         phase = np.arcsin(edge * np.sin(t))
         x = WAVE["wavelength"] / np.pi * phase
-        return exact.wave_pressure(x, mean, **WAVE) * edge * np.cos(t) / (np.pi * np.cos(phase))
+        return theory.wave_pressure(x, mean, **WAVE) * edge * np.cos(t) / (np.pi * np.cos(phase))
 
     total = integrate.quad(strip, -np.pi / 2, np.pi / 2, epsrel=1e-12, epsabs=1e-13)[0]
     assert total == pytest.approx(mean, rel=1e-10)
@@ -86,47 +86,47 @@ def test_a_wave_solves_the_half_space(share):
 
     A pressure that ends like a square root is integrated on a grid with an error of its spacing to
     the 3/2, whose factor depends on where the edge lies between two sites."""
-    mean = exact.wave_mean_pressure(share, **WAVE)
+    mean = theory.wave_mean_pressure(share, **WAVE)
     for sites in (1024, 4096):
         x = (np.arange(sites) + 0.5) * WAVE["wavelength"] / sites
-        bent = displacement(exact.wave_pressure(x, mean, **WAVE), WAVE["wavelength"], E_STAR)
+        bent = displacement(theory.wave_pressure(x, mean, **WAVE), WAVE["wavelength"], E_STAR)
         undeformed = -WAVE["amplitude"] * np.cos(2 * np.pi * x / WAVE["wavelength"])
-        gap = exact.wave_separation(mean, **WAVE) + undeformed + bent
+        gap = theory.wave_separation(mean, **WAVE) + undeformed + bent
         assert (
-            np.abs(gap - exact.wave_gap(x, mean, **WAVE)).max() / WAVE["amplitude"]
+            np.abs(gap - theory.wave_gap(x, mean, **WAVE)).max() / WAVE["amplitude"]
             < 10 * sites**-1.5
         )
         inside = np.abs(np.sin(np.pi * x / WAVE["wavelength"])) < np.sin(0.5 * np.pi * share)
-        assert np.all(exact.wave_gap(x, mean, **WAVE)[inside] == 0.0)
-        assert np.all(exact.wave_gap(x, mean, **WAVE)[~inside] > 0.0)
+        assert np.all(theory.wave_gap(x, mean, **WAVE)[inside] == 0.0)
+        assert np.all(theory.wave_gap(x, mean, **WAVE)[~inside] > 0.0)
 
 
 @pytest.mark.parametrize("share", SHARES)
 def test_the_mean_gap_of_a_wave_is_its_separation(share):
-    mean = exact.wave_mean_pressure(share, **WAVE)
+    mean = theory.wave_mean_pressure(share, **WAVE)
     half = 0.5 * WAVE["wavelength"]
     gap = (
-        integrate.quad(exact.wave_gap, share * half, half, (mean, *WAVE.values()), epsrel=1e-11)[0]
+        integrate.quad(theory.wave_gap, share * half, half, (mean, *WAVE.values()), epsrel=1e-11)[0]
         / half
     )
-    assert gap == pytest.approx(exact.wave_separation(mean, **WAVE), rel=1e-9)
+    assert gap == pytest.approx(theory.wave_separation(mean, **WAVE), rel=1e-9)
 
 
 def test_limits_of_a_wave():
-    assert exact.wave_separation(0.0, **WAVE) == WAVE["amplitude"]
-    assert exact.wave_gap(10.0, 0.0, **WAVE) == pytest.approx(3.0 * (1 - np.cos(0.4 * np.pi)))
-    full = exact.wave_full_pressure(**WAVE)
-    assert exact.wave_separation(1.5 * full, **WAVE) == 0.0
-    assert exact.wave_area_share(1.5 * full, **WAVE) == 1.0
+    assert theory.wave_separation(0.0, **WAVE) == WAVE["amplitude"]
+    assert theory.wave_gap(10.0, 0.0, **WAVE) == pytest.approx(3.0 * (1 - np.cos(0.4 * np.pi)))
+    full = theory.wave_full_pressure(**WAVE)
+    assert theory.wave_separation(1.5 * full, **WAVE) == 0.0
+    assert theory.wave_area_share(1.5 * full, **WAVE) == 1.0
     x = np.linspace(0.0, 50.0, 11)
     expected = 1.5 * full + full * np.cos(2 * np.pi * x / 50.0)
-    assert exact.wave_pressure(x, 1.5 * full, **WAVE) == pytest.approx(expected)
+    assert theory.wave_pressure(x, 1.5 * full, **WAVE) == pytest.approx(expected)
     # a light line contact is Hertz's: a^2 = 4 P R / (pi E*), P per length, R = wavelength^2 / (4
     # pi^2 amplitude)
     light = 1e-6 * full
     radius = 50.0**2 / (4 * np.pi**2 * 3.0)
     half_width = np.sqrt(4 * light * 50.0 * radius / (np.pi * E_STAR))
-    assert exact.wave_area_share(light, **WAVE) == pytest.approx(2 * half_width / 50.0, rel=1e-6)
+    assert theory.wave_area_share(light, **WAVE) == pytest.approx(2 * half_width / 50.0, rel=1e-6)
 
 
 def test_a_punch_and_a_sphere_solve_the_half_space():
@@ -136,9 +136,9 @@ def test_a_punch_and_a_sphere_solve_the_half_space():
     n, length, contact, radius = 512, 160.0, 10.0, 100.0
     x = (np.arange(n) - n // 2) * length / n
     r = np.hypot(x[:, None], x[None, :])
-    force = exact.hertz_force(contact**2 / radius, radius, E_STAR)
+    force = theory.hertz_force(contact**2 / radius, radius, E_STAR)
     sphere = r**2 / (2 * radius) + displacement(
-        exact.hertz_pressure(r, force, radius, E_STAR), length, E_STAR
+        theory.hertz_pressure(r, force, radius, E_STAR), length, E_STAR
     )
     sphere -= sphere[n // 2, n // 2]
     indentation = contact**2 / radius
@@ -147,12 +147,12 @@ def test_a_punch_and_a_sphere_solve_the_half_space():
 
     # at the centre of an isolated contact, u = (2/E*) int p dr
     at_centre = integrate.quad(
-        exact.hertz_pressure, 0.0, contact, (force, radius, E_STAR), epsrel=1e-12
+        theory.hertz_pressure, 0.0, contact, (force, radius, E_STAR), epsrel=1e-12
     )[0]
     assert 2 / E_STAR * at_centre == pytest.approx(indentation, rel=1e-10)
-    force = exact.punch_force(1.0, contact, E_STAR)
+    force = theory.punch_force(1.0, contact, E_STAR)
     at_centre = integrate.quad(
-        lambda t: exact.punch_pressure(contact * np.sin(t), force, contact) * contact * np.cos(t),
+        lambda t: theory.punch_pressure(contact * np.sin(t), force, contact) * contact * np.cos(t),
         0,
         np.pi / 2,
     )[0]
@@ -161,31 +161,31 @@ def test_a_punch_and_a_sphere_solve_the_half_space():
 
 def test_the_stiffness_of_a_sphere_is_a_punch():
     """dF/d(delta) = 2 E* a, whatever the shape."""
-    low, high = exact.hertz_force(np.array([1.0 - 1e-5, 1.0 + 1e-5]), 100.0, E_STAR)
-    assert (high - low) / 2e-5 == pytest.approx(exact.punch_force(1.0, 10.0, E_STAR), rel=1e-8)
+    low, high = theory.hertz_force(np.array([1.0 - 1e-5, 1.0 + 1e-5]), 100.0, E_STAR)
+    assert (high - low) / 2e-5 == pytest.approx(theory.punch_force(1.0, 10.0, E_STAR), rel=1e-8)
 
 
 def test_lengths_and_moduli_scale():
     """Twice all lengths: forces four times, pressures the same. Twice E*: forces and pressures
     twice.
     """
-    assert exact.hertz_force(2.0, 200.0, E_STAR) == pytest.approx(
-        4 * exact.hertz_force(1.0, 100.0, E_STAR)
+    assert theory.hertz_force(2.0, 200.0, E_STAR) == pytest.approx(
+        4 * theory.hertz_force(1.0, 100.0, E_STAR)
     )
-    assert exact.punch_force(2.0, 20.0, 2 * E_STAR) == pytest.approx(
-        8 * exact.punch_force(1.0, 10.0, E_STAR)
+    assert theory.punch_force(2.0, 20.0, 2 * E_STAR) == pytest.approx(
+        8 * theory.punch_force(1.0, 10.0, E_STAR)
     )
     large = {"amplitude": 6.0, "wavelength": 100.0, "e_star": 2 * E_STAR}
-    assert exact.wave_separation(2.0, **large) == pytest.approx(
-        2 * exact.wave_separation(1.0, **WAVE)
+    assert theory.wave_separation(2.0, **large) == pytest.approx(
+        2 * theory.wave_separation(1.0, **WAVE)
     )
-    assert exact.wave_gap(40.0, 2.0, **large) == pytest.approx(
-        2 * exact.wave_gap(20.0, 1.0, **WAVE)
+    assert theory.wave_gap(40.0, 2.0, **large) == pytest.approx(
+        2 * theory.wave_gap(20.0, 1.0, **WAVE)
     )
-    assert exact.wave_pressure(4.0, 2.0, **large) == pytest.approx(
-        2 * exact.wave_pressure(2.0, 1.0, **WAVE)
+    assert theory.wave_pressure(4.0, 2.0, **large) == pytest.approx(
+        2 * theory.wave_pressure(2.0, 1.0, **WAVE)
     )
-    for area in (exact.bisinusoid_area_at_first_touch, exact.bisinusoid_area_near_full_contact):
+    for area in (theory.bisinusoid_area_at_first_touch, theory.bisinusoid_area_near_full_contact):
         assert area(2.0, **large) == pytest.approx(area(1.0, **WAVE))
 
 
@@ -193,9 +193,9 @@ def test_the_first_touch_of_two_crossed_waves_is_hertz():
     """Summits of curvature 4 pi^2 amplitude / wavelength^2, two in a wavelength squared."""
     pressure = 1e-3
     radius = WAVE["wavelength"] ** 2 / (4 * np.pi**2 * WAVE["amplitude"])
-    contact = exact.hertz_contact_radius(pressure * WAVE["wavelength"] ** 2 / 2, radius, E_STAR)
+    contact = theory.hertz_contact_radius(pressure * WAVE["wavelength"] ** 2 / 2, radius, E_STAR)
     share = 2 * np.pi * contact**2 / WAVE["wavelength"] ** 2
-    assert exact.bisinusoid_area_at_first_touch(pressure, **WAVE) == pytest.approx(share)
+    assert theory.bisinusoid_area_at_first_touch(pressure, **WAVE) == pytest.approx(share)
 
 
 def test_the_last_gaps_of_two_crossed_waves_close_like_pennies():
@@ -204,10 +204,10 @@ def test_the_last_gaps_of_two_crossed_waves_close_like_pennies():
 
     Close to full contact, where the trough of the pressure is a parabola.
     """
-    full = exact.bisinusoid_full_pressure(**WAVE)
+    full = theory.bisinusoid_full_pressure(**WAVE)
     assert displacement_at_full_contact() == pytest.approx(0.0, abs=1e-12)
     pressure = (1 - 1e-6) * full
-    open_share = 1 - exact.bisinusoid_area_near_full_contact(pressure, **WAVE)
+    open_share = 1 - theory.bisinusoid_area_near_full_contact(pressure, **WAVE)
     gap_radius = np.sqrt(open_share * WAVE["wavelength"] ** 2 / (2 * np.pi))
 
     def trough(t):
@@ -217,12 +217,12 @@ def test_the_last_gaps_of_two_crossed_waves_close_like_pennies():
 
     mean = integrate.quad(trough, 0, np.pi / 2, epsabs=1e-16)[0]
     assert abs(mean) < 1e-5 * abs(pressure - full) * gap_radius
-    assert exact.bisinusoid_area_near_full_contact(1.1 * full, **WAVE) == 1.0
+    assert theory.bisinusoid_area_near_full_contact(1.1 * full, **WAVE) == 1.0
 
 
 def displacement_at_full_contact() -> float:
     """Largest gap of crossed waves under their full-contact pressure, nm."""
     x = np.arange(32) * WAVE["wavelength"] / 32
     wave = np.cos(2 * np.pi * x / 50.0)[:, None] * np.cos(2 * np.pi * x / 50.0)[None, :]
-    bent = displacement(exact.bisinusoid_full_pressure(**WAVE) * wave, WAVE["wavelength"], E_STAR)
+    bent = displacement(theory.bisinusoid_full_pressure(**WAVE) * wave, WAVE["wavelength"], E_STAR)
     return float(np.abs(bent - WAVE["amplitude"] * wave).max())

@@ -1,14 +1,14 @@
-rule curves:
+rule contact:
     """force against separation at central inputs"""
     input:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
-        curves=f"{RESULTS}/curves/nominal.h5",
-        spots=f"{RESULTS}/curves/spots.h5",
-        errors=f"{RESULTS}/curves/errors.csv",
+        nominal=f"{RESULTS}/contact/nominal.h5",
+        spots=f"{RESULTS}/contact/spots.h5",
+        errors=f"{RESULTS}/contact/errors.csv",
     log:
-        f"{RESULTS}/logs/curves.log",
+        f"{RESULTS}/logs/contact.log",
     resources:
         mem_mb=CONTACT_MB,
     params:
@@ -20,4 +20,4 @@ rule curves:
 
 
 if SCENE.tails:
-    SHOWN += rules.curves.output
+    SHOWN += rules.contact.output

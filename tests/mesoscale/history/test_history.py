@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from evidence.contact.draws import MIDDLE
-from mesoscale.contact.history import follow, hardness_factor
 from mesoscale.errors import InputError
+from mesoscale.history.creep import follow, hardness_factor
 from mesoscale.settings import ContactSettings, HistorySettings
 from mesoscale.studies.contact_stability import violations
 

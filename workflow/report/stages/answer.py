@@ -18,10 +18,10 @@ OTHERS = {
 }
 
 
-@stage("What if the device were another", "device/pad_switch.json")
+@stage("What if the device were another", "answer/pad_switch.json")
 def describe(results: Results) -> Iterator[Block]:
     """Release against one key of the device at a time."""
-    rows = results.json("device/pad_switch.json").get("by_key", [])
+    rows = results.json("answer/pad_switch.json").get("by_key", [])
     yield (
         "Each row is solved on the pad at central inputs with one property changed; surface and"
         " materials stay as they are. A switch without a stated hold voltage is held at its own"

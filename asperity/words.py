@@ -1,0 +1,205 @@
+"""Words of the command line for a material and a device: numbers with units, choices, bodies."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from typing import Any, get_args
+
+from asperity.film import MATERIAL
+from asperity.guards.bundle import ROOT
+from asperity.guards.foreign_text import did_you_mean
+from asperity.guards.foreign_yaml import load_mapping
+from asperity.guards.settings import Settings, key
+from mesoscale.errors import InputError
+from mesoscale.settings import DeviceSettings, InputRow
+from mesoscale.settings.definitions import definition
+from mesoscale.settings.device import unit_of
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
+KINDS = {None: "fixed", ":": "uniform", "+-": "normal"}
+SUBSTRATE_PPM_C = 2.6
+"""Thermal expansion of silicon, on which the beam is taken to be anchored."""
+SCALAR_KEYS = tuple(name for name in DeviceSettings.model_fields if name != "spread")
+"""Keys of the device that a word can state; departures are rows of a scene."""
+
+
+class Body(Settings):
+    """A material of config/bodies.yaml."""
+
+    names: tuple[str, ...] = key(..., "other words for it")
+    young_GPa: float = key(..., "Young's modulus", "[0.001, 2000] GPa")
+    poisson: float = key(..., "Poisson's ratio", "[0, 0.5)")
+    density_g_cm3: float = key(..., "density", "[0.01, 30] g/cm^3")
+    expansion_ppm_C: float = key(..., "thermal expansion", "[-1000, 1000] 1e-6/C")
+    source: str = key(..., "where the numbers are from")
+
+    @property
+    def of_a_beam(self) -> dict[str, float]:
+        """Keys of a device whose beam is of it."""
+        return {
+            "youngs_modulus_GPa": self.young_GPa,
+            "poisson_ratio": self.poisson,
+            "density_g_cm3": self.density_g_cm3,
+            "excess_expansion_ppm_C": round(self.expansion_ppm_C - SUBSTRATE_PPM_C, 6),
+        }
+
+
+@cache
+def bodies() -> dict[str, Body]:
+    """The materials by their names, other words for them included."""
+    listed = load_mapping(ROOT / "config" / "bodies.yaml", "list of materials")
+    known = {name: Body(**content) for name, content in listed.items()}
+    also = {other: body for body in known.values() for other in body.names}
+    return known | also
+
+
+def body_of(word: str, name: str) -> Body:
+    """The material that part of a word names.
+
+    Raises
+    ------
+    InputError : nobody named it.
+    """
+    by_lower_case = {other.lower(): body for other, body in bodies().items()}
+    if name.lower() not in by_lower_case:
+        meant = did_you_mean(name.lower(), by_lower_case)
+        raise InputError(
+            f"{word}: no material {name!r} is known; known are {', '.join(bodies())}{meant}"
+        )
+    return by_lower_case[name.lower()]
+
+
+def number_of(word: str, text: str, unit: str) -> float:
+    """A number, with or without its unit; a share may be in per cent.
+
+    Raises
+    ------
+    InputError : a decimal comma, another unit, or no number.
+    """
+    name = word.partition("=")[0]
+    plain = re.sub("[\u00b5\u03bc]", "u", text)  # micro sign, mu
+    if re.fullmatch(NUMBER, plain):
+        return float(plain)
+    if re.fullmatch(NUMBER.replace(r"\.", ","), plain) and "," in plain:
+        raise InputError(f"{word}: a decimal comma; write {name}={plain.replace(',', '.')}")
+    parts = re.fullmatch(rf"({NUMBER}) ?([^\d\s].*)", plain)
+    if parts is None:
+        raise InputError(f"{word}: {text!r} is no number; write for instance {name}=2.5")
+    number, stated = parts.groups()
+    if stated == unit:
+        return float(number)
+    if stated == "%" and unit == "1":
+        return float(number) / 100.0
+    counted = "has no unit" if unit == "1" else f"is in {unit}"
+    raise InputError(f"{word}: {name} {counted}, not in {stated}; write the number alone")
+
+
+def material_of(words: Sequence[str]) -> dict[str, InputRow]:
+    """Rows of inputs from words such as e_star=75, h_macro=1:1.6 (range), e_star=75+-4 (deviation)
+    and e_star=gold/silicon_nitride (two bodies).
+
+    Raises
+    ------
+    InputError : none of these forms, an unknown input or body.
+    """
+    rows: dict[str, InputRow] = {}
+    for word in words:
+        name, _, value = word.partition("=")
+        unit = definition(name).unit
+        if name in rows:
+            raise InputError(f"{word}: {name} is given twice; leave one of them out")
+        if name == "e_star" and re.match("[A-Za-z]", value):
+            rows[name] = _modulus_of_bodies(word, value)
+            continue
+        first, sign, second = re.fullmatch(r"(.*?)(?:(:|\+-)(.*))?", value).groups()  # pyright: ignore[reportOptionalMemberAccess]
+        if not value or second == "":
+            raise InputError(
+                f"{word}: accepted are {name}=75, {name}=70:80 (from, to) and {name}=75+-4"
+                " (deviation)"
+            )
+        values = tuple(number_of(word, text, unit) for text in (first, second) if text is not None)
+        stated: Any = {"distribution": KINDS[sign], "values": values, "source": "command line"}
+        rows[name] = InputRow(**stated)
+    return rows
+
+
+def _modulus_of_bodies(word: str, names: str) -> InputRow:
+    """E* of two bodies: 1 / E* is the sum of (1 - nu^2) / E."""
+    pair = names.split("/")
+    if len(pair) != 2:
+        raise InputError(f"{word}: accepted is a number, or two materials: e_star=gold/silica")
+    both = [body_of(word, name) for name in pair]
+    compliance = sum((1.0 - body.poisson**2) / body.young_GPa for body in both)
+    stated: Any = {"distribution": "fixed", "values": (round(1.0 / compliance, 3),)}
+    sources = "; ".join(dict.fromkeys(body.source for body in both))
+    return InputRow(**stated, source=f"{pair[0]} on {pair[1]}: {sources}")
+
+
+def device_of(words: Sequence[str]) -> dict[str, Any]:
+    """Keys of the section `device` from words such as gap_um=2, ends=cantilever,
+    electrode=0.2:0.8 and material=aluminium.
+
+    Raises
+    ------
+    InputError : an unknown key or material, or a value of another shape.
+    """
+    keys: dict[str, Any] = {}
+    of_material: dict[str, float] = {}
+    for word in words:
+        name, _, value = word.partition("=")
+        if name == "material" and not of_material:
+            of_material = body_of(word, value).of_a_beam
+            continue
+        if name in keys or name == "material":
+            raise InputError(f"{word}: {name} is given twice; leave one of them out")
+        if name == "humidity":
+            raise InputError(f"{word}: the air's, not the device's; write --material {word}")
+        if name not in SCALAR_KEYS:
+            meant = did_you_mean(name, (*SCALAR_KEYS, "material"))
+            raise InputError(
+                f"{word}: accepted is KEY=VALUE with a key of material,"
+                f" {', '.join(SCALAR_KEYS)}{meant}"
+            )
+        keys[name] = _device_value(word, name, value)
+    stated = of_material | keys
+    DeviceSettings(**stated)
+    return stated
+
+
+def _device_value(word: str, name: str, value: str) -> Any:
+    """A value in the shape that the key of the device has."""
+    kind = DeviceSettings.model_fields[name].annotation
+    choices = [choice for choice in _choices(kind) if isinstance(choice, str)]
+    if choices:
+        if value not in choices:
+            meant = did_you_mean(value, choices)
+            raise InputError(f"{word}: accepted are {', '.join(choices)}{meant}")
+        return value
+    if name in ("electrode", "contact"):
+        start, colon, end = value.partition(":")
+        if not colon:
+            raise InputError(f"{word}: accepted are two shares of the length: {name}=0.2:0.8")
+        return (number_of(word, start, "1"), number_of(word, end, "1"))
+    return number_of(word, value, unit_of(name))
+
+
+def _choices(kind: Any) -> Iterator[Any]:
+    """The words that a literal type accepts, also where None is accepted besides."""
+    for part in get_args(kind):
+        yield from _choices(part) if get_args(part) else (part,)
+
+
+def assumed_lines(material: Mapping[str, Any], device: Mapping[str, Any]) -> Iterator[str]:
+    """What nobody stated, a line each for material and device, with values and sources."""
+    missing = {name: row for name, row in MATERIAL.items() if name not in material}
+    if missing:
+        words = []
+        for name, row in missing.items():
+            values = " to ".join(f"{value:g}" for value in row.values or ())
+            words.append(f"{name} {values} ({row.source})")
+        yield f"not stated, taken (--material): {'; '.join(words)}"
+    defaults = DeviceSettings()
+    names = ("length_um", "width_um", "thickness_um", "gap_um", "youngs_modulus_GPa")
+    untold = [f"{name} {getattr(defaults, name):g}" for name in names if name not in device]
+    if untold:
+        yield f"not stated, taken (--device), of a published nickel beam: {', '.join(untold)}"

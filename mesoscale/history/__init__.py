@@ -1,0 +1,1 @@
+"""What repeated closing and time under load do to a contact (docs/history.md)."""

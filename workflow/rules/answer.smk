@@ -1,0 +1,29 @@
+EFFECTS = str(CONFIG / "effects.yaml")
+
+
+rule answer:
+    """the switch on the pads: release, sticking and what they hang on"""
+    input:
+        **PRESSED,
+        hardness=INPUT_STAGES.get("hardness", []),
+        effects=EFFECTS,
+    output:
+        switch=f"{RESULTS}/answer/pad_switch.json",
+        budget=f"{RESULTS}/answer/budget.csv",
+        errors=f"{RESULTS}/answer/errors.csv",
+        verilog=f"{RESULTS}/answer/rough_pad.va",
+        spice=f"{RESULTS}/answer/rough_pad.sub",
+    log:
+        f"{RESULTS}/logs/answer.log",
+    priority: 2
+    params:
+        **ON_PADS,
+        contents=contents(EFFECTS),
+    message:
+        "say what the switch does"
+    script:
+        "../scripts/answer_switch.py"
+
+
+if "switch" in SCENE.tails:
+    SHOWN += rules.answer.output

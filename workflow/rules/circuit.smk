@@ -1,0 +1,24 @@
+# The switch for circuit simulators; on the page beside the failure rate
+
+
+rule circuit:
+    """the switch for simulators: corners, draws, C-V loop"""
+    input:
+        **PRESSED,
+    output:
+        models=directory(f"{RESULTS}/circuit/models"),
+        summary=f"{RESULTS}/circuit/circuit.json",
+        table=f"{RESULTS}/circuit/circuit.csv",
+        loop=f"{RESULTS}/circuit/loop.csv",
+    log:
+        f"{RESULTS}/logs/circuit.log",
+    params:
+        **ON_PADS,
+    message:
+        "make the switch for circuit simulators"
+    script:
+        "../scripts/make_circuit.py"
+
+
+if SCENE.failure.probability is not None and "switch" in SCENE.tails:
+    SHOWN += rules.circuit.output[1:]
