@@ -187,7 +187,7 @@ def find_hardness(
 
     Parameters
     ----------
-    curve, witness : rows of `Closing.curve` and `Closing.witness`.
+    curve, witness : rows of `ClosedAsperity.curve` and `.witness`.
     cell_area_nm2 : cross-section of the simulation cell.
     approach_nm : travel before a flat can touch.
     on_base : a base, or a film on one: stress that changes with the contact is what its law
