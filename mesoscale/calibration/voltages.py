@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaln, log_ndtr, ndtr
 
-from mesoscale.answer.points import PadModel
+from mesoscale.answer.switches import PadModel
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.uncertainty.censored import censored_chaos
