@@ -212,7 +212,8 @@ def _film(given: argparse.Namespace) -> int:
     from mesoscale.extras import MissingExtra
 
     try:
-        material, device = material_of(given.material), device_of(given.device)
+        material = material_of(given.material)
+        device = device_of(given.device)
         topography = topography_of(given)
         files = readable(given.files, lambda text: print(wrapped(shown(text))), topography)
         film = Film(files, given.tip_nm, **topography)
@@ -270,7 +271,8 @@ def _open(given: argparse.Namespace) -> int:
 
 def _demo(given: argparse.Namespace) -> int:
     """The page of scene `demo`; made first where it is not there."""
-    given.scene, given.target = "demo", []
+    given.scene = "demo"
+    given.target = []
     return (
         _open(given) if Path("results/demo/report.html").is_file() else _snakemake(given, show=True)
     )

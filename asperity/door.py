@@ -32,10 +32,8 @@ def topography_of(given: Namespace) -> dict[str, Any]:
     keys = {name: getattr(given, name) for name in ("channel", "detrend") if getattr(given, name)}
     added: dict[str, Any] = {}
     if given.unit:
-        units, known = (
-            re.sub("[\u00b5\u03bc]", "u", given.unit).split(","),
-            get_args(LengthUnit),
-        )  # micro sign, mu
+        units = re.sub("[\u00b5\u03bc]", "u", given.unit).split(",")  # micro sign, mu
+        known = get_args(LengthUnit)
         if len(units) > 2 or not set(units) <= set(known):
             raise InputError(
                 f"--unit {given.unit}: accepted are {', '.join(known)}, or two of them such as"

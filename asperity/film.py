@@ -132,7 +132,8 @@ class Film(Shown):
         tip = {} if tip_nm is None else {"tip_radius_nm": tip_nm}
         self.settings = TopographySettings(scans=names, **tip, **settings)
         self.measurements: list[Measurement] = []
-        arrays, attributes = {}, {}
+        arrays = {}
+        attributes = {}
         for number, source in enumerate(sources, 1):
             for measured in _load(source, number, self.settings):
                 name = measured.data.name
@@ -162,7 +163,8 @@ class Film(Shown):
 
     def lines(self) -> Iterator[str]:
         """A summary, what each measurement shows, and the doubts."""
-        used, doubts = self.description["description"], self.description["doubts"]
+        used = self.description["description"]
+        doubts = self.description["doubts"]
         several = any(doubt["code"] == "several_surfaces" for doubt in doubts)
         yield (
             f"Film (measurements: {len(self.measurements)}, doubts: {len(doubts)}): as far as can"
@@ -245,7 +247,8 @@ class Film(Shown):
         InputError : as `inputs`, or a grid that does not resolve the cut-off.
         """
         table = self.inputs(material)
-        described, side = self.description, self.description["cell_nm"]
+        described = self.description
+        side = self.description["cell_nm"]
         pixels = pixels or pixels_for(described["inputs"]["q1"], side)
         settings = ContactSettings(pixels=pixels, surface=described["surface"]).on_cell(side)
         check_resolved(table, settings.nyquist_per_nm)
@@ -285,7 +288,8 @@ class FilmContact(Shown):
 
     def lines(self) -> Iterator[str]:
         """Where it touches, how much of it, and how hard it pulls."""
-        closing, share = self.cycle.closing, float((self.pressure_GPa > 0).mean())
+        closing = self.cycle.closing
+        share = float((self.pressure_GPa > 0).mean())
         yield (
             f"Contact: touches at {self.cycle.first_contact_nm:.4g} nm;"
             f" {closing.repulsive_nN[-1]:.4g} nN press it to {closing.separation_nm[-1]:.4g} nm,"
@@ -329,7 +333,8 @@ class FilmContact(Shown):
         ------
         InputError : the pad never reaches the pressure that the switch presses with.
         """
-        device, pad = device or DeviceSettings(), pad or PadSettings()
+        device = device or DeviceSettings()
+        pad = pad or PadSettings()
         table = self._pad(pad.rms_scatter)
         central = central_point(table, self.on_grid, device)
         solved = solve_point(
@@ -366,11 +371,9 @@ class Switch(Shown):
 
     def lines(self) -> Iterator[str]:
         """Pull-in, release, and why not to trust them."""
-        cells, states, reasons = (
-            self.content["cells_computed"],
-            self.states,
-            self.content["gate"]["reasons"],
-        )
+        cells = self.content["cells_computed"]
+        states = self.states
+        reasons = self.content["gate"]["reasons"]
         opens = f"opens at {self.release_V:.3g} V" if self.release_V > 0 else "sticks"
         does = (
             f"closes at {states['pull_in_V']:.3g} V, {opens}"

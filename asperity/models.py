@@ -52,7 +52,8 @@ class ServedModel:
         ------
         InputError : wrong shape, unknown key of the configuration, values out of range, no finite
             result."""
-        checked, named = self.checked_config(config), ", ".join(INPUTS)
+        checked = self.checked_config(config)
+        named = ", ".join(INPUTS)
         values = parameters[0] if isinstance(parameters, list) and len(parameters) == 1 else None
         if (
             not isinstance(values, list)
@@ -140,7 +141,8 @@ def _law(inputs: ContactInputs, config: Config) -> Sequence[Any]:
 
 
 def _separations(config: Config) -> list[float]:
-    stated, most = config.get("separations_nm", (40.0, 35.0, 30.0, 28.0)), 1000
+    stated = config.get("separations_nm", (40.0, 35.0, 30.0, 28.0))
+    most = 1000
     listed = isinstance(stated, (list, tuple)) and 0 < len(stated) <= most
     if not listed or not all(map(_is_number, stated)):
         raise InputError(
@@ -151,14 +153,15 @@ def _separations(config: Config) -> list[float]:
 
 def _pad(inputs: ContactInputs, config: Config) -> Sequence[Any]:
     """Mean net pressure (MPa) at the separations, of closing and of opening from the last one."""
-    count, first, most = config.get("cells", 16), _seed(config, 1000), 100_000
+    count = config.get("cells", 16)
+    first = _seed(config, 1000)
+    most = 100_000
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= most:
         raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. {most}")
-    contact, separations = _contact(config, count), np.array(_separations(config))
-    grid, cells = (
-        PadGrid(separations, np.array([separations.size - 1])),
-        sample_cells(inputs, count, first),
-    )
+    contact = _contact(config, count)
+    separations = np.array(_separations(config))
+    grid = PadGrid(separations, np.array([separations.size - 1]))
+    cells = sample_cells(inputs, count, first)
     law = law_of(press_cells(inputs, contact, grid, cells), flats_of(inputs, contact))
     return [1e3 * branch.sum(axis=0)[::-1] for branch in (law.closing, law.opening[0])]
 

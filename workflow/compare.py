@@ -139,7 +139,8 @@ def first_difference(first: Any, second: Any, place: str = "") -> str:
 def _value_difference(first: Any, second: Any, place: str) -> str:
     if isinstance(first, bytes) and isinstance(second, bytes):
         return "" if first == second else f"{place} other bytes".strip()
-    a, b = np.asarray(first), np.asarray(second)
+    a = np.asarray(first)
+    b = np.asarray(second)
     equal_values = a.tolist() == b.tolist() if a.dtype == object else a.tobytes() == b.tobytes()
     if (a.dtype, a.shape) == (b.dtype, b.shape) and equal_values:
         return ""

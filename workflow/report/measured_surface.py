@@ -94,11 +94,10 @@ def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None
 
     def plot(axis: Any) -> None:
         for name, color in zip(names, apart if several else [SKY] * len(names), strict=False):
-            q, psd = groups[name]["q"], groups[name]["psd"]
-            low, high = (
-                float(attributes[name]["trusted_low"]),
-                float(attributes[name]["trusted_high"]),
-            )
+            q = groups[name]["q"]
+            psd = groups[name]["psd"]
+            low = float(attributes[name]["trusted_low"])
+            high = float(attributes[name]["trusted_high"])
             trusted = (q >= low) & (q <= high)
             label = f"{short[name.removeprefix('scans/')]}, trusted range" if several else None
             axis.loglog(q, psd, color=SOFT, linewidth=0.6, alpha=0.7, zorder=1)
@@ -106,7 +105,8 @@ def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None
         if not several:
             axis.plot([], [], color=SKY, label="measurements, trusted range")
         axis.plot([], [], color=SOFT, label="limited by levelling, tip, noise or pixels")
-        one, level = groups["one_spectrum"], f"{float(parameters['confidence']):.0%}"
+        one = groups["one_spectrum"]
+        level = f"{float(parameters['confidence']):.0%}"
         axis.fill_between(
             one["q"], one["band_low"], one["band_high"], color=ORANGE, alpha=0.25, linewidth=0
         )

@@ -271,7 +271,8 @@ def recommended(table: KnobTable, deviation_V: float = np.nan) -> str:
         return "–"
     errors = np.array([error.error for _, error in curve])
     own_errors = np.nan_to_num([error.own_error for _, error in curve])
-    best, worst = int(errors.argmin()), int(errors.argmax())
+    best = int(errors.argmin())
+    worst = int(errors.argmax())
     if errors[worst] - errors[best] <= TOLD_APART * np.hypot(own_errors[best], own_errors[worst]):
         return "values cannot be told apart"
     rises = np.diff(errors) > TOLD_APART * np.hypot(own_errors[1:], own_errors[:-1])

@@ -203,7 +203,8 @@ def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.n
                 size == sizes.setdefault(dim, size) and size > 0,
                 f"{name}: {size} along {dim}",
             )
-    separation, depth = curves["separation_nm"], curves["depth"]
+    separation = curves["separation_nm"]
+    depth = curves["depth"]
     finite = [np.isfinite(curves[name]).all() for name in CURVES if name != "opening_GPa"]
     _check(
         where,
@@ -260,7 +261,9 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
     for name, said in attributes.items():
         if not name.startswith("point_"):
             continue
-        digits, pad, where = name.removeprefix("point_"), None, f"{path}: {name}"
+        digits = name.removeprefix("point_")
+        pad = None
+        where = f"{path}: {name}"
         _check(
             where,
             digits.isascii() and digits.isdigit() and int(digits) in points,

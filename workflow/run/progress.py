@@ -64,7 +64,8 @@ class Terminal(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print what a message of Snakemake means for the user."""
-        event, about = getattr(record, "event", None), record.__dict__
+        event = getattr(record, "event", None)
+        about = record.__dict__
         if event == "run_info" and not self._planned:
             self._planned = True
             self._plan()

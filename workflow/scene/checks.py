@@ -97,7 +97,8 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
 
 
 def _stages(scene: Scene) -> Iterator[str]:
-    uncertainty, needed = scene.uncertainty, 2 * len(scene.inputs.rows())
+    uncertainty = scene.uncertainty
+    needed = 2 * len(scene.inputs.rows())
     if uncertainty.direct_runs < needed:
         yield (
             f"uncertainty.direct_runs = {uncertainty.direct_runs}: a regression over {needed // 2}"
@@ -108,7 +109,8 @@ def _stages(scene: Scene) -> Iterator[str]:
             f"contact.model = {scene.contact.model} with history.cycles = {scene.history.cycles}:"
             " only plastic contacts have a history; choose contact.model: plastic"
         )
-    device, side_um = scene.device, scene.contact.length_nm / 1000
+    device = scene.device
+    side_um = scene.contact.length_nm / 1000
     yield from _too_few_points(scene)
     if line := _no_such_air(scene):
         yield line
@@ -153,11 +155,9 @@ def _no_such_air(scene: Scene) -> str:
     """One line on vapour of more pressure than the gas around the switch has; empty where it has
     less.
     """
-    row, air, gas = (
-        scene.inputs.rows().get("humidity"),
-        scene.contact.air or AirSettings(),
-        scene.device.gas_kPa,
-    )
+    row = scene.inputs.rows().get("humidity")
+    air = scene.contact.air or AirSettings()
+    gas = scene.device.gas_kPa
     humidity = (row.reaches or 0.0) if row else air.humidity
     if (
         air.surface_tension_mN_m is not None
@@ -195,7 +195,9 @@ def _no_switch(device: DeviceSettings) -> str:
 
 
 def _machine(scene: Scene) -> Iterator[str]:
-    pixels, needed, present = scene.contact.pixels, contact_MB(scene.contact), machine_MB()
+    pixels = scene.contact.pixels
+    needed = contact_MB(scene.contact)
+    present = machine_MB()
     if needed > present:
         yield (
             f"contact.pixels = {pixels}: a contact needs {needed / 1000:.1f} GB of memory, this"

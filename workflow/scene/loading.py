@@ -160,7 +160,8 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
         or characters that
         do not print; one line per file.
     """
-    files, mistakes = [], []
+    files = []
+    mistakes = []
     beside = _folders_of(scene)
     for name in names:
         places = [name, *(os.path.normpath(folder / name) for folder in beside)]

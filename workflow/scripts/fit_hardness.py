@@ -32,7 +32,8 @@ with job(snakemake) as run:
         for name in summaries
     ]
     write_csv(snakemake.output.points, rows)
-    points, glasses = load_csv(snakemake.output.points), [load_json(path) for path in given.glasses]
+    points = load_csv(snakemake.output.points)
+    glasses = [load_json(path) for path in given.glasses]
     area_error = calibrated(load_potential(given.potential))
     measured = load_material(given.material).part("oxide_glass").indentation_GPa
     if given.base_material:

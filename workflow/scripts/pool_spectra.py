@@ -18,7 +18,8 @@ from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = settings_from_job(TopographySettings, snakemake.params.settings)
-    arrays, attributes = {}, {}
+    arrays = {}
+    attributes = {}
     for path in snakemake.input.chunks:
         groups, _, group_attributes = load_h5(path)
         arrays.update(groups)

@@ -83,7 +83,8 @@ def _by_humidity(results: Results) -> CsvRow:
     rows = results.rows("humidity/humidity.csv")
     if len(solved := [row for row in rows if row["release_V"]]) < 2:
         return {}
-    release, humidity = column(solved, "release_V"), column(solved, "humidity")
+    release = column(solved, "release_V")
+    humidity = column(solved, "humidity")
     about = (
         f"{humidity.min():.0%} to {humidity.max():.0%}, menisci either"
         f" way{'; it may stick' * (0.0 in release)}"

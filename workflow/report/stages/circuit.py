@@ -20,7 +20,8 @@ from workflow.report.verdict import volts
 )
 def describe(results: Results) -> Iterator[Block]:
     """C-V loop with its band, and failure rate; pull-in and release of the corners."""
-    circuit, rows = results.json("circuit/circuit.json"), results.csv("circuit/circuit.csv")
+    circuit = results.json("circuit/circuit.json")
+    rows = results.csv("circuit/circuit.csv")
     errors = circuit["lumps"]
     corners = [row for row in rows if float(row["deviations"]) > 0]
     yield (
@@ -48,7 +49,8 @@ def describe(results: Results) -> Iterator[Block]:
 
 
 def _figure(results: Results) -> str:
-    loop, failing = results.csv("circuit/loop.csv"), results.csv("failure/failure.csv")
+    loop = results.csv("circuit/loop.csv")
+    failing = results.csv("failure/failure.csv")
 
     def plot(slow, rare):
         voltage = column(loop, "voltage_V")

@@ -112,7 +112,8 @@ def contact_stress(results: Results) -> str | None:
         highest = 1.0
         for name in runs:
             rows = results.csv(name)
-            length, stress = column(rows, "contact_length_nm"), column(rows, "contact_stress_GPa")
+            length = column(rows, "contact_length_nm")
+            stress = column(rows, "contact_stress_GPa")
             run = name.rpartition("/")[2].removesuffix(".csv")
             point = points.get(run, {})
             _, color, _ = _scale(point)
@@ -121,7 +122,8 @@ def contact_stress(results: Results) -> str | None:
                 continue
             axis.plot(length[use], stress[use], color=color, linewidth=0.8, alpha=0.7)
             highest = max(highest, float(np.quantile(stress[use], 0.98)))
-            at, hardness = number(point.get("contact_length_nm")), number(point.get("hardness_GPa"))
+            at = number(point.get("contact_length_nm"))
+            hardness = number(point.get("hardness_GPa"))
             if point.get("status") == "yield" and np.isfinite(at):
                 axis.plot(at, hardness, "D", color=color, markeredgecolor=INK, markersize=6)
                 onset = number(point.get("onset_length_nm"))
@@ -163,8 +165,10 @@ def hardness_size(results: Results) -> str | None:
         for key, (label, color, marker) in SCALES.items():
             part = [row for row in points if _key(row) == key and row.get("status") == "yield"]
             if part:
-                length, hardness = column(part, "contact_length_nm"), column(part, "hardness_GPa")
-                low, high = column(part, "hardness_lo"), column(part, "hardness_hi")
+                length = column(part, "contact_length_nm")
+                hardness = column(part, "hardness_GPa")
+                low = column(part, "hardness_lo")
+                high = column(part, "hardness_hi")
                 bars = np.nan_to_num(np.clip([hardness - low, high - hardness], 0, None))
                 face = color if key == "1.0" else "none"
                 axis.errorbar(

@@ -83,7 +83,8 @@ def _shakedown(rows: list[CsvRow]) -> str:
         n: column([row for row in rows if int(row["cycle"]) == n], "dissipated_nN_nm").mean()
         for n in {min(numbers), max(numbers)}
     }
-    first, last = by_cycle[min(by_cycle)], by_cycle[max(by_cycle)]
+    first = by_cycle[min(by_cycle)]
+    last = by_cycle[max(by_cycle)]
     if len(by_cycle) < 2 or not np.isfinite(first) or first <= 0:
         return ""
     return (

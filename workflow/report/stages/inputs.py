@@ -92,7 +92,8 @@ def _distribution(row: CsvRow) -> str:
         return f"samples, median {show(median)}, 5 to 95 %: {show(low)} to {show(high)}"
     if row["distribution"] == "fixed":
         return f"fixed at {number(row['a']):.4g}"
-    a, b = f"{number(row['a']):.4g}", f"{number(row['b']):.4g}"
+    a = f"{number(row['a']):.4g}"
+    b = f"{number(row['b']):.4g}"
     if kind == "fixed":
         return f"fixed at {a}"
     if "uniform" in kind:

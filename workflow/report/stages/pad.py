@@ -61,7 +61,8 @@ def describe(results: Results) -> Iterator[Block]:
 def _answer(answer: dict[str, Any]) -> Iterator[Block]:
     """What the answer is made of, and which input to measure better."""
     errors = answer["quantile_error_V"]
-    solved, refused = answer["points"], len(answer["refused"])
+    solved = answer["points"]
+    refused = len(answer["refused"])
     rows = [
         ("pull-in (V)", spread(answer["pull_in_V"]["quantiles"], "0.5", "0.05", "0.95")),
         (

@@ -98,7 +98,8 @@ def _table2(results: Results) -> PageTable:
         "their scatter",
         "the response explains, of what inputs can",
     )
-    lines, faint = [], []
+    lines = []
+    faint = []
     for name, (symbol, unit, factor) in OUTPUTS.items():
         if name not in rows:
             continue
