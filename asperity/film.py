@@ -111,23 +111,24 @@ class Film(Shown):
         tip_nm: float | None = None,
         **settings: Any,
     ) -> None:
-        given = [files] if isinstance(files, (str, Path, Scan)) else list(files)
-        if not all(isinstance(item, (str, Path, Scan)) for item in given):
+        stated = [files] if isinstance(files, (str, Path, Scan)) else list(files)
+        if not all(isinstance(item, (str, Path, Scan)) for item in stated):
             raise InputError(
                 "Film: heights alone have no side; give Scan(heights_nm, (length_x_nm,"
                 " length_y_nm), name), or press them by asp.press(heights, side_nm, loads_nN,"
                 " e_star)"
             )
         sources = [
-            part
-            for item in given
-            for part in ([item] if isinstance(item, Scan) else files_in(item))
+            file
+            for item in stated
+            for file in ([item] if isinstance(item, Scan) else files_in(item))
         ]
         if not sources:
             raise InputError(
-                f"{', '.join(map(str, given)) or 'files'}: nothing to read; give scans of a surface"
+                f"{', '.join(map(str, stated)) or 'files'}: nothing to read; give scans of a"
+                " surface"
             )
-        check_count(", ".join(str(item) for item in given[:3]), sources)
+        check_count(", ".join(str(item) for item in stated[:3]), sources)
         names = tuple(item.name if isinstance(item, Scan) else item for item in sources)
         tip = {} if tip_nm is None else {"tip_radius_nm": tip_nm}
         self.settings = TopographySettings(scans=names, **tip, **settings)
@@ -212,11 +213,11 @@ class Film(Shown):
         ------
         InputError : an unknown input, a value out of range, or measurements that no description
             fits."""
-        given = {name: _row(value) for name, value in (material or {}).items()}
-        laws = ("", given.get("hardness", "paper"))
+        stated = {name: _row(value) for name, value in (material or {}).items()}
+        laws = ("", stated.get("hardness", "paper"))
         rows = {
             **{name: row for name, row in MATERIAL.items() if definition(name).hardness in laws},
-            **given,
+            **stated,
         }
         if "adhesion" in rows:  # states the attraction by work and range
             rows = {

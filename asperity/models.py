@@ -67,12 +67,12 @@ class ServedModel:
             inputs = ContactInputs(**dict(zip(INPUTS, map(float, values), strict=True)))
         except OverflowError:
             raise InputError(f"{self.name}: a number too large; inputs are {named}") from None
-        result = [np.asarray(part, float) for part in self.evaluate(inputs, checked)]
-        if not all(np.isfinite(part).all() for part in result):
+        result = [np.asarray(output, float) for output in self.evaluate(inputs, checked)]
+        if not all(np.isfinite(output).all() for output in result):
             raise InputError(
                 f"{self.name}: no finite result at these inputs (JSON has no NaN); look at {named}"
             )
-        return [part.tolist() for part in result]
+        return [output.tolist() for output in result]
 
     def checked_config(self, config: Any) -> Config:
         """The configuration, with its keys checked.
@@ -130,8 +130,8 @@ def _contact_cycle(inputs: ContactInputs, config: Config) -> Sequence[Any]:
     """
     cycle = _cycle(inputs, config)
     forces = force_levels_nN(_contact(config).max_force_nN)
-    ends = [cycle.first_contact_nm, cycle.last_contact_nm, -cycle.opening.net_nN.min()]
-    return [ends, separations_at(cycle.closing, forces), separations_at(cycle.opening, forces)]
+    scalars = [cycle.first_contact_nm, cycle.last_contact_nm, -cycle.opening.net_nN.min()]
+    return [scalars, separations_at(cycle.closing, forces), separations_at(cycle.opening, forces)]
 
 
 def _law(inputs: ContactInputs, config: Config) -> Sequence[Any]:
@@ -142,11 +142,11 @@ def _law(inputs: ContactInputs, config: Config) -> Sequence[Any]:
 
 def _separations(config: Config) -> list[float]:
     stated = config.get("separations_nm", (40.0, 35.0, 30.0, 28.0))
-    most = 1000
-    listed = isinstance(stated, (list, tuple)) and 0 < len(stated) <= most
+    limit = 1000
+    listed = isinstance(stated, (list, tuple)) and 0 < len(stated) <= limit
     if not listed or not all(map(_is_number, stated)):
         raise InputError(
-            f"config.separations_nm: must be a list of 1 .. {most} falling separations in nm"
+            f"config.separations_nm: must be a list of 1 .. {limit} falling separations in nm"
         )
     return [float(x) for x in stated]
 
@@ -155,9 +155,9 @@ def _pad(inputs: ContactInputs, config: Config) -> Sequence[Any]:
     """Mean net pressure (MPa) at the separations, of closing and of opening from the last one."""
     count = config.get("cells", 16)
     first = _seed(config, 1000)
-    most = 100_000
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= most:
-        raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. {most}")
+    limit = 100_000
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= limit:
+        raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. {limit}")
     contact = _contact(config, count)
     separations = np.array(_separations(config))
     grid = PadGrid(separations, np.array([separations.size - 1]))

@@ -107,8 +107,8 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
         no_interval = ("; ".join(pad["gate"]["reasons"]) if release is None else "") or pad[
             "answer_status"
         ]
-    every = gates_of(results) if gates is None else gates
-    failed = [gate for gate in every if gate.used and gate.answer and not gate.passed]
+    all_gates = gates_of(results) if gates is None else gates
+    failed = [gate for gate in all_gates if gate.used and gate.answer and not gate.passed]
     return Verdict(
         "bending electrode" if pad.get("electrode", "bending") == "bending" else "flat electrode",
         release,

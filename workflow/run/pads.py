@@ -63,18 +63,18 @@ def write_solved(
     """
     groups: dict[str, dict[str, Dataset]] = {}
     attributes: dict[str, dict[str, Any]] = {}
-    for number, one in solved.items():
+    for number, solved_point in solved.items():
         name = f"point_{number:04d}"
-        groups[name] = {} if one.pad is None else _curves(one.pad.cells)
-        device = one.point.device.model_dump(mode="json", exclude={"spread"})
+        groups[name] = {} if solved_point.pad is None else _curves(solved_point.pad.cells)
+        device = solved_point.point.device.model_dump(mode="json", exclude={"spread"})
         attributes[name] = {
-            **one.states,
-            "halves_V": one.halves_V,
-            "refused": one.refused,
-            "inputs": one.point.values,
-            "gap_cutoff_nm": one.point.gap_cutoff_nm,
+            **solved_point.states,
+            "halves_V": solved_point.halves_V,
+            "refused": solved_point.refused,
+            "inputs": solved_point.point.values,
+            "gap_cutoff_nm": solved_point.point.gap_cutoff_nm,
             "device": device,
-            **(asdict(one.pad.flats) if one.pad else {}),
+            **(asdict(solved_point.pad.flats) if solved_point.pad else {}),
         }
     if design is not None:
         drawn = Dataset(
@@ -148,7 +148,7 @@ def _check(where: str, fits: bool | np.bool_, what: str) -> None:
         raise UnfitModel(f"{where}: {what}; delete the file and run again")
 
 
-def _check_solved(where: str, said: Mapping[str, Any]) -> None:
+def _check_solved(where: str, stated: Mapping[str, Any]) -> None:
     """See that a point has either a reason or all states, each in its range.
 
     Raises
@@ -156,19 +156,19 @@ def _check_solved(where: str, said: Mapping[str, Any]) -> None:
     UnfitModel
     """
     for name in ("halves_V", "refused"):
-        _check(where, name in said, f"no attribute {name}")
-    halves = np.asarray(said["halves_V"])
+        _check(where, name in stated, f"no attribute {name}")
+    halves = np.asarray(stated["halves_V"])
     _check(
         where,
         halves.shape == (2,) and halves.dtype.kind == "f" and not (halves < 0.0).any(),
         "halves_V: no two V",
     )
-    _check(where, isinstance(said["refused"], str), "refused: no text")
+    _check(where, isinstance(stated["refused"], str), "refused: no text")
     for name in STATES:
-        if said["refused"]:
-            _check(where, name not in said, f"{name} of a point without an answer")
+        if stated["refused"]:
+            _check(where, name not in stated, f"{name} of a point without an answer")
             continue
-        value = np.asarray(said.get(name, np.nan))
+        value = np.asarray(stated.get(name, np.nan))
         number = (
             value.shape == ()
             and value.dtype.kind in "fiu"
@@ -176,11 +176,13 @@ def _check_solved(where: str, said: Mapping[str, Any]) -> None:
             and 0.0 <= value <= 1e9
         )
         _check(
-            where, bool(number), f"{name} = {said.get(name)!r:.40}: accepted is a number from 0 on"
+            where,
+            bool(number),
+            f"{name} = {stated.get(name)!r:.40}: accepted is a number from 0 on",
         )
 
 
-def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.ndarray]) -> None:
+def _check_curves(where: str, stated: Mapping[str, Any], curves: Mapping[str, np.ndarray]) -> None:
     """See that the curves of a pad have the shapes and ranges in which they are written.
 
     Raises
@@ -234,12 +236,14 @@ def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.n
         signs = not (repulsive < -nothing).any() and not (attractive > nothing).any()
         _check(where, signs, f"{name}: repulsion is positive and attraction negative")
     for name in ("hamaker", "offset_nm"):
-        value = np.asarray(said.get(name, np.nan))
+        value = np.asarray(stated.get(name, np.nan))
         number = (
             value.shape == () and value.dtype.kind in "fiu" and np.isfinite(value) and value >= 0.0
         )
         _check(
-            where, bool(number), f"{name} = {said.get(name)!r:.40}: accepted is a number from 0 on"
+            where,
+            bool(number),
+            f"{name} = {stated.get(name)!r:.40}: accepted is a number from 0 on",
         )
 
 
@@ -258,7 +262,7 @@ def load_model(paths: Sequence[str], points: ScenePoints) -> PadModel:
 
 def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solved]]:
     groups, _, attributes = load_h5(path)
-    for name, said in attributes.items():
+    for name, stated in attributes.items():
         if not name.startswith("point_"):
             continue
         digits = name.removeprefix("point_")
@@ -270,10 +274,10 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
             "no point of this scene",
         )
         number = int(digits)
-        _check_solved(where, said)
-        _check(where, name in groups or bool(said["refused"]), "no curves")
+        _check_solved(where, stated)
+        _check(where, name in groups or bool(stated["refused"]), "no curves")
         if name in groups:
-            _check_curves(where, said, groups[name])
+            _check_curves(where, stated, groups[name])
             curves = groups[name]
             cells = PadCells(
                 PadGrid(curves["separation_nm"], curves["depth"]),
@@ -284,18 +288,18 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
                 curves["opening_GPa"],
                 curves["settled"].astype(bool),
             )
-            pad = Pad(cells, Flats(float(said["hamaker"]), float(said["offset_nm"])))
-        states = {key: float(said[key]) for key in STATES if key in said}
-        first, second = (float(value) for value in said["halves_V"])
-        yield number, Solved(points[number], pad, states, (first, second), str(said["refused"]))
+            pad = Pad(cells, Flats(float(stated["hamaker"]), float(stated["offset_nm"])))
+        states = {key: float(stated[key]) for key in STATES if key in stated}
+        first, second = (float(value) for value in stated["halves_V"])
+        yield number, Solved(points[number], pad, states, (first, second), str(stated["refused"]))
 
 
 def population_of_job(snakemake: Any) -> tuple[Population, float]:
     """All switches of a job that also has section `failure` of its scene, and the share of them
     that may fail.
     """
-    asked = settings_from_job(FailureSettings, snakemake.params.failure)
-    assert asked.probability is not None, "rules refuse scenes without it"
+    failure_settings = settings_from_job(FailureSettings, snakemake.params.failure)
+    assert failure_settings.probability is not None, "rules refuse scenes without it"
     points, pad = points_of_job(snakemake)
     model = load_model([snakemake.input.model], points)
 
@@ -303,9 +307,9 @@ def population_of_job(snakemake: Any) -> tuple[Population, float]:
         surfaces = surfaces_of(100_000 + number)  # beyond those of the points of an answer
         return press_pad(point, points.on_grid, times * pad.point_cells, surfaces)
 
-    pads = {k: one.pad for k, one in enumerate(model.points) if one.pad}
+    pads = {k: solved_point.pad for k, solved_point in enumerate(model.points) if solved_point.pad}
     known = points.design.probability[np.array(list(pads), int)], list(pads.values())
     population = Population(
-        points.table, points.device, points.cutoffs_nm, asked.release_V, press, known
+        points.table, points.device, points.cutoffs_nm, failure_settings.release_V, press, known
     )
-    return population, asked.probability
+    return population, failure_settings.probability

@@ -22,8 +22,8 @@ with job(snakemake) as run:
     groups = {}
     attributes = {}
     for path in snakemake.input.chunks:
-        part, _, described = load_h5(path)
-        groups |= part
+        judgement, _, described = load_h5(path)
+        groups |= judgement
         attributes |= described
     alike = copies(in_order(groups, attributes), attributes)
     spectra = [

@@ -24,11 +24,11 @@ with job(snakemake) as run:
             f"at central inputs {solved[0].outcome}{'; its interval follows' if follows else ''}"
         )
     else:
-        asked = [(number, points.by_number[number]) for number in numbers]
-        for number, one in zip(
-            numbers, solve_points(asked, points.on_grid, pad.point_cells), strict=True
+        points_here = [(number, points.by_number[number]) for number in numbers]
+        for number, result in zip(
+            numbers, solve_points(points_here, points.on_grid, pad.point_cells), strict=True
         ):
-            solved[number] = one
+            solved[number] = result
             run.progress(len(solved) / len(numbers), f"{len(solved)} of {len(numbers)} points")
     write_solved(snakemake.output[0], solved, run.provenance)
     if follows and snakemake.rule.endswith(

@@ -125,12 +125,12 @@ LEFT_OUT = {
 def _caption(results: Results, rows: list[CsvRow]) -> str:
     """What the interval holds, in quadrature, beside its width."""
     held = [number(row["volts"]) for row in rows if row["held"] == "True"]
-    said = (
+    held_words = (
         "What the interval holds: volts by which each, from its 5 to its 95 %, moves the release"
         f" at central inputs. Together they are {show(float(np.sqrt(np.nansum(np.square(held)))))}"
         " V, added in quadrature"
     )
     if answer := results.json("answer/pad_switch.json").get("answer"):
-        ends = [answer["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]
-        return f"{said}; the interval is {show(ends[1] - ends[0])} V wide"
-    return said
+        ends_V = [answer["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]
+        return f"{held_words}; the interval is {show(ends_V[1] - ends_V[0])} V wide"
+    return held_words

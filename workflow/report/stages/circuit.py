@@ -54,10 +54,12 @@ def _figure(results: Results) -> str:
 
     def plot(slow, rare):
         voltage = column(loop, "voltage_V")
-        for way, color in (("up", BLUE), ("down", ORANGE)):
-            low, high = (column(loop, f"{way}_{end}_fF") / 1e3 for end in ("q05", "q95"))
+        for direction, color in (("up", BLUE), ("down", ORANGE)):
+            low, high = (column(loop, f"{direction}_{end}_fF") / 1e3 for end in ("q05", "q95"))
             slow.fill_between(voltage, low, high, color=color, alpha=0.2, linewidth=0)
-            slow.plot(voltage, column(loop, f"{way}_central_fF") / 1e3, color=color, label=way)
+            slow.plot(
+                voltage, column(loop, f"{direction}_central_fF") / 1e3, color=color, label=direction
+            )
         slow.set(xlabel="voltage (V)", ylabel="capacitance (pF)", title="slow loop")
         slow.legend()
         usual = [row for row in failing if np.isclose(float(row["attraction"]), 1.0)]

@@ -15,7 +15,7 @@ def describe(results: Results) -> Iterator[Block]:
     faint = faint_outputs(results)
     rows = results.csv("uncertainty/sensitivity.csv")
     names = list(dict.fromkeys(row["input"] for row in rows))
-    part = {(row["output"], row["input"]): row for row in rows}
+    by_pair = {(row["output"], row["input"]): row for row in rows}
     lines = []
     grey = []
     for output, (symbol, unit, factor) in OUTPUTS.items():
@@ -23,7 +23,7 @@ def describe(results: Results) -> Iterator[Block]:
             continue
         cells = [f"{symbol} ({unit})"]
         for name in names:
-            row = part.get((output, name), {})
+            row = by_pair.get((output, name), {})
             ours = number(row.get("mu_star")) * factor
             theirs = number(row.get("paper_mu_star")) * factor
             cells.append(f"{show(ours, 2)} ({show(theirs, 2)})" if paper else show(ours, 2))

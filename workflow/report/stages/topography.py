@@ -95,13 +95,13 @@ def maps(results: Results) -> str | None:
     short = short_names([name.removeprefix("scans/") for name in names])
     # one of each size first, then more up to six
     names.sort(key=lambda name: (float(scan_attributes[name].get("length_x_nm", 0)), name))
-    shown = names if len(names) <= 6 else names[:3] + names[-3:]
-    columns = min(3, len(shown))
-    rows = -(-len(shown) // columns)
-    last_map = next((name for name in reversed(shown) if "heights" in groups[name]), "")
+    named = names if len(names) <= 6 else names[:3] + names[-3:]
+    columns = min(3, len(named))
+    rows = -(-len(named) // columns)
+    last_map = next((name for name in reversed(named) if "heights" in groups[name]), "")
 
     def plot(*axes):
-        for axis, name in zip(axes, shown, strict=False):
+        for axis, name in zip(axes, named, strict=False):
             size = float(scan_attributes[name]["length_x_nm"])
             unit = "nm"
             if size >= 1000:
@@ -127,7 +127,7 @@ def maps(results: Results) -> str | None:
             )
             bar.outline.set_visible(False)
             axis.grid(False)
-        for axis in axes[len(shown) :]:
+        for axis in axes[len(named) :]:
             axis.set_visible(False)
 
     return draw(
@@ -200,8 +200,8 @@ def spectra(results: Results) -> str | None:
     return draw("fig10", "Power spectra of the scans with fits", plot, (5.0, 4.2))
 
 
-def _thin(heights: np.ndarray, most: int = 128) -> np.ndarray:
-    step = max(1, -(-max(heights.shape) // most))
+def _thin(heights: np.ndarray, pixels: int = 128) -> np.ndarray:
+    step = max(1, -(-max(heights.shape) // pixels))
     return heights[::step, ::step]
 
 
