@@ -13,15 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.answer.points import (
-    PadModel,
-    central_point,
-    on_pad_grid,
-    plan_points,
-    solve_point,
-    surfaces_of,
-)
+from mesoscale.answer.points import central_point, on_pad_grid, plan_points
 from mesoscale.answer.release import switch_on_pad
+from mesoscale.answer.switches import PadModel, solve_point, surfaces_of
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
 from mesoscale.errors import InputError
@@ -176,7 +170,7 @@ class Film(Shown):
         """The first map, levelled, and all spectra with their trusted parts, as a Matplotlib
         figure.
         """
-        with needs("run"):
+        with needs("plot"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
         maps = self.maps
@@ -295,7 +289,7 @@ class FilmContact(Shown):
 
     def plot(self) -> Any:
         """The map of pressure and force against separation, as a Matplotlib figure."""
-        with needs("run"):
+        with needs("plot"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
         side = self.settings.length_nm / 1000

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, get_args
 
 import numpy as np
+from scipy import ndimage
 
 from asperity.film import Shown
 from mesoscale.checks import (
@@ -90,11 +91,49 @@ class PressedMap(Shown):
                 f" GPa, {self.separation_nm[k]:.4g} nm from the mean plane"
             )
 
+    def to_frame(self) -> Any:
+        """A pandas DataFrame with a row a load."""
+        with needs("plot"):
+            import pandas as pd
+        names = ("loads_nN", "separation_nm", "approach_nm", "attraction_nN", "area_share")
+        return pd.DataFrame({name: getattr(self, name) for name in names})
+
+    def to_xarray(self) -> Any:
+        """An xarray Dataset of the maps, with coordinates load (nN), x and y (nm)."""
+        with needs("plot"):
+            import xarray as xr
+        sites = self.pressure_GPa.shape[1:]
+        x, y = (
+            (np.arange(count) + 0.5) * length / count
+            for count, length in zip(sites, self.lengths_nm, strict=True)
+        )
+        coordinates = {
+            "load": ("load", self.loads_nN, {"units": "nN"}),
+            "x": ("x", x, {"units": "nm"}),
+            "y": ("y", y, {"units": "nm"}),
+        }
+        maps = {
+            "pressure": (("load", "x", "y"), self.pressure_GPa, {"units": "GPa"}),
+            "gap": (("load", "x", "y"), self.gap_nm, {"units": "nm"}),
+        }
+        return xr.Dataset(maps, coordinates)
+
+    def spot_areas_nm2(self, load: int = -1) -> np.ndarray:
+        """Areas of the contact spots at one of the loads, the largest first.
+
+        Sites that touch at an edge or a corner are one spot; spots do not go on across the edges of
+        the map.
+        """
+        spots, count = ndimage.label(self.pressure_GPa[load] > 0.0, np.ones((3, 3)))
+        sizes = np.bincount(spots.ravel(), minlength=count + 1)[1:]
+        site_nm2 = np.prod(self.lengths_nm) / spots.size
+        return np.sort(sizes)[::-1] * site_nm2
+
     def plot(self, load: int = -1) -> Any:
         """Pressure and gap at one of the loads, by its place in `loads_nN`, as a Matplotlib
         figure.
         """
-        with needs("run"):
+        with needs("plot"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(
             1, 2, figsize=(9, 3.8), layout="constrained", sharex=True, sharey=True

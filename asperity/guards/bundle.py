@@ -11,10 +11,6 @@ ROOT = _PACKAGE / "_bundle" if (_PACKAGE / "_bundle").is_dir() else _PACKAGE.par
 """Folder that holds `Snakefile`, `workflow/` and `config/`."""
 
 
-class ForeignPackage(Exception):
-    """A host has imported a package of a name that is ours; the message is one line."""
-
-
 def bind_workflow() -> None:
     """Let `import workflow.…` find the package that lies here, also in the process of a host that
     has a folder `workflow` of its own.
@@ -23,7 +19,7 @@ def bind_workflow() -> None:
 
     Raises
     ------
-    ForeignPackage : the host has imported a module in whose place ours must be.
+    SystemExit : the host has imported a module in whose place ours must be.
     """
     folder = ROOT / "workflow"
     package = sys.modules.get("workflow")
@@ -42,8 +38,8 @@ def bind_workflow() -> None:
     for file in folder.glob("*/__init__.py"):
         name = f"workflow.{file.parent.name}"
         if name in sys.modules:
-            raise ForeignPackage(
-                f"{name}: the host workflow has imported a module of this name, which is one of"
-                " Asperity's, too; give it another name"
+            raise SystemExit(
+                f"ERROR {name}: the host workflow has imported a module of this name, which"
+                " Asperity has, too; give it another name"
             )
     package.__path__ = [str(folder), *package.__path__]

@@ -39,7 +39,7 @@ def synthesize(
     q0, q1
         Roll-off and cut-off wave vectors in 1/nm; ``q1=None`` is the grid's Nyquist limit.
     hurst, convention
-        Exponent and how it is read, see `model.slope_from_hurst`.
+        Exponent and how it is read, see `slope_from_hurst`.
     rms
         Root-mean-square height in nm; met exactly by every realisation.
     seed

@@ -200,3 +200,12 @@ def test_what_a_call_returns_is_printed_in_a_line():
 
 def test_nothing_stated_is_one_elastic_half_space():
     assert asp.ContactSettings().mechanics == "coupled"
+
+
+def test_a_cycle_is_one_table_with_its_units():
+    cycle = asp.run_cycle(INPUTS, SMALL, seed=1)
+    table = cycle.to_frame()
+    assert set(table.branch) == {"closing", "opening"}
+    opening = table[table.branch == "opening"]
+    assert list(opening.separation_nm) == list(cycle.opening.separation_nm)
+    assert table.attrs["units"]["contact_area_nm2"] == "nm^2"

@@ -255,3 +255,31 @@ def test_what_is_no_map_is_refused_in_one_line(changes, words):
     with pytest.raises(asp.InputError, match=words) as refusal:
         asp.press(**call)
     assert "\n" not in str(refusal.value)
+
+
+def test_maps_are_a_dataset_and_loads_a_table():
+    pressed = asp.press(two_bumps(), (64.0, 32.0), [1.0, 20.0], 50.0, periodic=False)
+    maps = pressed.to_xarray()
+    assert maps.pressure.dims == ("load", "x", "y")
+    assert maps.pressure.attrs["units"] == "GPa"
+    site_nm2 = 64.0 * 32.0 / pressed.gap_nm[0].size
+    assert maps.pressure.sum(("x", "y")).to_numpy() * site_nm2 == pytest.approx([1.0, 20.0])
+    assert maps.x.to_numpy()[[0, -1]] == pytest.approx([0.5, 63.5])
+    table = pressed.to_frame()
+    assert list(table.area_share) == list(pressed.area_share)
+
+
+def test_spots_of_two_bumps_are_two_and_share_the_area():
+    pressed = asp.press(two_bumps(), (64.0, 32.0), 20.0, 50.0, periodic=False)
+    areas = pressed.spot_areas_nm2()
+    assert areas.size == 2
+    assert areas.sum() == pytest.approx(pressed.area_share[0] * 64.0 * 32.0)
+    assert areas[0] > areas[1], "the higher bump carries more"
+
+
+def two_bumps():
+    """Two caps of radius 20 nm, 32 nm apart along x, one 0.1 nm higher; 64 x 32 sites of 1 nm2."""
+    x, y = np.meshgrid(np.arange(64) + 0.5, np.arange(32) + 0.5, indexing="ij")
+    centres = {16.0: 0.0, 48.0: -0.1}
+    caps = [top - ((x - place) ** 2 + (y - 16.0) ** 2) / 40.0 for place, top in centres.items()]
+    return np.maximum(*caps)

@@ -41,9 +41,14 @@ def foreign_results(results: Path, is_made: Callable[[str], bool]) -> list[str]:
 
     Parameters
     ----------
-    is_made : whether a rule makes the file of this path.
+    is_made : whether a rule makes the file or the folder of this path.
     """
-    foreign = [path for path in recorded(results) if not is_made(str(path))]
+    foreign = []
+    for path in recorded(results):
+        folders_above = path.relative_to(results).parents
+        places = (path, *(results / folder for folder in folders_above))
+        if not any(is_made(str(place)) for place in places):
+            foreign.append(path)
     before = [path for path in foreign if place_now(path.relative_to(results).as_posix())]
     folders = sorted({path.relative_to(results).parts[0] for path in before})
     lines = [f"{results / name} is `{STAGES[name]}` since {SINCE}; {REMOVE}" for name in folders]
