@@ -132,9 +132,9 @@ class Repeated(Base):
         pixels = self.shape[0]
         compliance[:, 1 : (pixels + 1) // 2] *= 2.0  # the other half of the waves
         angle = 2.0 * np.pi / pixels * np.arange(3)
-        along = np.cos(angle[:, None] * np.arange(pixels))
-        across = np.cos(angle[:, None] * np.arange(pixels // 2 + 1))
-        return along @ compliance @ across.T / pixels**2
+        row_waves = np.cos(angle[:, None] * np.arange(pixels))
+        column_waves = np.cos(angle[:, None] * np.arange(pixels // 2 + 1))
+        return row_waves @ compliance @ column_waves.T / pixels**2
 
     def coarser(self, shape: tuple[int, int]) -> "Repeated":
         """The same side with fewer sites."""

@@ -56,11 +56,10 @@ def press(heights: Array, load_nN: float, base: Base) -> Pressed:
     """Press a map (nx, ny) in nm, contact at the lowest, with a force."""
 
     def search(level: Array, below: Base, guess: Array | None) -> Search:
-        if guess is None or not guess.any():
-            guess = np.maximum(level.mean() - level, 0.0)
-        if not guess.any():
-            guess = np.ones(level.shape)
-        return OneLoad(level, load_nN, below, guess)
+        pressed = guess if guess is not None else np.maximum(level.mean() - level, 0.0)
+        if not pressed.any():
+            pressed = np.ones(level.shape)
+        return OneLoad(level, load_nN, below, pressed)
 
     return _nested(heights, base, search)
 
