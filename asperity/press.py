@@ -16,6 +16,7 @@ from mesoscale.checks import (
     checked_heights,
 )
 from mesoscale.contact.attraction import all_attracting
+from mesoscale.contact.compiling import announced
 from mesoscale.contact.coupled import one_load, validity
 from mesoscale.contact.coupled.base import Alone, Repeated
 from mesoscale.contact.coupled.engine import CoupledContact
@@ -39,7 +40,7 @@ PressureOfGaps = Callable[[np.ndarray], Any]
 MAP_MB = 16e-6
 """Of a site at a load: its pressure and its gap."""
 FEW_LOADS = 4
-"""Elastic loads up to which each is found without the way there; of more the way costs less."""
+"""Elastic loads or approaches that are each found alone; of more the way costs less."""
 STRONGEST_GPA = 1e3
 """Of an attraction: 0.25 aJ across 0.1 nm make 13 GPa, the cohesion of diamond is some 100 GPa."""
 ATTRACTION = (
@@ -221,21 +222,22 @@ def press(
     )
     check_hardness(inputs, settings)
     offset, lowest = float(surface.mean()), float(surface.min())
-    if by_load and h_macro is None and steps.size <= FEW_LOADS:
-        states = _each_load(surface, periodic, steps, inputs, settings)
+    if h_macro is None and steps.size <= FEW_LOADS:
+        states = _each(surface, periodic, steps, by_load, inputs, settings)
     else:
         states = _way(surface, periodic, steps, by_load, inputs, settings)
     forces, separations, pulls = (np.zeros(steps.size) for _ in range(3))
     pressures, gaps = (np.empty((steps.size, *surface.shape)) for _ in range(2))
     converged = True
-    for number, state in enumerate(states):
-        forces[number] = state.force
-        separations[number] = state.separation
-        pressures[number] = state.pressure
-        gaps[number] = state.gap
-        converged &= state.settled
-        if attraction is not None:
-            pulls[number] = _pull(attraction, gaps[number], pressures[number], spacing**2)
+    with announced():
+        for number, state in enumerate(states):
+            forces[number] = state.force
+            separations[number] = state.separation
+            pressures[number] = state.pressure
+            gaps[number] = state.gap
+            converged &= state.settled
+            if attraction is not None:
+                pulls[number] = _pull(attraction, gaps[number], pressures[number], spacing**2)
     sides = (spacing * surface.shape[0], spacing * surface.shape[1])
     from_mean, approach = separations + offset, -lowest - separations
     return PressedMap(
@@ -260,26 +262,33 @@ class _State(NamedTuple):
     settled: bool
 
 
-def _each_load(
+def _each(
     surface: np.ndarray,
     periodic: bool,
-    loads: np.ndarray,
+    steps: np.ndarray,
+    by_load: bool,
     inputs: ContactInputs,
     settings: ContactSettings,
 ) -> Iterator[_State]:
-    """The elastic map at each load, by itself."""
+    """The elastic map at each load or approach, by itself."""
     spacing = settings.length_nm / settings.pixels
     base = (Repeated if periodic else Alone)(surface.shape, spacing, float(inputs.e_star))
-    for number, load in enumerate(loads.tolist()):
-        pressed = one_load.press(surface, load, base)
+    lowest = float(surface.min())
+    flat = float(surface.mean())
+    for number, step in enumerate(steps.tolist()):
+        if by_load:
+            pressed = one_load.press(surface, step, base)
+        elif periodic and step >= flat - lowest:  # no pressure parts the mean planes
+            raise _full_contact(surface, inputs, settings)
+        else:
+            pressed = one_load.press_to(surface, -lowest - step, base)
         if periodic and pressed.pressure.all():
-            roughness = validity.roughness(surface, settings.length_nm)
-            full = inputs.e_star * roughness.flattening * settings.length_nm**2
-            raise _beyond("full contact", full)
+            raise _full_contact(surface, inputs, settings)
         if not pressed.settled:
-            yield from _way(surface, periodic, loads[number:], True, inputs, settings)
+            yield from _way(surface, periodic, steps[number:], by_load, inputs, settings)
             return
-        yield _State(load, pressed.separation, pressed.pressure, pressed.gap, True)
+        force = step if by_load else float(pressed.pressure.sum()) * spacing**2
+        yield _State(force, pressed.separation, pressed.pressure, pressed.gap, True)
 
 
 def _way(
@@ -384,6 +393,13 @@ def _refuse_beyond(contact: CoupledContact, force: float) -> None:
     """Refuse what the map does not carry."""
     if force > contact.capacity:
         raise _beyond("the hardness" if contact.flows else "full contact", contact.capacity)
+
+
+def _full_contact(
+    surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings
+) -> InputError:
+    flattening = validity.roughness(surface, settings.length_nm).flattening
+    return _beyond("full contact", inputs.e_star * flattening * settings.length_nm**2)
 
 
 def _beyond(what: str, capacity_nN: float) -> InputError:

@@ -21,7 +21,7 @@ import numpy as np
 from asperity.guards.foreign_text import shown
 from asperity.guards.foreign_yaml import load_mapping
 from workflow.files.checksums import is_damaged
-from workflow.files.results import checked_items
+from workflow.files.results import checked_items, is_length_alone
 from workflow.report.available import results_in
 from workflow.report.verdict import verdict
 from workflow.run.job import without_machine_times
@@ -86,6 +86,8 @@ def _h5_content(path: Path) -> dict[str, Any]:
         values: dict[str, Any] = {}
         attributes = {"root": _without_provenance(_attributes(file))}
         for name, item in checked_items(file).items():
+            if is_length_alone(item):
+                continue
             attributes[name] = _attributes(item)
             if isinstance(item, h5py.Dataset):
                 values[name] = item[()]

@@ -12,6 +12,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+import xarray
 
 from workflow.files.results import load_csv
 from workflow.run.job import result_checksum
@@ -65,6 +66,17 @@ def finished(make_workflow, tmp_path_factory):
     assert last.startswith(("The switch ", "Whether the switch "))
     assert last.endswith("\nresults are in results/ci; the report is results/ci/report.html\n")
     return workflow
+
+
+def test_every_hdf5_result_opens_in_xarray(finished):
+    """Pads did not: some of their dimensions had a scale, others none."""
+    files = [path for path in (finished.folder / "results/ci").rglob("*.h5")]
+    assert len(files) >= 8
+    for path in files:
+        with h5py.File(path) as file:
+            groups = {item.parent.name for item in datasets(file).values()}
+        for group in groups:
+            xarray.open_dataset(path, group=group, engine="h5netcdf").close()
 
 
 def datasets(file: h5py.File) -> dict[str, h5py.Dataset]:

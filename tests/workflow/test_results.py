@@ -131,4 +131,20 @@ def test_a_dataset_named_like_its_dimension_is_its_coordinate(tmp_path):
         assert group["separation_nm"].is_scale
         assert list(group["repulsive_nN"].dims[0].keys()) == ["separation_nm"]
         assert group["repulsive_nN"].dims[0]["separation_nm"][:].tolist() == [3.0, 2.0]
-        assert not list(group["heights"].dims[0].keys())
+        assert next(iter(group["heights"].dims[0].values())).shape == (1,)
+    assert set(load_h5(path)[0]["plastic/closing"]) == set(curve), "lengths alone are no results"
+
+
+def test_results_open_in_xarray(tmp_path):
+    """Dimensions with and without coordinates in one dataset, as cells and separations of a pad."""
+    import xarray
+
+    pressed = {
+        "separation_nm": Dataset([3.0, 2.0], "nm", "mean separation", ("separation_nm",)),
+        "closing_GPa": Dataset(np.zeros((4, 2)), "GPa", "pressure", ("cell", "separation_nm")),
+    }
+    write_h5(tmp_path / "pad.h5", {"point_0000": pressed}, {}, {})
+    opened = xarray.open_dataset(tmp_path / "pad.h5", group="point_0000", engine="h5netcdf")
+    assert opened.closing_GPa.sizes == {"cell": 4, "separation_nm": 2}
+    assert opened.closing_GPa.sel(separation_nm=2.0).shape == (4,)
+    assert opened.closing_GPa.attrs["units"] == "GPa"

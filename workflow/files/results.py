@@ -225,16 +225,36 @@ def write_h5(
     write_bytes(path, image.getvalue())
 
 
+LENGTH_ALONE = "This is a netCDF dimension but not a netCDF variable."
+"""Begins the name of a scale that only tells the length of a dimension (netCDF-4 format)."""
+
+
+def is_length_alone(dataset: Any) -> bool:
+    """Whether a dataset only tells the length of a dimension."""
+    name = dataset.attrs.get("NAME", b"")
+    return isinstance(name, bytes) and name.startswith(LENGTH_ALONE.encode())
+
+
 def _attach_scales(group: Any, datasets: Mapping[str, Dataset]) -> None:
-    """Make each dataset named like its one dimension the coordinate of that dimension, as netCDF
-    readers expect.
+    """Give each dimension its scale, as netCDF readers expect.
+
+    A dataset named like its one dimension is its coordinate. A dimension without one has a scale
+    that only tells its length, marked as the netCDF library marks it.
     """
     for name, dataset in datasets.items():
         if dataset.dims == (name,):
             group[name].make_scale(name)
+    lengths = {
+        dim: length
+        for dataset in datasets.values()
+        for dim, length in zip(dataset.dims, np.shape(dataset.values), strict=True)
+    }
+    for dim in sorted(lengths.keys() - datasets.keys()):
+        scale = group.create_dataset(dim, (lengths[dim],), ">f4", track_times=False)
+        scale.make_scale(f"{LENGTH_ALONE}{lengths[dim]:10d}")
     for name, dataset in datasets.items():
         for axis, dim in enumerate(dataset.dims):
-            if dim != name and dim in datasets and datasets[dim].dims == (dim,):
+            if dim != name and (dim not in datasets or datasets[dim].dims == (dim,)):
                 group[name].dims[axis].attach_scale(group[dim])
 
 
@@ -272,6 +292,8 @@ def load_h5(
         for name, item in checked_items(file).items():
             parent, _, leaf = name.rpartition("/")
             if isinstance(item, h5py.Dataset):
+                if is_length_alone(item):
+                    continue
                 groups.setdefault(parent or "/", {})[leaf] = item[()]
             elif item.attrs:
                 group_attributes[name] = dict(item.attrs)

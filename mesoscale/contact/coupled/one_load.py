@@ -1,4 +1,4 @@
-"""The elastic contact of a map under one load, without the way there.
+"""The elastic contact of a map under one load or at one separation, without the way there.
 
 The pressures p >= 0 with the sum of the load make the gap g = h + d + G p complementary to them:
 g = 0 where p > 0, g >= 0 where p = 0. The separation d of the mean planes is what the load
@@ -7,6 +7,8 @@ pressures that leave the load as it is (Polonsky and Keer, doi:10.1016/S0043-164
 the same step). Nested grids, each of half the sites a side, find the sets where transforms cost
 little. Steps are in single precision and add to pressures and gaps in double precision."""
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -52,19 +54,42 @@ class Pressed(NamedTuple):
 
 def press(heights: Array, load_nN: float, base: Base) -> Pressed:
     """Press a map (nx, ny) in nm, contact at the lowest, with a force."""
+
+    def search(level: Array, below: Base, guess: Array | None) -> Search:
+        if guess is None or not guess.any():
+            guess = np.maximum(level.mean() - level, 0.0)
+        if not guess.any():
+            guess = np.ones(level.shape)
+        return OneLoad(level, load_nN, below, guess)
+
+    return _nested(heights, base, search)
+
+
+def press_to(heights: Array, separation: float, base: Base) -> Pressed:
+    """Press a map (nx, ny) in nm, contact at the lowest, to a separation (nm)."""
+
+    def search(level: Array, below: Base, guess: Array | None) -> Search:
+        guess = np.zeros(level.shape) if guess is None else guess
+        return OneSeparation(level, separation, below, guess)
+
+    return _nested(heights, base, search)
+
+
+def _nested(
+    heights: Array, base: Base, search: Callable[[Array, Base, Array | None], "Search"]
+) -> Pressed:
+    """Search on grids that are finer and finer, each from the answer of the last."""
     maps = [heights]
     bases = [base]
     while min(maps[-1].shape) >= 2 * COARSEST:
         maps.append(coarser(maps[-1]))
         bases.append(bases[-1].coarser(maps[-1].shape))
-    pressure = np.maximum(maps[-1].mean() - maps[-1], 0.0)
-    if not pressure.any():
-        pressure = np.ones(maps[-1].shape)
+    pressure = None
     for level in reversed(range(1, len(maps))):
-        contact = OneLoad(maps[level], load_nN, bases[level], pressure)
-        contact.solve(COARSE_TOLERANCE)
-        pressure = finer(contact.pressure.reshape(contact.shape), maps[level - 1].shape, base)
-    contact = OneLoad(heights, load_nN, base, pressure)
+        coarse = search(maps[level], bases[level], pressure)
+        coarse.solve(COARSE_TOLERANCE)
+        pressure = finer(coarse.pressure.reshape(coarse.shape), maps[level - 1].shape, base)
+    contact = search(heights, base, pressure)
     settled = contact.solve(TOLERANCE)
     return contact.pressed(settled)
 
@@ -90,31 +115,53 @@ def finer(field: Array, shape: tuple[int, int], base: Base) -> Array:
     return field
 
 
-class OneLoad:
-    """A map under a load while its pressures are sought.
+class Search(ABC):
+    """A map while its pressures are sought.
 
     Attributes
     ----------
     shape : of the map.
-    pressure : (nx * ny,), GPa, with the wanted sum.
+    pressure : (nx * ny,), GPa.
     gap : (nx * ny,), nm, without the separation.
     separation : nm.
     """
 
-    def __init__(self, heights: Array, load_nN: float, base: Base, guess: Array):
+    def __init__(self, heights: Array, base: Base, pressure: Array):
         """Take heights (nx, ny) in nm, contact at the lowest, and pressures to start from."""
         self.shape = heights.shape
+        self.heights = heights
         self.base = base
         self.before = base.transforms
-        self.load = load_nN / base.site_area
         self.stiffness = Stiffness(base)
         self.separation = 0.0
-        pressure = guess * (self.load / guess.sum())
         self.pressure = pressure.reshape(-1)
-        self.heights = heights
         self.follow()
         sites = heights.size
         self.change, self.misfit, self.closing = (np.zeros(sites, np.float32) for _ in range(3))
+
+    @abstractmethod
+    def separate(self) -> None:
+        """Take the separation that the pressures ask for."""
+
+    @abstractmethod
+    def factor(self, kept: float) -> float:
+        """By which pressures grow, of which so much is left at sites that touch."""
+
+    @abstractmethod
+    def closed(self, sites: Array) -> float:
+        """Gap of closed sites, without the separation."""
+
+    @abstractmethod
+    def left(self, lowest: float, highest: float) -> float:
+        """Size of misfits in a range."""
+
+    @abstractmethod
+    def level(self, sites: Array, closing: Array) -> None:
+        """Take from a step of the pressures what it may not change."""
+
+    @abstractmethod
+    def exact(self) -> bool:
+        """Put the load right, and say whether it hardly was wrong."""
 
     def follow(self) -> None:
         """Take the gaps by the pressures in double precision."""
@@ -132,50 +179,46 @@ class OneLoad:
         stiffness = 1.0 / self.base.spring
         length = 0.0  # of the last step along a direction: none is known yet
         for _ in range(NEWTON_STEPS):
-            self.separation = -mean_gap(self.pressure, self.gap)
+            self.separate()
             state = (self.pressure, self.gap, self.separation, stiffness)
             sites, worst, largest, kept, moved = classify(*state)
             if worst <= tolerance * largest:
-                missed = abs(self.pressure.sum() / self.load - 1.0)
-                self.pressure *= self.load / self.pressure.sum()
-                if ROUNDED * self.drift <= tolerance and missed <= LOAD_MISSED:
+                if self.exact() and ROUNDED * self.drift <= tolerance:
                     return True
                 self.follow()
                 continue
-            uniform = self._uniform(sites)
-            if bind(*state, self.load / kept, self.change) > UNSEEN * tolerance * largest:
-                self._step_ahead(sites, uniform, length)
+            if bind(*state, self.factor(kept), self.change) > UNSEEN * tolerance * largest:
+                self._step_ahead(sites, length)
                 self.gap += self._moved(self.change)
-                self.drift += size(self.change) / self.load
+                self._drift(np.abs(self.change).sum(dtype=float))
             goal = GOAL_SHARE * tolerance * largest * self.base.spring
             share = FACE_SHARE if moved else 0.0
-            length = self._close_gaps(sites, uniform, goal, share)
+            length = self._close_gaps(sites, goal, share)
         return False
 
-    def _uniform(self, sites: Array) -> Array:
-        """Pressures of sites that lift them all by about 1."""
-        self.misfit[:] = 0.0
-        self.misfit[sites] = 1.0
-        self.stiffness.close(sites, self.misfit, self.closing)
-        return self.closing[sites]
+    def _drift(self, change: float) -> None:
+        """Count a change of the pressures in single precision."""
+        self.drift += change / max(self.pressure.sum(), change)
 
-    def _step_ahead(self, sites: Array, uniform: Array, length: float) -> None:
+    def _step_ahead(self, sites: Array, length: float) -> None:
         """Let a change at the bounds go on as the next step will, at no further transform."""
-        unit = take_misfit(sites, self.gap, self.misfit)
+        self.misfit[:] = 0.0
+        unit = take_misfit(sites, self.gap, self.closed(sites), self.misfit)
         self.stiffness.close(sites, self.misfit, self.closing)
-        level(sites, uniform, self.closing)
+        self.level(sites, self.closing)
         join(sites, length * unit, self.closing, self.change, self.pressure)
 
-    def _close_gaps(self, sites: Array, uniform: Array, goal: float, share: float) -> float:
-        """Change the pressures of free sites, but not their sum, until their gaps are equal.
+    def _close_gaps(self, sites: Array, goal: float, share: float) -> float:
+        """Change the pressures of free sites until their gaps close.
 
         Returns the length of the last step.
         """
         misfit = self.misfit
         closing = self.closing
         change = self.change
+        misfit[:] = 0.0
         change[:] = 0.0
-        unit = take_misfit(sites, self.gap, misfit)
+        unit = take_misfit(sites, self.gap, self.closed(sites), misfit)
         left = 1.0
         length = 0.0
         last = 1.0
@@ -183,7 +226,7 @@ class OneLoad:
             if left <= max(goal / max(unit, goal), share):
                 break
             self.stiffness.close(sites, misfit, closing)
-            level(sites, uniform, closing)
+            self.level(sites, closing)
             gained = product(sites, misfit, closing)
             turn(sites, closing, gained / last, change)
             last = gained
@@ -192,9 +235,9 @@ class OneLoad:
             if not work > ROUNDING * gained > 0.0:
                 break
             length = gained / work
-            left = advance(sites, length, unit, change, moved, misfit, self.pressure)
+            left = self.left(*advance(sites, length, unit, change, moved, misfit, self.pressure))
             add(length * unit, moved, self.gap)
-            self.drift += length * unit * size(change) / self.load
+            self._drift(length * unit * size(sites, change))
         return length
 
     def pressed(self, settled: bool) -> Pressed:
@@ -211,6 +254,77 @@ class OneLoad:
             self.base.transforms - self.before,
             settled,
         )
+
+
+class OneLoad(Search):
+    """A map under a load: its separation is what keeps the load."""
+
+    def __init__(self, heights: Array, load_nN: float, base: Base, guess: Array):
+        self.load = load_nN / base.site_area
+        self.lifting = (np.empty(0, np.int32), np.empty(0, np.float32))
+        super().__init__(heights, base, guess * (self.load / guess.sum()))
+
+    def separate(self) -> None:
+        """The mean gap of the pressed sites is 0."""
+        self.separation = -mean_gap(self.pressure, self.gap)
+
+    def factor(self, kept: float) -> float:
+        """The load stays."""
+        return self.load / kept
+
+    def closed(self, sites: Array) -> float:
+        """The mean one of the sites."""
+        return mean_of(sites, self.gap)
+
+    def left(self, lowest: float, highest: float) -> float:
+        """Half of the range: a change of the separation takes the rest."""
+        return 0.5 * (highest - lowest)
+
+    def level(self, sites: Array, closing: Array) -> None:
+        """Take the load off a step, by pressures that lift all sites alike."""
+        if self.lifting[0] is not sites:
+            everywhere = np.zeros_like(closing)
+            everywhere[sites] = 1.0
+            lifting = np.zeros_like(closing)
+            self.stiffness.close(sites, everywhere, lifting)
+            self.lifting = (sites, lifting[sites])
+        level(sites, self.lifting[1], closing)
+
+    def exact(self) -> bool:
+        """Scale the pressures to the load."""
+        factor = self.load / self.pressure.sum()
+        self.pressure *= factor
+        return abs(factor - 1.0) <= LOAD_MISSED
+
+
+class OneSeparation(Search):
+    """A map at a separation: its load is what comes."""
+
+    def __init__(self, heights: Array, separation: float, base: Base, guess: Array):
+        super().__init__(heights, base, guess)
+        self.separation = separation
+
+    def separate(self) -> None:
+        """It stays."""
+
+    def factor(self, kept: float) -> float:
+        """Pressures stay as they are."""
+        return 1.0
+
+    def closed(self, sites: Array) -> float:
+        """Gaps close to the flat."""
+        return -self.separation
+
+    def left(self, lowest: float, highest: float) -> float:
+        """The largest."""
+        return max(highest, -lowest)
+
+    def level(self, sites: Array, closing: Array) -> None:
+        """A step may change the load."""
+
+    def exact(self) -> bool:
+        """No load is asked for."""
+        return True
 
 
 @njit(cache=True)
@@ -245,7 +359,7 @@ def classify(pressure, gap, separation, stiffness):
         wanted = max(here - stiffness * (gap[k] + separation), 0.0)
         worst = max(worst, abs(here - wanted))
         largest = max(largest, here)
-        moved += (wanted > 0.0) != (here > 0.0)
+        moved += (wanted > 0.0) != (here != 0.0)
         if wanted > 0.0:
             sites[count] = k
             count += 1
@@ -269,18 +383,23 @@ def bind(pressure, gap, separation, stiffness, factor, change):
 
 
 @njit(cache=True)
-def take_misfit(sites, gap, misfit):
-    """Gaps that are to close, less their mean and over the largest; returns this (nm)."""
+def mean_of(sites, gap):
+    """Mean gap of some sites."""
     total = 0.0
     for site in sites:
         total += gap[site]
-    mean = total / sites.size
+    return total / sites.size
+
+
+@njit(cache=True)
+def take_misfit(sites, gap, closed, misfit):
+    """What gaps of sites lack to be closed, over the largest; returns this (nm)."""
     largest = 0.0
     for site in sites:
-        largest = max(largest, abs(gap[site] - mean))
+        largest = max(largest, abs(gap[site] - closed))
     if largest > 0.0:
         for site in sites:
-            misfit[site] = (mean - gap[site]) / largest
+            misfit[site] = (closed - gap[site]) / largest
     return largest
 
 
@@ -324,17 +443,17 @@ def product(sites, change, moved):
 
 
 @njit(cache=True)
-def size(change):
-    """Sum of the sizes of all changes."""
+def size(sites, change):
+    """Sum of the sizes of the changes of some sites."""
     total = 0.0
-    for value in change:
-        total += abs(value)
+    for site in sites:
+        total += abs(change[site])
     return total
 
 
 @njit(cache=True)
 def advance(sites, step, unit, change, moved, misfit, pressure):
-    """Go a step along a change of pressures; half the range of the misfits that are left."""
+    """Go a step along a change of pressures; the range of the misfits that are left."""
     highest = -np.inf
     lowest = np.inf
     for site in sites:
@@ -342,7 +461,7 @@ def advance(sites, step, unit, change, moved, misfit, pressure):
         misfit[site] -= np.float32(step) * moved[site]
         highest = max(highest, misfit[site])
         lowest = min(lowest, misfit[site])
-    return 0.5 * (highest - lowest)
+    return lowest, highest
 
 
 @njit(cache=True)

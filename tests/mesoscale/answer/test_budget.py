@@ -157,3 +157,12 @@ def test_an_input_of_the_scene_takes_the_place_of_its_row():
         for one in (switch, humid)
     ]
     assert names[0] - names[1] == {"humid air"}
+
+
+def test_anchors_give_way_by_a_tenth_of_the_default_beam():
+    """The row said a tenth and changed a ten-thousandth: 0.00004 V stood for 0.14 V."""
+    row = SHIPPED["anchors that give way"]
+    beam = DeviceSettings()
+    section_um2 = beam.width_um * beam.thickness_um
+    own_um_per_N = 1e3 * beam.length_um / (beam.youngs_modulus_GPa * section_um2)
+    assert row["step"] == pytest.approx(0.1 * own_um_per_N, rel=0.01)

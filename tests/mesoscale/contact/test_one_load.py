@@ -76,6 +76,18 @@ def test_a_load_has_the_contact_of_the_engine(seed):
     check(heights, load, Repeated(heights.shape, SIDE / 128, E_STAR))
 
 
+@pytest.mark.parametrize("kind", [Repeated, Alone])
+@pytest.mark.parametrize("load", [20.0, 3e3, 3e4])
+def test_a_separation_gives_the_load_that_gives_it(kind, load):
+    heights = rough(8)
+    base = kind(heights.shape, SIDE / 128, E_STAR)
+    pressed = one_load.press(heights, load, base)
+    again = one_load.press_to(heights, pressed.separation, base)
+    assert again.settled
+    assert again.pressure.sum() * base.site_area == pytest.approx(load, rel=1e-4)
+    np.testing.assert_array_equal(again.pressure > 0.0, pressed.pressure > 0.0)
+
+
 @pytest.mark.parametrize("shape", [(128, 128), (128, 100), (97, 128)])
 def test_a_map_alone_has_the_contact_of_the_engine(shape):
     heights = rough(1)[: shape[0], : shape[1]] + np.linspace(0.0, 1.0, shape[1])

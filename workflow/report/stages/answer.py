@@ -25,8 +25,7 @@ def describe(results: Results) -> Iterator[Block]:
     yield (
         "Each row is solved on the pad at central inputs with one property changed; surface and"
         " materials stay as they are. A switch without a stated hold voltage is held at its own"
-        " pull-in voltage. The beam has half as many elements as for the answer, so that releases"
-        " differ from it by a few percent."
+        " pull-in voltage."
     )
     if not rows:
         yield "The switch at central inputs has no answer, so there is nothing to compare with."
