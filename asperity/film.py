@@ -13,15 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.answer.points import (
-    PadModel,
-    central_point,
-    on_pad_grid,
-    plan_points,
-    solve_point,
-    surfaces_of,
-)
+from mesoscale.answer.points import central_point, on_pad_grid, plan_points
 from mesoscale.answer.release import switch_on_pad
+from mesoscale.answer.switches import PadModel, solve_point, surfaces_of
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
 from mesoscale.errors import InputError

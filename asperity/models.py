@@ -16,9 +16,10 @@ from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.errors import InputError
 from mesoscale.law.branches import laws_of
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.pad.cells import PadGrid, sample_cells
-from mesoscale.pad.curves import press_cells
-from mesoscale.pad.memory import flats_of, law_of
+from mesoscale.pad.cells import sample_cells
+from mesoscale.pad.closing import press_cells
+from mesoscale.pad.grid import PadGrid
+from mesoscale.pad.pressed import curves_of, flats_of
 from mesoscale.settings import ContactSettings, Settings
 
 Config = Mapping[str, Any]
@@ -159,8 +160,9 @@ def _pad(inputs: ContactInputs, config: Config) -> Sequence[Any]:
         PadGrid(separations, np.array([separations.size - 1])),
         sample_cells(inputs, count, first),
     )
-    law = law_of(press_cells(inputs, contact, grid, cells), flats_of(inputs, contact))
-    return [1e3 * branch.sum(axis=0)[::-1] for branch in (law.closing, law.opening[0])]
+    closed = press_cells(inputs, contact, grid, cells)
+    curves = curves_of(closed, flats_of(inputs, contact))
+    return [1e3 * branch.sum(axis=0)[::-1] for branch in (curves.closing, curves.opening[0])]
 
 
 MODELS = {

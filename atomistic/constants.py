@@ -1,6 +1,4 @@
-"""Physical constants, written out: glasses are chaotic, so that another edition's last digit would
-be another glass.
-"""
+"""Physical constants, written out: glasses are chaotic; another last digit is another glass."""
 
 EV_PER_A3_IN_GPA = (
     160.21766208  # 1 eV/Å³; CODATA 2014, as ase.units, which converts the DFT energies

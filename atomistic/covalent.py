@@ -1,6 +1,4 @@
-"""Covalent networks for LAMMPS: the Tersoff potential with soft cores between like atoms, and
-random starts.
-"""
+"""Covalent networks for LAMMPS: Tersoff potential, soft cores between like atoms, random starts."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,27 +11,31 @@ from atomistic.materials import Core, Tersoff
 
 @dataclass(frozen=True)
 class Quench:
-    """How a cell is melted and quenched; a glass below films takes the same temperatures.
-
-    Attributes
-    ----------
-    start_distance_A : random start: nothing closer than this
-    melt_K, melt_ps, final_K, rate_K_ps : temperature and time of the melt; temperature of the
-        glass, cooling rate
-    free_below_K : a melt has no shape to keep; below this its network can still change and settles
-        as a glass
-    timestep_fs : of the molecular dynamics
-    attempts : quenches until one passes the gates; of 28 atoms about one in sixty does
-    """
+    """How a cell is melted and quenched; a glass below films takes the same temperatures."""
 
     start_distance_A: float = 1.4
+    """In a random start nothing is closer."""
+
     melt_K: float = 5000.0
+    """Of the melt."""
+
     melt_ps: float = 3.0
+    """Of the melt."""
+
     final_K: float = 300.0
+    """Of the glass."""
+
     rate_K_ps: float = 300.0
+    """Of the cooling."""
+
     free_below_K: float = 2500.0
+    """A melt has no shape to keep; below this its network still settles as a glass."""
+
     timestep_fs: float = 1.0
+    """Of the molecular dynamics."""
+
     attempts: int = 1000
+    """Quenches until one passes the gates; of 28 atoms about one in sixty does."""
 
 
 QUENCH = Quench()
@@ -54,7 +56,8 @@ def tersoff_table(parameters: Tersoff) -> str:
         r = elements[k]
         inner = np.sqrt(p.R * r.R)
         outer = np.sqrt(p.S * r.S)
-        attraction = np.sqrt(p.B * q.B) * chi.get(frozenset((i, j)), 1.0)
+        strength = chi.get(frozenset((i, j)), 1.0)
+        attraction = np.sqrt(p.B * q.B) * strength
         numbers = [3, 1, 0, p.c, p.d, p.h, p.n, p.beta, (p.mu + q.mu) / 2, attraction]
         numbers += [(inner + outer) / 2, (outer - inner) / 2]
         numbers += [(p.lambda_ + q.lambda_) / 2, np.sqrt(p.A * q.A)]

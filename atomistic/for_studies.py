@@ -52,9 +52,7 @@ Verdict = tuple[bool, str]
 
 
 class HardCase(NamedTuple):
-    """A stiff or extreme case: what is hard about it, what must hold, and the judge that runs
-    it.
-    """
+    """A stiff or extreme case: what is hard, what must hold, and the judge that runs it."""
 
     name: str
     description: str

@@ -48,7 +48,9 @@ class Atoms:
 
     def take(self, keep: np.ndarray) -> "Atoms":
         """The atoms selected by a mask or by indices."""
-        velocities = None if self.velocities_A_ps is None else self.velocities_A_ps[keep]
+        velocities = self.velocities_A_ps
+        if velocities is not None:
+            velocities = velocities[keep]
         return Atoms(
             self.elements, self.types[keep], self.positions_A[keep], self.cell_A, velocities
         )
@@ -68,12 +70,9 @@ def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) ->
     lines += ["", "Masses", ""]
     lines += [f"{k} {masses_u[element]} # {element}" for k, element in enumerate(atoms.elements, 1)]
     lines += ["", "Atoms # atomic", ""]
-    lines += [
-        f"{k} {kind} {x!r} {y!r} {z!r}"
-        for k, (kind, (x, y, z)) in enumerate(
-            zip(atoms.types.tolist(), atoms.positions_A.tolist(), strict=True), 1
-        )
-    ]
+    places = zip(atoms.types.tolist(), atoms.positions_A.tolist(), strict=True)
+    for k, (kind, (x, y, z)) in enumerate(places, 1):
+        lines.append(f"{k} {kind} {x!r} {y!r} {z!r}")
     if atoms.velocities_A_ps is not None:
         lines += ["", "Velocities", ""]
         lines += [
@@ -84,8 +83,7 @@ def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) ->
 
 
 def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
-    """Read a LAMMPS data file as `write_data` or the LAMMPS command `write_data ... nocoeff` makes
-    it.
+    """Read a LAMMPS data file, as `write_data` or its command `... nocoeff` makes it.
 
     Atoms come back in the order of their ids, wrapped into a cell that starts at 0.
 
@@ -104,16 +102,11 @@ def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
             sections[title].append(fields)
     try:
         [count] = (int(fields[0]) for fields in sections[""] if fields[1:] == ["atoms"])
-        low, high = np.array(
-            [
-                [float(fields[0]), float(fields[1])]
-                for fields in sections[""]
-                if fields[-1] in ("xhi", "yhi", "zhi")
-            ]
-        ).T
-        table = np.array(
-            [[float(value) for value in fields[:5]] for fields in sections["Atoms"]]
-        ).reshape(count, 5)
+        axes = ("xhi", "yhi", "zhi")
+        edges = [fields[:2] for fields in sections[""] if fields[-1] in axes]
+        low, high = np.array([[float(low), float(high)] for low, high in edges]).T
+        rows = [[float(value) for value in fields[:5]] for fields in sections["Atoms"]]
+        table = np.array(rows).reshape(count, 5)
         order = np.argsort(table[:, 0])
         positions = np.mod(table[order, 2:5] - low, high - low)
         velocities = None
@@ -127,8 +120,7 @@ def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
 
 
 def load_dump(path: str | Path) -> list[tuple[int, np.ndarray]]:
-    """Frames of a LAMMPS text dump: (step, table of shape (atoms, columns)) in the order of the
-    file.
+    """Frames of a LAMMPS text dump: (step, table (atoms, columns)) in the file's order.
 
     Raises
     ------
@@ -159,8 +151,7 @@ def load_averages(path: str | Path) -> np.ndarray:
 
 
 class LammpsFolder:
-    """A directory for what a killed run needs to go on; emptied when anything the run depends on
-    changed.
+    """A directory of what a killed run needs to go on; emptied when its inputs changed.
 
     It may have come from elsewhere.  What LAMMPS executes is therefore written anew at every start,
     restart files and data are only read, and one that holds links or special files is emptied: they
@@ -181,9 +172,10 @@ class LammpsFolder:
         mark = self.path / "fingerprint"
         if self.path.is_symlink():
             self.path.unlink()
-        plain = self.path.is_dir() and all(
-            item.is_file() and not item.is_symlink() for item in self.path.iterdir()
-        )
+        plain = False
+        if self.path.is_dir():
+            items = list(self.path.iterdir())
+            plain = all(item.is_file() and not item.is_symlink() for item in items)
         if not (
             plain
             and mark.exists()
@@ -315,9 +307,7 @@ def environment() -> dict[str, str]:
 
 
 def _die_with_parent() -> None:
-    """A killed workflow must not leave a LAMMPS behind that writes into the directory of the next
-    one.
-    """
+    """A killed workflow leaves no LAMMPS that writes into the directory of the next one."""
     if sys.platform == "linux":
         pr_set_pdeathsig = 1
         ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)

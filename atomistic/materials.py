@@ -1,5 +1,4 @@
-"""Materials read from data files (config/materials) and checked: crystals, glasses, potentials of
-the elastic stage.
+"""Materials from data files (config/materials), checked: crystals, glasses, potentials.
 
 A file holds what the stages need of it: `oxide_glass` for the hardness stage, `network_glass` for
 the body that the elastic stage computes, `polycrystal` for the body it is pressed against,
@@ -60,9 +59,7 @@ class _Section(Settings):
 
 
 class Published(_Section):
-    """Known bulk modulus and volume of a crystal of `atoms` atoms; numbers as the source prints
-    them.
-    """
+    """Known bulk modulus and volume of a crystal of `atoms` atoms, as the source prints them."""
 
     B_GPa: Annotated[int | float, Field(gt=0)]
     V0_A3: Annotated[int | float, Field(gt=0)] | None
@@ -222,8 +219,7 @@ class Polycrystal(_Section):
 
 
 class Eam(_Section):
-    """Embedded-atom potential of a metal in closed form (Zhou, Johnson and Wadley,
-    doi:10.1103/PhysRevB.69.144113).
+    """Embedded-atom potential of a metal in closed form (doi:10.1103/PhysRevB.69.144113).
 
     Energies in eV, distances in Å; `r` is the nearest distance, `f` and `rho` are electron
     densities of one unit."""
@@ -393,13 +389,13 @@ def load_materials(folder: str | Path) -> dict[str, Material]:
         same formula."""
     paths = sorted(Path(folder).glob("*.yaml"))
     materials = {path.stem: load_material(path) for path in paths}
-    kept: dict[str, Path] = {}
+    owners: dict[str, Path] = {}
     for path, material in zip(paths, materials.values(), strict=True):
         glass = [f"oxide glass {material.formula_text}"] if material.oxide_glass else []
         for thing in [*(f"crystal {name}" for name in material.crystals), *glass]:
-            if thing in kept:
-                raise InputError(f"{path}: {thing} stands in {kept[thing]} too; keep one")
-            kept[thing] = path
+            if thing in owners:
+                raise InputError(f"{path}: {thing} stands in {owners[thing]} too; keep one")
+            owners[thing] = path
     return materials
 
 

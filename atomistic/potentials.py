@@ -41,10 +41,9 @@ class Morse(_Sourced):
 
     def energy_and_slope(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         decay = np.exp(-self.a_1_per_A * (r - self.r0_A))
-        return (
-            self.D_eV * ((1 - decay) ** 2 - 1),
-            2 * self.D_eV * self.a_1_per_A * (1 - decay) * decay,
-        )
+        energy = self.D_eV * ((1 - decay) ** 2 - 1)
+        slope = 2 * self.D_eV * self.a_1_per_A * (1 - decay) * decay
+        return energy, slope
 
 
 class Power(_Sourced):
@@ -105,8 +104,7 @@ class Source(Settings):
 
 
 class AreaCalibration(Settings):
-    """How the definition of contact area was tested on bodies of known section with a potential's
-    glass.
+    """How the contact area's definition was tested on known sections of a potential's glass.
 
     Attributes
     ----------
@@ -163,18 +161,15 @@ class Potential(Settings):
 
         def bare(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             screened = erfc(alpha * x) / x
-            return (
-                screened,
-                screened / x + 2 * alpha / np.sqrt(np.pi) * np.exp(-((alpha * x) ** 2)) / x,
-            )
+            gaussian = np.exp(-((alpha * x) ** 2))
+            return screened, screened / x + 2 * alpha / np.sqrt(np.pi) * gaussian / x
 
         value, force = bare(r)
         value_c, force_c = bare(np.array([r_c]))
         return strength * (value - value_c + force_c * (r - r_c)), strength * (force - force_c)
 
     def table(self, elements: tuple[str, ...], energy_scale: float = 1.0) -> str:
-        """LAMMPS `pair_style table` file: a section A_B for every pair of `elements`, and `contact`
-        (`pair_table`).
+        """LAMMPS `pair_style table` file: a section A_B per pair of `elements`, and `contact`.
 
         Parameters
         ----------
@@ -182,15 +177,13 @@ class Potential(Settings):
         energy_scale : factor on every energy and force; 0.5 gives the twin with halved energies.
         """
         title = f"{' '.join(self.description.split())}; energies x {energy_scale}"
-        sections: dict[str, EnergyAndForce] = {
-            f"{first}_{second}": partial(self.energy_and_force, first, second)
-            for first, second in combinations_with_replacement(elements, 2)
-        }
+        sections: dict[str, EnergyAndForce] = {}
+        for first, second in combinations_with_replacement(elements, 2):
+            sections[f"{first}_{second}"] = partial(self.energy_and_force, first, second)
         return pair_table(title, sections, self.cutoff_A, energy_scale)
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
-        """What LAMMPS needs by the name of its file: the table, and in `pairs` the commands that
-        use it.
+        """What LAMMPS needs, by file name: the table, and in `pairs` the commands that use it.
 
         Parameters
         ----------
@@ -205,9 +198,7 @@ class Potential(Settings):
 
 
 class ForceField(Protocol):
-    """What of a `Potential` molecular dynamics uses: a metal, and an oxide on a metal, have it
-    too.
-    """
+    """What molecular dynamics uses of a `Potential`: a metal or a stack has it too."""
 
     @property
     def masses_u(self) -> Mapping[str, float]:
@@ -225,8 +216,7 @@ EnergyAndForce = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 def pair_table(
     title: str, sections: Mapping[str, EnergyAndForce], cutoff_A: float, energy_scale: float
 ) -> str:
-    """LAMMPS `pair_style table` file of these sections and of `contact`
-    (`contact_energy_and_force`).
+    """LAMMPS `pair_style table` file of these sections and of `contact`.
 
     Parameters
     ----------
@@ -237,8 +227,8 @@ def pair_table(
     r = np.sqrt(np.linspace(TABLE_START_A**2, cutoff_A**2, points))
     lines = io.StringIO()
     lines.write(f"# {title}; eV, Angstrom\n")
-    for name, of in {**sections, "contact": contact_energy_and_force}.items():
-        energy, force = of(r)
+    for name, law in {**sections, "contact": contact_energy_and_force}.items():
+        energy, force = law(r)
         lines.write(f"\n{name}\nN {points} RSQ {TABLE_START_A} {cutoff_A}\n\n")
         rows = np.column_stack(
             [np.arange(1, points + 1), r, energy_scale * energy, energy_scale * force]
@@ -275,11 +265,11 @@ def load_potential(path: str | Path) -> Potential:
 
 
 def _check(path: Path, potential: Potential) -> None:
-    named = {
-        potential.coulomb.source,
-        *(name for ion in potential.species.values() for name in (ion.source, ion.mass_source)),
-        *(term.source for pair in potential.pairs for term in pair.terms),
-    }
+    named = {potential.coulomb.source}
+    for ion in potential.species.values():
+        named |= {ion.source, ion.mass_source}
+    for pair in potential.pairs:
+        named |= {term.source for term in pair.terms}
     if unknown := sorted(named - set(potential.sources)):
         raise InputError(f"{path}: source {unknown[0]!r} is used but not listed under `sources`")
     seen: set[frozenset[str]] = set()

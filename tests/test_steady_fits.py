@@ -87,7 +87,7 @@ def law(change):
     """Of a branch of a contact."""
     form = ClosedForm(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 2.0, 0.215, 0.3)
     separation = np.arange(19.0, 80.0, 0.5)
-    push, pull = form.law(separation, np.array([20.0])).closing
+    push, pull = form.curves(separation, np.array([20.0])).closing
     fitted = fit_branch(separation, change(1e6 * push), change(1e6 * pull), 1e6, 0.215)
     return {name: getattr(fitted, name) for name in ("d_c_nm", "C_a_GPa_nm", "C_r_GPa", "rho_r_nm")}
 

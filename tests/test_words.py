@@ -83,17 +83,29 @@ def _is_record(node):
     )
 
 
-def test_fields_are_described_in_the_docstring_of_their_class():
-    """One form, which `help()` shows: neither a comment behind the field nor a string below it."""
+def test_fields_are_described_in_one_form():
+    """Fields stand in the docstring of their class, which `help()` shows.
+
+    A class of numerical choices, whose values carry their reason, has a string below each field
+    instead, and none of them in its docstring. Comments behind fields are in neither.
+    """
     uses = []
     for path in CODE:
         lines = path.read_text(encoding="utf-8").splitlines()
         for record in filter(_is_record, ast.walk(ast.parse("\n".join(lines)))):
-            for field, below in pairwise([*record.body, record]):
-                commented = isinstance(field, ast.AnnAssign) and "#" in lines[field.lineno - 1]
-                if commented or (isinstance(field, ast.AnnAssign) and isinstance(below, ast.Expr)):
-                    uses.append(
-                        f"{path.relative_to(ROOT)}:{field.lineno}:"
-                        f" {record.name}.{ast.unparse(field.target)}"
-                    )
+            pairs = list(pairwise([*record.body, record]))
+            fields = [field for field, _ in pairs if isinstance(field, ast.AnnAssign)]
+            explained = [
+                field
+                for field, below in pairs
+                if isinstance(field, ast.AnnAssign) and isinstance(below, ast.Expr)
+            ]
+            choices = bool(fields) and all(field.value is not None for field in fields)
+            listed = "Attributes" in (ast.get_docstring(record) or "")
+            wrong = explained
+            if choices and not listed and len(explained) == len(fields):
+                wrong = []
+            wrong += [field for field in fields if "#" in lines[field.lineno - 1]]
+            place = path.relative_to(ROOT)
+            uses += [f"{place}:{field.lineno}: {record.name}" for field in wrong]
     assert uses == []

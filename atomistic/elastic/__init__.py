@@ -1,3 +1,1 @@
-"""Effective modulus E* from energy-volume curves and elastic constants of amorphous networks
-(docs/elastic.md).
-"""
+"""Effective modulus E* from E(V) and elastic constants of amorphous networks (docs/elastic.md)."""

@@ -142,10 +142,10 @@ def variations(
 
 def _widths(glasses: Sequence[ScannedGlass]) -> Variation:
     """The largest strain."""
-    every = sorted({strain for width in WIDTHS for strain in five_strains(width)})
+    all_strains = sorted({strain for width in WIDTHS for strain in five_strains(width)})
 
     def reference(glass: ScannedGlass) -> Fitted:
-        volumes, energies = map(np.array, glass.curve(every))
+        volumes, energies = map(np.array, glass.curve(all_strains))
         known = np.isfinite(energies)
         return modulus_of_polynomial(volumes[known], energies[known], DEGREE), 0.0
 
@@ -183,7 +183,9 @@ def _cutoffs(glasses: Sequence[ScannedGlass]) -> Variation:
 
     @cache
     def at(factor: float, glass: ScannedGlass) -> ScannedGlass:
-        return glass if factor == 1.0 else glass.with_cutoff(factor * used)
+        if factor == 1.0:
+            return glass
+        return glass.with_cutoff(factor * used)
 
     def fitted(factor: float, glass: ScannedGlass) -> Fitted:
         return _by_strains(STRAINS, at(factor, glass))
@@ -231,7 +233,8 @@ def _ensembles(moduli_GPa: Sequence[float], scan_s: float) -> Variation:
 
     def deviations(count: int) -> Deviations:
         error = np.array([scatter / np.sqrt(count)])
-        return Deviations(error[None], error / np.sqrt(2 * (len(B) - 1)), count * scan_s)
+        error_of_error = error / np.sqrt(2 * (len(B) - 1))
+        return Deviations(error[None], error_of_error, count * scan_s)
 
     values = [(count, partial(deviations, count)) for count in range(1, len(B) + 1)]
     reference = f"the mean of all possible ones, by the scatter of {len(B)}"
@@ -244,9 +247,7 @@ def _each(
     reference: Callable[[ScannedGlass], Fitted],
     seconds: Callable[[], float],
 ) -> Callable[[], Deviations]:
-    """How far a value is off on some glasses; the misfit of each fit says how well that is
-    known.
-    """
+    """How far a value is off on some glasses; each fit's misfit says how well that is known."""
 
     def deviations() -> Deviations:
         fitted = np.array([value(glass) for glass in glasses])
@@ -278,9 +279,7 @@ def five_strains(largest: float) -> list[float]:
 
 
 def even_strains(largest: float, number: int) -> list[float]:
-    """An odd number of strains between both signs of the largest; those of the same value are equal
-    to the last bit.
-    """
+    """An odd number of strains between both signs of the largest; equal to the last bit."""
     half = number // 2
     return [round(largest * k / half, 9) for k in range(-half, half + 1)]
 
@@ -296,16 +295,12 @@ def modulus_of_polynomial(volumes_A3: ArrayLike, energies_eV: ArrayLike, degree:
     energies = np.asarray(energies_eV, float)
     x = volumes ** (-2 / 3)
     curve = Polynomial.fit(x, energies - energies.mean(), degree)
-    rest = [
-        root.real
-        for root in curve.deriv().roots()
-        if abs(root.imag) < 1e-12
-        and x.min() < root.real < x.max()
-        and curve.deriv(2)(root.real) > 0
-    ]
-    if not rest:
+    real = [root.real for root in curve.deriv().roots() if abs(root.imag) < 1e-12]
+    inside = [root for root in real if x.min() < root < x.max()]
+    minima = [root for root in inside if curve.deriv(2)(root) > 0]
+    if not minima:
         raise InputError("elastic: energies of the study have no minimum between its strains")
-    lowest = min(rest, key=curve)
+    lowest = min(minima, key=curve)
     V = lowest**-1.5
     slope_of_x = -2 / 3 * lowest / V
     return float(V * curve.deriv(2)(lowest) * slope_of_x**2 * EV_PER_A3_IN_GPA)

@@ -1,5 +1,4 @@
-"""Periodic density functional theory behind ASE's calculator interface: PySCF at the Γ point of a
-supercell.
+"""Periodic density functional theory behind ASE's interface: PySCF at a supercell's Γ point.
 
 Energies in eV, lengths in Å, forces in eV/Å outside; PySCF's atomic units inside.  Pseudopotentials
 are GTH, the basis a short-ranged MOLOPT one.  The real-space mesh can be held fixed while the cell
@@ -29,42 +28,41 @@ Store = MutableMapping[str, dict[str, np.ndarray]]
 
 @dataclass(frozen=True)
 class ScfNumerics:
-    """How tightly energies converge; no scene sets it.
-
-    Attributes
-    ----------
-    energy_tolerance_Ha : of the SCF, per cell; B of β-Si3N4 is then within 0.01 % of its value at
-        1e-8
-    forces_tolerance_Ha : the same where forces are computed
-    max_cycles : of an SCF; a glass with a gap takes 8 to 14
-    coarse : mesh on which an SCF without a former one starts, over the mesh itself: a fifth of the
-        points
-    coarse_tolerance_Ha : of that start
-    single_precision_Ha : SCF tolerance from which orbitals on the grid need no double precision
-    rounding_Ha : per atom: the energy's jitter from cycle to cycle in single precision stays below
-        it
-    history : former solutions a start is extrapolated from
-    guess_damping : of the weights' normal equations
-    """
+    """How tightly energies converge; no scene sets it."""
 
     energy_tolerance_Ha: float = 1e-6
+    """Per cell; B of β-Si3N4 is then within 0.01 % of its value at 1e-8."""
+
     forces_tolerance_Ha: float = 1e-7
+    """The same where forces are computed."""
+
     max_cycles: int = 50
+    """A glass with a gap takes 8 to 14."""
+
     coarse: float = 0.6
+    """Mesh on which an SCF without a former one starts, over the mesh: a fifth of the points."""
+
     coarse_tolerance_Ha: float = 1e-3
+    """Of that start."""
+
     single_precision_Ha: float = 1e-7
+    """SCF tolerance from which orbitals on the grid need no double precision."""
+
     rounding_Ha: float = 5e-8
+    """Per atom: in single precision the energy's jitter from cycle to cycle is below it."""
+
     history: int = 5
+    """Former solutions a start is extrapolated from."""
+
     guess_damping: float = 1e-7
+    """Of the weights' normal equations."""
 
 
 SCF = ScfNumerics()
 
 
 class Solution(NamedTuple):
-    """What the start of the next calculation needs of a finished one: overlap of the basis,
-    occupied orbitals.
-    """
+    """What the next calculation's start needs of a finished one: overlap and occupied orbitals."""
 
     overlap: np.ndarray
     orbitals: np.ndarray
@@ -79,8 +77,10 @@ def commensurate_mesh(cell: np.ndarray, cutoff_Ha: float) -> tuple[int, int, int
     from scipy.fft import next_fast_len
 
     # the largest |G·a|/2π inside a sphere of radius G_max
-    reach = np.sqrt(2 * cutoff_Ha) * np.linalg.norm(np.asarray(cell) / Bohr, axis=1) / (2 * np.pi)
-    a, b, c = (int(next_fast_len(2 * int(np.ceil(r)) + 1, real=True) or 1) for r in reach)
+    edges = np.linalg.norm(np.asarray(cell) / Bohr, axis=1)
+    reach = np.sqrt(2 * cutoff_Ha) * edges / (2 * np.pi)
+    counts = [2 * int(np.ceil(waves)) + 1 for waves in reach]
+    a, b, c = (int(next_fast_len(count, real=True) or 1) for count in counts)
     return a, b, c
 
 
@@ -99,9 +99,8 @@ def build_cell(
     cell: Any = gto.Cell()  # PySCF declares its attributes as None
     cell.unit = "B"
     cell.a = atoms.cell.array / Bohr
-    cell.atom = [
-        (s, p / Bohr) for s, p in zip(atoms.get_chemical_symbols(), atoms.positions, strict=True)
-    ]
+    places = zip(atoms.get_chemical_symbols(), atoms.positions, strict=True)
+    cell.atom = [(symbol, position / Bohr) for symbol, position in places]
     cell.basis = basis
     cell.pseudo = FUNCTIONALS[xc][1]
     cell.precision = precision
@@ -150,7 +149,7 @@ class PyscfGamma(Calculator):
 
     def __init__(self, store: Store | None = None, **parameters):
         super().__init__(**parameters)
-        self.store: Store = {} if store is None else store
+        self.store: Store = store if store is not None else {}
         self.history: list[Solution] = []  # the last ones that converged, oldest first
         self.scf_runs = 0  # calculations really done, not taken from the store
         self.scf_cycles = 0
@@ -161,10 +160,10 @@ class PyscfGamma(Calculator):
         assert self.atoms is not None
         p = self.parameters
         mesh = p.mesh or commensurate_mesh(self.atoms.cell.array, p.cutoff_Ha)
-        wanted = "forces" if "forces" in properties else "energy"
-        key = self._key(mesh, wanted)
+        quantity = "forces" if "forces" in properties else "energy"
+        key = self._key(mesh, quantity)
         if key not in self.store:
-            self.store[key] = self._solve(mesh, wanted)
+            self.store[key] = self._solve(mesh, quantity)
             self.scf_runs += 1
         solved = self.store[key]
         self.scf_cycles = int(solved["cycles"])
@@ -174,22 +173,20 @@ class PyscfGamma(Calculator):
             raise ScfNotConverged(
                 f"SCF not converged in {p.max_cycles} cycles (gap {self.gap_eV:.2f} eV)"
             )
-        self.history = [*self.history, Solution(solved["overlap"], solved["orbitals"])][
-            -SCF.history :
-        ]
+        solution = Solution(solved["overlap"], solved["orbitals"])
+        self.history = [*self.history, solution][-SCF.history :]
         energy = float(solved["energy_Ha"]) * Hartree
         self.results: dict[str, Any] = {"energy": energy, "free_energy": energy}
-        if wanted == "forces":
+        if quantity == "forces":
             self.results["forces"] = solved["forces"] * Hartree / Bohr
 
     def check_state(self, atoms, tol=1e-15):
         return super().check_state(atoms, tol=tol)
 
-    def _key(self, mesh, wanted: str) -> str:
+    def _key(self, mesh, quantity: str) -> str:
         assert self.atoms is not None
-        digest = hashlib.sha256(
-            repr((sorted(self.parameters.items()), tuple(mesh), wanted)).encode()
-        )
+        choices = (sorted(self.parameters.items()), tuple(mesh), quantity)
+        digest = hashlib.sha256(repr(choices).encode())
         digest.update(" ".join(self.atoms.get_chemical_symbols()).encode())
         before = [solution.orbitals for solution in self.history]
         for array in (self.atoms.cell.array, self.atoms.positions, *before):
@@ -210,15 +207,18 @@ class PyscfGamma(Calculator):
         mf.verbose = 0
         single = p.tolerance_Ha >= SCF.single_precision_Ha
         # the gradient feels no rounding and decides: its square is about the error of the energy
-        mf.conv_tol = max(p.tolerance_Ha, SCF.rounding_Ha * cell.natm) if single else p.tolerance_Ha
-        mf.conv_tol_grad = np.sqrt(p.tolerance_Ha) * (1 if single else 10)
+        mf.conv_tol = p.tolerance_Ha
+        mf.conv_tol_grad = np.sqrt(p.tolerance_Ha) * 10
+        if single:
+            mf.conv_tol = max(p.tolerance_Ha, SCF.rounding_Ha * cell.natm)
+            mf.conv_tol_grad = np.sqrt(p.tolerance_Ha)
         mf.max_cycle = p.max_cycles
         # the extra cycle after convergence would change the energy by less than the tolerance
         mf.conv_check = False
         mf._numint = CachedGrid(cell, np.float32 if single else np.float64)
         return mf
 
-    def _solve(self, mesh, wanted: str) -> dict[str, np.ndarray]:
+    def _solve(self, mesh, quantity: str) -> dict[str, np.ndarray]:
         mf = self._mean_field(mesh)
         overlap = np.asarray(
             mf.cell.pbc_intor("int1e_ovlp", hermi=1)
@@ -229,17 +229,18 @@ class PyscfGamma(Calculator):
         filled = np.asarray(mf.mo_occ) > 0
         levels = np.asarray(mf.mo_energy)
         occupied = np.asarray(mf.mo_coeff)[:, filled]
+        gap_Ha = np.inf
+        if not filled.all():
+            gap_Ha = levels[~filled].min() - levels[filled].max()
         solved = {
             "energy_Ha": np.array(energy),
             "converged": np.array(converged),
             "cycles": np.array(mf.cycles),
             "orbitals": occupied,
             "overlap": overlap,
-            "gap_Ha": np.array(
-                levels[~filled].min() - levels[filled].max() if not filled.all() else np.inf
-            ),
+            "gap_Ha": np.array(gap_Ha),
         }
-        if wanted == "forces" and converged:
+        if quantity == "forces" and converged:
             solved["forces"] = mf._numint.forces(mf)
         return solved
 
@@ -249,9 +250,7 @@ class PyscfGamma(Calculator):
         mf._numint.basis_overlap = overlap
 
     def _guess(self, cell, overlap: np.ndarray) -> Any:
-        """Density matrix of extrapolated orbitals; where none fit, that of a loose SCF on a coarse
-        mesh.
-        """
+        """Density matrix of extrapolated orbitals, else that of a loose SCF on a coarse mesh."""
         from pyscf import lib
 
         shape = (cell.nao, cell.nelectron // 2)
@@ -297,8 +296,7 @@ def make_calculator(
 
 
 def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> np.ndarray | None:
-    """Occupied orbitals where the basis functions overlap as in `overlap`, orthonormal there; None
-    without a history.
+    """Occupied orbitals, orthonormal for the basis of `overlap`; None without a history.
 
     The overlap describes the geometry: the combination of former ones, with weights that add to
     one, which comes nearest to it also combines the former orbitals, once each set is rotated onto
@@ -310,12 +308,12 @@ def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> n
     c = last.orbitals
     if older:
         known = np.stack([(old.overlap - last.overlap).ravel() for old in older])
-        wanted = (overlap - last.overlap).ravel()
+        target = (overlap - last.overlap).ravel()
         gram = known @ known.T
         # also by the size of what is wanted: former geometries that differ by rounding alone get no
         # weight
-        gram += SCF.guess_damping * (np.trace(gram) + wanted @ wanted) * np.eye(len(older))
-        weights = np.linalg.lstsq(gram, known @ wanted)[0]  # tolerates repeated geometries
+        gram += SCF.guess_damping * (np.trace(gram) + target @ target) * np.eye(len(older))
+        weights = np.linalg.lstsq(gram, known @ target)[0]  # tolerates repeated geometries
         c = (1 - weights.sum()) * c
         for weight, old in zip(weights, older, strict=True):
             left, _, right = np.linalg.svd(old.orbitals.T @ old.overlap @ last.orbitals)

@@ -26,9 +26,7 @@ errors of a scene's own glasses."""
 
 @dataclass(frozen=True)
 class ScanPoint:
-    """One volume of an E(V) scan; `energy_eV` is NaN where the calculation failed, and `detail`
-    says why.
-    """
+    """One volume of an E(V) scan; `energy_eV` is NaN where it failed, and `detail` says why."""
 
     strain: float
     volume_A3: float
@@ -91,10 +89,9 @@ def scan_rows(
         atoms = strained(atoms, -0.012)  # its volume is some 4 % smaller than that of GGA
     if rejected:
         volumes = [float(strained(atoms, strain).get_volume()) for strain in STRAINS]
-        points = [
-            ScanPoint(s, v, float("nan"), False, 0.0, rejected)
-            for s, v in zip(STRAINS, volumes, strict=True)
-        ]
+        points = []
+        for strain, volume in zip(STRAINS, volumes, strict=True):
+            points.append(ScanPoint(strain, volume, float("nan"), False, 0.0, rejected))
     else:
         calculator = make_calculator(dft, xc, atoms.cell.array * (1 + max(STRAINS)), store)
         calculator.history = list(start)
@@ -114,20 +111,13 @@ def fit_scan(scan: Sequence[Mapping[str, str]]) -> dict[str, Any]:
     empty = ("B_GPa", "B_prime", "V0_A3", "B_vinet_GPa", "B_error_GPa", "residual_meV")
     if len(good) < MIN_POINTS:
         flags = [f"{len(good)} of {len(scan)} strains converged, {MIN_POINTS} are needed", *failed]
-        return {
-            **result,
-            **dict.fromkeys(empty),
-            "points": len(good),
-            "flags": "; ".join(flags),
-            "failed": "",
-        }
-    fit = fit_equation_of_state(
-        [float(r["volume_A3"]) for r in good], [float(r["energy_eV"]) for r in good]
-    )
-    return {
-        **result,
-        **{key: getattr(fit, key) for key in empty},
-        "points": fit.points,
-        "flags": "; ".join(fit.flags),
-        "failed": "; ".join(failed),
-    }
+        result |= dict.fromkeys(empty)
+        return {**result, "points": len(good), "flags": "; ".join(flags), "failed": ""}
+    volumes = [float(row["volume_A3"]) for row in good]
+    energies = [float(row["energy_eV"]) for row in good]
+    fit = fit_equation_of_state(volumes, energies)
+    result |= {key: getattr(fit, key) for key in empty}
+    result["points"] = fit.points
+    result["flags"] = "; ".join(fit.flags)
+    result["failed"] = "; ".join(failed)
+    return result

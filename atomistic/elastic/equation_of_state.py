@@ -1,5 +1,4 @@
-"""Equations of state: bulk modulus and equilibrium volume from E(V), with the checks that make them
-trustworthy.
+"""Equations of state: bulk modulus and equilibrium volume from E(V), with checks.
 
 Birch–Murnaghan (third order, Phys. Rev. 71, 809 (1947)),
 
@@ -56,7 +55,8 @@ def vinet(volume, V0, E0, B, B_prime):
     """E(V) in eV; B in eV/Å³."""
     eta = (np.asarray(volume) / V0) ** (1 / 3)
     c = 1.5 * (B_prime - 1)
-    return E0 + 9 * B * V0 / c**2 * (1 - (1 - c * (1 - eta)) * np.exp(c * (1 - eta)))
+    exponent = c * (1 - eta)
+    return E0 + 9 * B * V0 / c**2 * (1 - (1 - exponent) * np.exp(exponent))
 
 
 def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> EquationOfState:
@@ -102,10 +102,14 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
     if not B_PRIME_RANGE[0] <= B_prime <= B_PRIME_RANGE[1]:
         flags.append(f"B' {B_prime:.1f} outside {B_PRIME_RANGE[0]:g} to {B_PRIME_RANGE[1]:g}")
     scale = np.ptp(energy) or 1.0
-    start = np.array([1.0, 0.0, 1.0, max(B_prime, 1.5) if np.isfinite(B_prime) else 4.0])
+    start_B_prime = 4.0
+    if np.isfinite(B_prime):
+        start_B_prime = max(B_prime, 1.5)
+    start = np.array([1.0, 0.0, 1.0, start_B_prime])
 
     def misfit(p):
-        return (vinet(volume, p[0] * V0, E0 + p[1] * scale, p[2] * B, p[3]) - energy) / scale
+        fitted = vinet(volume, p[0] * V0, E0 + p[1] * scale, p[2] * B, p[3])
+        return (fitted - energy) / scale
 
     solution = least_squares(misfit, start, method="lm" if len(volume) >= 4 else "trf")
     B_vinet = float(solution.x[2] * B)
@@ -116,13 +120,12 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
         )
     # B moves by row k of `slopes` when energy k does
     step = 1e-6 * scale
-    slopes = [
-        (_minimum(coefficients + step * column, float(centre), volume)[2] - B) / step
-        for column in np.linalg.pinv(basis).T
-    ]
-    error = float(
-        np.linalg.norm(slopes) * np.linalg.norm(misfits) / np.sqrt(len(volume) - len(coefficients))
-    )
+    slopes = []
+    for column in np.linalg.pinv(basis).T:
+        moved = _minimum(coefficients + step * column, float(centre), volume)
+        slopes.append((moved[2] - B) / step)
+    freedom = len(volume) - len(coefficients)
+    error = float(np.linalg.norm(slopes) * np.linalg.norm(misfits) / np.sqrt(freedom))
     unit = EV_PER_A3_IN_GPA
     # beyond, it says less than the difference of the functionals, 8 % in silicon nitride
     if not error <= 0.1 * B:
@@ -130,24 +133,22 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
             f"B {B * unit:.0f} +- {error * unit:.0f} GPa: the energies scatter about the fitted"
             " curve"
         )
+    B_GPa = B * unit
+    error_GPa = error * unit
+    flagged = tuple(flags)
     return EquationOfState(
-        V0, B * unit, B_prime, B_vinet * unit, error * unit, residual, len(volume), tuple(flags)
+        V0, B_GPa, B_prime, B_vinet * unit, error_GPa, residual, len(volume), flagged
     )
 
 
 def _minimum(
     coefficients: np.ndarray, centre: float, volume: np.ndarray
 ) -> tuple[float, float, float, float]:
-    """V0, E(V0), B (eV/Å³) and B' of the cubic in x = (V/centre)^(-2/3); NaN where there is no
-    minimum.
-    """
+    """V0, E(V0), B (eV/Å³) and B' of the cubic in x = (V/centre)^(-2/3); NaN without minimum."""
     a0, a1, a2, a3 = coefficients
     slope = np.polynomial.Polynomial([a1, 2 * a2, 3 * a3])
-    candidates = [
-        root.real
-        for root in slope.roots()
-        if abs(root.imag) < 1e-12 and root.real > 0 and slope.deriv()(root.real) > 0
-    ]
+    real = [root.real for root in slope.roots() if abs(root.imag) < 1e-12 and root.real > 0]
+    candidates = [root for root in real if slope.deriv()(root) > 0]
     if not candidates:
         nan = float("nan")
         return nan, nan, nan, nan
@@ -163,9 +164,6 @@ def _minimum(
     x3 = -80 / 27 * x / V**3
     second = d2 * x1**2 + d1 * x2
     third = d3 * x1**3 + 3 * d2 * x1 * x2 + d1 * x3
-    return (
-        V,
-        float(a0 + a1 * x + a2 * x**2 + a3 * x**3),
-        float(V * second),
-        float(-1 - V * third / second),
-    )
+    E = a0 + a1 * x + a2 * x**2 + a3 * x**3
+    B_prime = -1 - V * third / second
+    return V, float(E), float(V * second), float(B_prime)

@@ -85,9 +85,8 @@ class CachedGrid(MultiGridNumInt2):
         return field.reshape(*spectrum.shape[:-3], -1)
 
     def _spectrum(self, field: np.ndarray) -> np.ndarray:
-        return np.asarray(
-            scipy.fft.rfftn(field.reshape(*field.shape[:-1], *self.mesh), axes=(-3, -2, -1))
-        )
+        on_mesh = field.reshape(*field.shape[:-1], *self.mesh)
+        return np.asarray(scipy.fft.rfftn(on_mesh, axes=(-3, -2, -1)))
 
     def _phase(self, position: np.ndarray) -> np.ndarray:
         """exp(-iG·R) on the half spectrum."""
@@ -110,17 +109,17 @@ class CachedGrid(MultiGridNumInt2):
 
     # -- density and potential
     def occupied_orbitals(self, density_matrix: Any) -> tuple[np.ndarray, np.ndarray]:
-        """Factor F (orbitals, n) and signs s with D = F diag(s) Fᵀ; from the orbitals if the matrix
-        carries them.
-        """
+        """Factor F (orbitals, n) and signs s with D = F diag(s) Fᵀ, from known orbitals."""
         coefficients = getattr(density_matrix, "mo_coeff", None)
         if coefficients is not None:
             occupation = density_matrix.mo_occ
             filled = occupation > 0
-            return coefficients[:, filled] * np.sqrt(occupation[filled]), np.ones(int(filled.sum()))
+            orbitals = coefficients[:, filled] * np.sqrt(occupation[filled])
+            return orbitals, np.ones(int(filled.sum()))
         values, vectors = np.linalg.eigh(np.asarray(density_matrix))
         keep = abs(values) > 1e-10 * abs(values).max()
-        return vectors[:, keep] * np.sqrt(abs(values[keep])), np.sign(values[keep])
+        kept_values = values[keep]
+        return vectors[:, keep] * np.sqrt(abs(kept_values)), np.sign(kept_values)
 
     def density(self, density_matrix: np.ndarray) -> np.ndarray:
         """ρ on the grid, shape (grid points,); `waves` then holds the orbitals it is made of."""
@@ -131,11 +130,11 @@ class CachedGrid(MultiGridNumInt2):
             self.waves = np.empty((len(rows), self.points), self.precision)
         rho = np.empty(self.points)
         for start in range(0, self.points, BLOCK):
-            here = slice(start, start + BLOCK)
-            part = rows @ self.orbitals[:, here]
-            self.waves[:, here] = part
-            np.multiply(part, part, out=part)
-            rho[here] = sign @ part
+            block = slice(start, start + BLOCK)
+            waves = rows @ self.orbitals[:, block]
+            self.waves[:, block] = waves
+            np.multiply(waves, waves, out=waves)
+            rho[block] = sign @ waves
         return rho
 
     def matrix(self, potential: np.ndarray) -> np.ndarray:
@@ -146,8 +145,8 @@ class CachedGrid(MultiGridNumInt2):
         total = np.zeros((len(self.orbitals),) * 2)
         weights = (self.weight * potential).astype(np.float32)
         for start in range(0, self.points, BLOCK):
-            part = self.orbitals[:, start : start + BLOCK].astype(np.float32, copy=False)
-            total += (part * weights[start : start + BLOCK]) @ part.T
+            orbitals = self.orbitals[:, start : start + BLOCK].astype(np.float32, copy=False)
+            total += (orbitals * weights[start : start + BLOCK]) @ orbitals.T
         return 0.5 * (total + total.T)
 
     def exchange_correlation(self, xc_code: str, rho: np.ndarray) -> tuple[float, np.ndarray]:
@@ -159,12 +158,11 @@ class CachedGrid(MultiGridNumInt2):
             raise NotImplementedError(f"functional {xc_code}: only LDA and GGA")
         fields = np.concatenate([rho[None], self.gradient(rho)])
         energy, potential = self.eval_xc_eff(xc_code, fields, deriv=1, xctype="GGA")[:2]
-        return float(self.weight * (rho @ energy)), potential[0] - self.divergence(potential[1:4])
+        functional = potential[0] - self.divergence(potential[1:4])
+        return float(self.weight * (rho @ energy)), functional
 
     def potential(self, xc_code: str, rho: np.ndarray) -> tuple[np.ndarray, float, float]:
-        """Whole local potential, its electrostatic energy (Hartree + local pseudopotential) and
-        E_xc.
-        """
+        """Local potential, its electrostatic energy (Hartree + local pseudopotential) and E_xc."""
         hartree = self._to_grid(self.coulomb * self._spectrum(rho))
         electrostatic = float(self.weight * (rho @ (self.local + 0.5 * hartree)))
         exc, vxc = self.exchange_correlation(xc_code, rho)
@@ -176,14 +174,12 @@ class CachedGrid(MultiGridNumInt2):
             raise NotImplementedError("CachedGrid is for the Γ point only: use a supercell")
         rho = self.density(dm_kpts)
         v, electrostatic, exc = self.potential(xc_code, rho)
-        veff = lib.tag_array(
-            self._matrix_of(dm_kpts, rho, v), ecoul=electrostatic, exc=exc, vj=None, vk=None
-        )
+        matrix = self._matrix_of(dm_kpts, rho, v)
+        veff = lib.tag_array(matrix, ecoul=electrostatic, exc=exc, vj=None, vk=None)
         return float(rho.sum() * self.weight), exc, veff
 
     def _matrix_of(self, density_matrix: Any, rho: np.ndarray, potential: np.ndarray) -> np.ndarray:
-        """`matrix` of a potential, which after the first one of an SCF lags behind between empty
-        orbitals.
+        """`matrix` of a potential, which lags behind between empty orbitals after the first one.
 
         With δ the change since the last full matrix and Q the projector onto empty orbitals, δ − Qᵀ
         δ Q is added to it: half the work or less.  The gradient of the orbitals is exact, so the
@@ -204,14 +200,12 @@ class CachedGrid(MultiGridNumInt2):
         return self._full[0]
 
     def _onto_waves(self, potential: np.ndarray) -> np.ndarray:
-        """Σ_r w φ_µ v ψ_i with the orbitals ψ of the last density, shape (basis functions,
-        orbitals).
-        """
+        """Σ_r w φ_µ v ψ_i with orbitals ψ of the last density, (basis functions, orbitals)."""
         weighted = (self.weight * potential).astype(self.precision)
         total = np.zeros((len(self.orbitals), len(self.waves)))
         for start in range(0, self.points, BLOCK):
-            here = slice(start, start + BLOCK)
-            total += self.orbitals[:, here] @ (self.waves[:, here] * weighted[here]).T
+            block = slice(start, start + BLOCK)
+            total += self.orbitals[:, block] @ (self.waves[:, block] * weighted[block]).T
         return total
 
     def get_pp(self, kpts=None, return_full=False):
@@ -227,9 +221,9 @@ class CachedGrid(MultiGridNumInt2):
         dm = np.asarray(mf.make_rdm1())
         energy_weighted = (mf.mo_coeff * (mf.mo_occ * mf.mo_energy)) @ mf.mo_coeff.T
         gradient = ewald_methods.ewald_nuc_grad(cell) + nonlocal_slopes(cell, dm)
-        kinetic, overlap = (  # hermi 2: antihermitian, so PySCF computes half
-            -np.asarray(cell.pbc_intor(name, hermi=2)) for name in ("int1e_ipkin", "int1e_ipovlp")
-        )
+        # hermi 2: antihermitian, so PySCF computes half
+        kinetic = -np.asarray(cell.pbc_intor("int1e_ipkin", hermi=2))
+        overlap = -np.asarray(cell.pbc_intor("int1e_ipovlp", hermi=2))
         factor, _ = self.occupied_orbitals(mf.make_rdm1())
         rho = self.density(mf.make_rdm1())
         v, _, _ = self.potential(mf.xc, rho)
@@ -244,16 +238,13 @@ class CachedGrid(MultiGridNumInt2):
             twice[-1] = 1.0
         for atom in range(cell.natm):
             a, b = slices[atom, 2:]
-            gradient[atom] += 2 * np.einsum("xuv,uv->x", np.real(kinetic[:, a:b]), dm[a:b])
-            gradient[atom] -= 2 * np.einsum(
-                "xuv,uv->x", np.real(overlap[:, a:b]), energy_weighted[a:b]
-            )
-            gradient[atom] -= 2 * pulay_term(
-                self.atoms[atom],
-                self.lattice,
-                tuple(self.mesh),
-                factor[a:b].astype(self.precision) @ waves,
-            )
+            kinetic_slope = np.real(kinetic[:, a:b])
+            overlap_slope = np.real(overlap[:, a:b])
+            on_grid = factor[a:b].astype(self.precision) @ waves
+            mesh = tuple(self.mesh)
+            gradient[atom] += 2 * np.einsum("xuv,uv->x", kinetic_slope, dm[a:b])
+            gradient[atom] -= 2 * np.einsum("xuv,uv->x", overlap_slope, energy_weighted[a:b])
+            gradient[atom] -= 2 * pulay_term(self.atoms[atom], self.lattice, mesh, on_grid)
             form = self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
             product = np.imag(form * spectrum.conj()) * twice
             gradient[atom] += np.einsum("xijk,ijk->x", self.wave_vectors[1], product) / self.points
@@ -261,8 +252,7 @@ class CachedGrid(MultiGridNumInt2):
 
 
 def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
-    """dE/dR of every ion of E = Σ D_µν <µ|p> h <p|ν> (Hartwigsen et al., PRB 58, 3641 (1998)),
-    (ions, 3) hartree/bohr.
+    """dE/dR of ions, E = Σ D_µν <µ|p> h <p|ν> (PRB 58, 3641 (1998)), (ions, 3) hartree/bohr.
 
     An overlap of a projector and an orbital depends on the vector between their centres alone.
 
@@ -283,9 +273,9 @@ def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
         ("int1e_ipovlp", "int1e_r2_origi_ip2", "int1e_r4_origi_ip2"),
         3,
     )
-    atoms = np.repeat(
-        np.arange(cell.natm), np.diff(cell.aoslice_by_atom()[:, 2:]).ravel()
-    )  # of every orbital
+    # of every orbital
+    orbitals = np.diff(cell.aoslice_by_atom()[:, 2:]).ravel()
+    atoms = np.repeat(np.arange(cell.natm), orbitals)
     by_ion = np.zeros((cell.natm, 3))
     taken = [0, 0, 0]
     for block, strength in enumerate(strengths):
@@ -296,8 +286,9 @@ def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
         onto = [np.real(overlaps[j][0][rows[j]]) @ dm for j in range(len(strength))]
         for i, row in enumerate(rows):
             # 2 from bra and ket; the orbital's centre moves against ∇µ
-            weight = (-2 if i else 2) * sum(
-                h * part for h, part in zip(strength[i], onto, strict=True)
+            sign = -2 if i else 2
+            weight = sign * sum(
+                h * projection for h, projection in zip(strength[i], onto, strict=True)
             )
             per_orbital = np.einsum("xpu,pu->ux", np.real(slopes[i][0][:, row]), weight)
             np.add.at(by_ion, atoms, per_orbital)
@@ -306,8 +297,7 @@ def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
 
 
 def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
-    """Fourier transform of the local GTH pseudopotential (Goedecker et al., PRB 54, 1703 (1996),
-    eq. 5).
+    """Fourier transform of the local GTH pseudopotential (PRB 54, 1703 (1996), eq. 5).
 
     Parameters
     ----------
@@ -318,29 +308,24 @@ def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
     radius, n, c = pseudo[1:4]
     c = list(c[:n]) + [0.0] * (4 - n)
     x2 = g2 * radius**2
-    polynomial = (
-        c[0]
-        + c[1] * (3 - x2)
-        + c[2] * (15 - 10 * x2 + x2**2)
-        + c[3] * (105 - 105 * x2 + 21 * x2**2 - x2**3)
-    )
+    constant_term = c[0] + c[1] * (3 - x2)
+    fourth = 15 - 10 * x2 + x2**2
+    sixth = 105 - 105 * x2 + 21 * x2**2 - x2**3
+    polynomial = constant_term + c[2] * fourth + c[3] * sixth
     gauss = np.exp(-0.5 * x2)
-    coulomb = np.divide(
-        -4 * np.pi * charge * gauss,
-        g2,
-        out=np.full_like(g2, 2 * np.pi * charge * radius**2),
-        where=g2 > 0,
-    )
+    at_zero = np.full_like(g2, 2 * np.pi * charge * radius**2)
+    numerator = -4 * np.pi * charge * gauss
+    coulomb = np.divide(numerator, g2, out=at_zero, where=g2 > 0)
     return coulomb + (2 * np.pi) ** 1.5 * radius**3 * gauss * polynomial
 
 
 def _wave_vectors(cell: "Cell", mesh: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Half-spectrum wave vectors, shape (3, n0, n1, n2//2+1): for derivatives (Nyquist zeroed), and
-    as they are.
-    """
+    """Half-spectrum wave vectors, (3, n0, n1, n2//2+1): Nyquist zeroed, and as they are."""
     indices = [scipy.fft.fftfreq(mesh[0], 1 / mesh[0]), scipy.fft.fftfreq(mesh[1], 1 / mesh[1])]
     indices.append(scipy.fft.rfftfreq(mesh[2], 1 / mesh[2]))
-    odd = [np.where(abs(2 * k) == n, 0.0, k) for k, n in zip(indices, mesh, strict=True)]
+    odd = []
+    for k, count in zip(indices, mesh, strict=True):
+        odd.append(np.where(abs(2 * k) == count, 0.0, k))
     reciprocal = cell.reciprocal_vectors()
 
     def vectors(ks):

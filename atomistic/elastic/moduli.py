@@ -1,5 +1,4 @@
-"""The effective modulus E* with its uncertainty, from bulk moduli by E(V) and a stated range of
-Poisson's ratio.
+"""The effective modulus E* with its uncertainty, from bulk moduli and a range of Poisson's ratio.
 
 E = 3 B (1 − 2ν),   1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂          (Kim et al. 2013, eq. 5)
 """
@@ -28,9 +27,7 @@ SAMPLES = 20_000
 
 @dataclass(frozen=True)
 class Modulus:
-    """A bulk modulus that entered or was kept out of E*; `error_GPa` is its standard error by the
-    misfit of its fit.
-    """
+    """A bulk modulus in or out of E*; `error_GPa`: standard error by its fit's misfit."""
 
     structure: str
     xc: str
@@ -43,9 +40,9 @@ class Modulus:
 def plane_strain_modulus(B_GPa, nu, other_E_GPa, other_nu):
     """E* of two bodies in GPa (eq. 5); arrays broadcast."""
     E = 3 * np.asarray(B_GPa) * (1 - 2 * np.asarray(nu))
-    return 1 / (
-        (1 - np.asarray(nu) ** 2) / E + (1 - np.asarray(other_nu) ** 2) / np.asarray(other_E_GPa)
-    )
+    compliance = (1 - np.asarray(nu) ** 2) / E
+    other_compliance = (1 - np.asarray(other_nu) ** 2) / np.asarray(other_E_GPa)
+    return 1 / (compliance + other_compliance)
 
 
 def share_of_glass(summary: Mapping[str, Any]) -> float:
@@ -61,14 +58,18 @@ def share_of_glass(summary: Mapping[str, Any]) -> float:
 
 def functional_shift(moduli: Sequence[Modulus]) -> dict[str, Any]:
     """LDA − GGA of the bulk modulus over the structures that have both: mean and spread."""
-    by_xc = {
-        xc: {m.structure: m.B_GPa for m in moduli if m.xc == xc and m.trusted}
-        for xc in ("GGA", "LDA")
-    }
+    trusted = [modulus for modulus in moduli if modulus.trusted]
+    by_xc = {}
+    for xc in ("GGA", "LDA"):
+        by_xc[xc] = {modulus.structure: modulus.B_GPa for modulus in trusted if modulus.xc == xc}
     both = sorted(set(by_xc["GGA"]) & set(by_xc["LDA"]))
     differences = np.array([by_xc["LDA"][s] - by_xc["GGA"][s] for s in both])
-    mean = float(differences.mean()) if both else float("nan")
-    std = float(differences.std(ddof=1)) if len(both) > 1 else float("nan")
+    mean = float("nan")
+    std = float("nan")
+    if both:
+        mean = float(differences.mean())
+    if len(both) > 1:
+        std = float(differences.std(ddof=1))
     return {"mean_GPa": mean, "std_GPa": std, "structures": both}
 
 
@@ -106,14 +107,14 @@ def mean_and_deviation(
     grid = plane_strain_modulus((of_structure + functional) * follow, ratio, E, other_nu)
     weight = reduce(np.multiply.outer, weights)
     mean = np.average(grid, weights=weight)
-    return float(mean), float(np.sqrt(np.average((grid - mean) ** 2, weights=weight)))
+    variance = np.average((grid - mean) ** 2, weights=weight)
+    return float(mean), float(np.sqrt(variance))
 
 
 def effective_modulus(
     moduli: Sequence[Modulus], material: Material, counter_body: Material, settings: ElasticSettings
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """E* as a distribution: mixture of GGA and GGA shifted by LDA − GGA, ν uniform, counter body
-    from experiment.
+    """E* as a distribution: GGA mixed with GGA + (LDA − GGA), ν uniform, counter body measured.
 
     Scans clamp the ions. Where the material states how much those that follow soften it, B is
     corrected.
@@ -129,22 +130,17 @@ def effective_modulus(
     Content of e_star.json, with `inputs` and `gate`, and the arrays of SAMPLE_COLUMNS; none without
     structures."""
     used = [m for m in moduli if m.xc == "GGA" and m.trusted]
-    B, B_error = np.array([(m.B_GPa, m.error_GPa) for m in used]).reshape(-1, 2).T
+    values = [(modulus.B_GPa, modulus.error_GPa) for modulus in used]
+    B, B_error = np.array(values).reshape(-1, 2).T
     shift = functional_shift(moduli)
     other: Polycrystal = counter_body.part("polycrystal")
     low, high = settings.poisson_ratio
     glass: NetworkGlass = material.part("network_glass")
-    films = {
-        name: (
-            plane_strain_modulus(
-                np.array(film.young_GPa) / (3 - 6 * np.array(film.poisson_ratio)),
-                film.poisson_ratio,
-                other.young_GPa,
-                other.poisson_ratio,
-            ).tolist()
-        )
-        for name, film in material.films.items()
-    }
+    films = {}
+    for name, film in material.films.items():
+        B_film = np.array(film.young_GPa) / (3 - 6 * np.array(film.poisson_ratio))
+        bodies = (film.poisson_ratio, other.young_GPa, other.poisson_ratio)
+        films[name] = plane_strain_modulus(B_film, *bodies).tolist()
     summary: dict[str, Any] = {
         "ions": "follow, by a stated factor" if glass.ions_follow else "clamped",
         "films_GPa": films,
@@ -169,10 +165,10 @@ def effective_modulus(
         return summary, {}
     delta = shift["mean_GPa"] if shift["structures"] else 0.0
     follow = glass.ions_follow or (1.0, 0.0)
-    others = (settings.poisson_ratio, (other.young_GPa, other.young_std_GPa), other.poisson_ratio)
-    summary["clamped_GPa"], _ = mean_and_deviation(B, B_error, delta, *others)
-    others = (*others, follow)
-    summary["mean_GPa"], summary["std_GPa"] = mean_and_deviation(B, B_error, delta, *others)
+    ranges = (settings.poisson_ratio, (other.young_GPa, other.young_std_GPa), other.poisson_ratio)
+    summary["clamped_GPa"], _ = mean_and_deviation(B, B_error, delta, *ranges)
+    ranges = (*ranges, follow)
+    summary["mean_GPa"], summary["std_GPa"] = mean_and_deviation(B, B_error, delta, *ranges)
     rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 51]))
     n = SAMPLES
     lda = rng.integers(0, 2, n)
@@ -184,14 +180,10 @@ def effective_modulus(
     B_samples *= follow[0] + follow[1] * rng.standard_normal(n)
     e_star = plane_strain_modulus(B_samples, nu, E, other.poisson_ratio)
     quantiles = (0.025, 0.16, 0.5, 0.84, 0.975)
-    summary |= {
-        "quantiles_GPa": dict(
-            zip(map(str, quantiles), np.quantile(e_star, quantiles).tolist(), strict=True)
-        ),
-        "inputs": {
-            "e_star": {"distribution": "normal", "a": summary["mean_GPa"], "b": summary["std_GPa"]}
-        },
-    }
+    values = np.quantile(e_star, quantiles).tolist()
+    summary["quantiles_GPa"] = dict(zip(map(str, quantiles), values, strict=True))
+    normal = {"distribution": "normal", "a": summary["mean_GPa"], "b": summary["std_GPa"]}
+    summary["inputs"] = {"e_star": normal}
     return summary, {
         "e_star_GPa": e_star,
         "B_GPa": B_samples,
@@ -206,27 +198,26 @@ def _notes(
 ) -> list[str]:
     """What the numbers leave out, for the page."""
     notes = [
-        (
-            f"Up to {max_defects} atoms of a quenched cell may lack or exceed their valence. Cells"
-            " without a gap are left out, so of the broken bonds only those without levels in the"
-            " gap are represented."
-            if max_defects
-            else (
-                "The glasses are quenched as ideal networks: every Si has four N and every N three"
-                " Si. Films hold a few per cent of broken bonds, which may soften them: take B and"
-                " E* for upper estimates."
-            )
-        ),
-        (
+        "The glasses are quenched as ideal networks: every Si has four N and every N three Si."
+        " Films hold a few per cent of broken bonds, which may soften them: take B and E* for"
+        " upper estimates."
+    ]
+    if max_defects:
+        notes = [
+            f"Up to {max_defects} atoms of a quenched cell may lack or exceed their valence."
+            " Cells without a gap are left out, so of the broken bonds only those without levels"
+            " in the gap are represented."
+        ]
+    if follow is not None:
+        notes.append(
             f"Scans clamp the ions; those that follow a strain have {follow[0]:g} ± {follow[1]:g}"
             " of that bulk modulus."
-            if follow
-            else (
-                "Ions clamped to fractional coordinates stiffen the glass: take E* for an upper"
-                " estimate."
-            )
-        ),
-    ]
+        )
+    else:
+        notes.append(
+            "Ions clamped to fractional coordinates stiffen the glass: take E* for an upper"
+            " estimate."
+        )
     if films:
         measured = "; ".join(
             f"{name} {low:.0f} to {high:.0f}" for name, (low, high) in films.items()

@@ -1,5 +1,4 @@
-"""Structures for the elastic stage: crystals from data files, amorphous silicon nitride by melt and
-quench.
+"""Structures of the elastic stage: crystals from files, silicon nitride by melt and quench.
 
 Lengths in Å.  A glass cell is melted at the density of experiment and quenched with a Tersoff
 potential and soft cores in LAMMPS, its shape free as soon as it is stiff.  At rest it must be a
@@ -41,12 +40,14 @@ def crystal(material: Material, name: str, supercell: Supercell | None = None) -
         )
     data = known[name]
     repeats = np.array(supercell or data.supercell)
-    symbols, sites = zip(
-        *((element, site) for element, places in data.sites.items() for site in places), strict=True
-    )
+    symbols = []
+    sites = []
+    for element, places in data.sites.items():
+        symbols += [element] * len(places)
+        sites += places
     atoms = from_spacegroup(
-        list(symbols),
-        list(sites),
+        symbols,
+        sites,
         spacegroup=data.spacegroup,
         setting=data.setting,
         cellpar=data.cell,
@@ -73,10 +74,12 @@ class NetworkVerdict:
 
     def columns(self) -> dict[str, Any]:
         """The numbers as columns of a table, in the order of its schema."""
+        coordination = {f"coordination_{element}": n for element, n in self.coordination.items()}
+        shortest = {f"shortest_{pair}_A": length for pair, length in self.shortest_A.items()}
         return {
             "density_g_cm3": self.density_g_cm3,
-            **{f"coordination_{element}": value for element, value in self.coordination.items()},
-            **{f"shortest_{pair}_A": value for pair, value in self.shortest_A.items()},
+            **coordination,
+            **shortest,
             "bond_spread_A": self.bond_spread_A,
             "symmetry_operations": self.symmetry_operations,
             "defects": self.defects,
@@ -84,8 +87,7 @@ class NetworkVerdict:
 
 
 def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None) -> NetworkVerdict:
-    """Measure density, coordination, shortest distances and symmetry and hold them against
-    `criteria`.
+    """Hold density, coordination, shortest distances and symmetry against `criteria`.
 
     Parameters
     ----------
@@ -106,9 +108,9 @@ def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None
         reasons.append(f"density {density:.2f} outside {low} to {high} g/cm3")
     coordination = {}
     for element, (low, high) in criteria.coordination.items():
-        coordination[element] = (
-            float(counts[symbols == element].mean()) if np.any(symbols == element) else 0.0
-        )
+        coordination[element] = 0.0
+        if np.any(symbols == element):
+            coordination[element] = float(counts[symbols == element].mean())
         if not low <= coordination[element] <= high:
             reasons.append(
                 f"coordination of {element} {coordination[element]:.2f} outside {low} to {high}"
@@ -116,11 +118,12 @@ def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None
     shortest = {}
     for pair, limit in criteria.shortest_A.items():
         a, b = pair.split("-")
-        here = distance[(symbols[first] == a) & (symbols[second] == b)]
-        shortest[pair] = float(here.min()) if len(here) else SEARCHED_A
+        distances = distance[(symbols[first] == a) & (symbols[second] == b)]
+        shortest[pair] = float(distances.min()) if len(distances) else SEARCHED_A
         if shortest[pair] < limit:
             reasons.append(f"{pair} distance {shortest[pair]:.2f} below {limit} A")
-    defects = int(np.sum(counts != np.array([criteria.valence[symbol] for symbol in symbols])))
+    valence = np.array([criteria.valence[symbol] for symbol in symbols])
+    defects = int(np.sum(counts != valence))
     if max_defects is not None and defects > max_defects:
         reasons.append(f"{defects} atoms without their valence")
     spread = float(distance[bonds].std()) if bonds.any() else 0.0
@@ -135,9 +138,7 @@ def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None
 
 
 def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
-    """Operations that map the cell onto itself within a tolerance; one, the identity, where there
-    is no symmetry.
-    """
+    """Operations that map the cell onto itself within a tolerance; 1: the identity."""
     import spglib.error
 
     spglib.error.OLD_ERROR_HANDLING = False  # it shall raise
@@ -151,26 +152,25 @@ def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
     return len(symmetry.rotations)
 
 
-def same_network(atoms: Atoms, others: Mapping[str, Atoms]) -> str | None:
-    """Name of the first of `others` that is this cell again: turned, mirrored, shifted or described
-    by other edges.
+def same_network(atoms: Atoms, accepted: Mapping[str, Atoms]) -> str | None:
+    """Name of the first of `accepted` that is this cell again; None of a new one.
 
     A small cell has few good networks, so that independent quenches end in the same one.
     """
     from ase.utils.structure_comparator import SymmetryEquivalenceCheck
 
     comparison = SymmetryEquivalenceCheck()
-    return next(
-        (name for name, other in others.items() if comparison.compare(atoms.copy(), other.copy())),
-        None,
-    )
+    for name, other in accepted.items():
+        if comparison.compare(atoms.copy(), other.copy()):
+            return name
+    return None
 
 
 def no_insulator(gap_eV: float, criteria: NetworkGlass) -> list[str]:
-    """Why a cell with this gap is no insulator; nothing where it is one or the engine does not tell
-    its gap (NaN).
-    """
-    return [f"gap {gap_eV:.2f} eV: no insulator"] if gap_eV < criteria.gap_eV else []
+    """Why a cell with this gap is no insulator; nothing where it is one, or without a gap (NaN)."""
+    if gap_eV >= criteria.gap_eV:
+        return []
+    return [f"gap {gap_eV:.2f} eV: no insulator"]
 
 
 def random_structure(
@@ -180,15 +180,12 @@ def random_structure(
     seed: int,
     edges: Sequence[float] = (1, 1, 1),
 ) -> Atoms:
-    """Formula units at random in a box of the given density and ratio of edges, no two atoms closer
-    than 1.4 Å.
-    """
+    """Formula units at random in a box of a density and edge ratio, none closer than 1.4 Å."""
     symbols = [element for element, n in formula.items() for _ in range(n * units)]
     atoms = Atoms(symbols, pbc=True)
     shape = np.asarray(edges, float)
-    edge = shape * (
-        atoms.get_masses().sum() * AMU_PER_A3_IN_G_CM3 / density_g_cm3 / shape.prod()
-    ) ** (1 / 3)
+    volume_A3 = atoms.get_masses().sum() * AMU_PER_A3_IN_G_CM3 / density_g_cm3
+    edge = shape * (volume_A3 / shape.prod()) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 5]))
     atoms.set_cell(edge)
     atoms.positions = random_places(len(symbols), edge, QUENCH.start_distance_A, rng)
@@ -201,7 +198,7 @@ def make_glass(
     seed: int,
     work: Path,
     progress: Callable[[float, str], None] | None = None,
-    others: Mapping[str, Atoms] | None = None,
+    accepted: Mapping[str, Atoms] | None = None,
 ) -> tuple[Atoms, list[dict[str, Any]]]:
     """Melt and quench until a cell passes the gates.
 
@@ -221,21 +218,17 @@ def make_glass(
     for attempt in range(QUENCH.attempts):
         if progress:
             progress(attempt / QUENCH.attempts, f"melt and quench, attempt {attempt + 1}")
-        quench_seed = (
-            int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
-        )
+        state = np.random.SeedSequence([seed, attempt]).generate_state(1)
+        quench_seed = int(state[0] % 900_000_000) + 1
         atoms = quench(material, settings, quench_seed, work)
         verdict = examine(atoms, network, settings.max_defects)
         reasons = verdict.reasons
-        if not reasons and (copied := same_network(atoms, others or {})):
+        if not reasons and (copied := same_network(atoms, accepted or {})):
             reasons = (f"the network of {copied} again",)
-        attempts.append(
-            {
-                "attempt": attempt,
-                **verdict.columns(),
-                "status": "rejected: " + "; ".join(reasons) if reasons else "accepted",
-            }
-        )
+        status = "accepted"
+        if reasons:
+            status = "rejected: " + "; ".join(reasons)
+        attempts.append({"attempt": attempt, **verdict.columns(), "status": status})
         if not reasons:
             break
     return atoms, attempts
@@ -270,28 +263,22 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
     (workspace / "cores.in").write_text(
         "\n".join(core_commands(network.cores, elements)) + "\n", encoding="utf-8"
     )
-    write_data(
-        workspace / "start.data",
-        LammpsAtoms(elements, types, start.positions, np.diag(start.cell.array)),
-        network.masses_u,
-    )
+    placed = LammpsAtoms(elements, types, start.positions, np.diag(start.cell.array))
+    write_data(workspace / "start.data", placed, network.masses_u)
     steps_per_ps = 1000 / QUENCH.timestep_fs
     steps_per_K = steps_per_ps / QUENCH.rate_K_ps
-    run_lammps(
-        "nitride.in",
-        workspace,
-        {
-            "elements": " ".join(elements),
-            "seed": seed,
-            "timestep": QUENCH.timestep_fs / 1000,
-            "melt": QUENCH.melt_K,
-            "free": QUENCH.free_below_K,
-            "final": QUENCH.final_K,
-            "melt_steps": round(QUENCH.melt_ps * steps_per_ps),
-            "quench_steps": round((QUENCH.melt_K - QUENCH.free_below_K) * steps_per_K),
-            "free_steps": round((QUENCH.free_below_K - QUENCH.final_K) * steps_per_K),
-        },
-    )
+    variables = {
+        "elements": " ".join(elements),
+        "seed": seed,
+        "timestep": QUENCH.timestep_fs / 1000,
+        "melt": QUENCH.melt_K,
+        "free": QUENCH.free_below_K,
+        "final": QUENCH.final_K,
+        "melt_steps": round(QUENCH.melt_ps * steps_per_ps),
+        "quench_steps": round((QUENCH.melt_K - QUENCH.free_below_K) * steps_per_K),
+        "free_steps": round((QUENCH.free_below_K - QUENCH.final_K) * steps_per_K),
+    }
+    run_lammps("nitride.in", workspace, variables)
     numbers = {kind: atomic_numbers[element] for kind, element in enumerate(elements, 1)}
     quenched: Any = read(
         workspace / "glass.data", format="lammps-data", atom_style="atomic", Z_of_type=numbers

@@ -1,5 +1,4 @@
-"""Contracted Gaussian orbitals on a uniform periodic grid: values, and the force a potential exerts
-on them.
+"""Contracted Gaussian orbitals on a periodic grid: values, and the force of a potential.
 
 Atomic units throughout (bohr, hartree).  The orbitals are PySCF's: real solid harmonics times
 contracted Gaussians, in PySCF's order, summed over all periodic images within `radius`.  Along a
@@ -90,21 +89,15 @@ def atom_orbitals(cell: "Cell", precision: float | None = None) -> list[AtomOrbi
         contraction = np.array(rows)
         radii = np.linspace(0.5, 40.0, 1581)
         gaussians = np.exp(-np.outer(radii**2, exponents))
-        size = np.max(
-            np.abs(gaussians @ contraction.T) * radii[:, None] ** np.array(angular), axis=1
-        )
+        radial = np.abs(gaussians @ contraction.T)
+        size = np.max(radial * radii[:, None] ** np.array(angular), axis=1)
         large = np.nonzero(size > precision)[0]
-        radius = float(radii[min(large[-1] + 1, len(radii) - 1)]) if len(large) else 0.5
-        atoms.append(
-            AtomOrbitals(
-                coordinates[atom],
-                exponents,
-                np.array(angular),
-                contraction,
-                np.array(first),
-                radius,
-            )
-        )
+        radius = 0.5
+        if len(large):
+            radius = float(radii[min(large[-1] + 1, len(radii) - 1)])
+        angles = np.array(angular)
+        orbitals = (exponents, angles, contraction, np.array(first), radius)
+        atoms.append(AtomOrbitals(coordinates[atom], *orbitals))
     return atoms
 
 
@@ -115,9 +108,7 @@ def collocate(
     n_orbitals: int,
     precision: type[np.floating] = np.float64,
 ):
-    """Values of all orbitals on the grid, shape (orbitals, grid points), grid in C order of
-    `mesh`.
-    """
+    """Values of all orbitals on the grid, (orbitals, grid points), grid in C order of `mesh`."""
     values = np.zeros((n_orbitals, int(np.prod(mesh))), dtype=precision)
     for atom in orbitals:
         _collocate_atom(values, lattice, np.array(mesh), *_arguments(atom, lattice, mesh))
@@ -165,25 +156,21 @@ def _arguments(atom: AtomOrbitals, lattice: np.ndarray, mesh: tuple[int, int, in
 
 @numba.njit(cache=True, error_model="numpy")
 def _closest(centre, lattice, mesh, i, j, radius):
-    """First point of grid line (i, j) relative to the atom, its step, and the index range inside
-    the sphere.
-    """
+    """First point of grid line (i, j) relative to the atom, its step, indices in the sphere."""
     step = lattice[2] / mesh[2]
-    origin = lattice[0] * (i / mesh[0]) + lattice[1] * (j / mesh[1]) - centre
+    in_plane = lattice[0] * (i / mesh[0]) + lattice[1] * (j / mesh[1])
+    origin = in_plane - centre
     s2 = step[0] ** 2 + step[1] ** 2 + step[2] ** 2
-    closest = -(origin[0] * step[0] + origin[1] * step[1] + origin[2] * step[2]) / s2
+    projection = origin[0] * step[0] + origin[1] * step[1] + origin[2] * step[2]
+    closest = -projection / s2
     distance2 = origin[0] ** 2 + origin[1] ** 2 + origin[2] ** 2 - closest * closest * s2
     room = radius * radius - distance2
     if room <= 0.0:
         return origin, step, 0, 0, -1
     half = np.sqrt(room / s2)
-    return (
-        origin,
-        step,
-        int(np.rint(closest)),
-        int(np.ceil(closest - half)),
-        int(np.floor(closest + half)),
-    )
+    begin = int(np.ceil(closest - half))
+    end = int(np.floor(closest + half))
+    return origin, step, int(np.rint(closest)), begin, end
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -194,13 +181,18 @@ def _gaussians(out, exponents, origin, step, middle, begin, end):
     """
     s2 = step[0] ** 2 + step[1] ** 2 + step[2] ** 2
     for sign in (1, -1):
-        start = min(max(middle, begin), end) if sign == 1 else min(max(middle, begin), end) - 1
+        start = min(max(middle, begin), end)
+        if sign == -1:
+            start -= 1
         if start < begin:
             continue
-        at = origin + start * step
-        r2 = at[0] ** 2 + at[1] ** 2 + at[2] ** 2
-        rs = sign * (at[0] * step[0] + at[1] * step[1] + at[2] * step[2])
-        count = end - start + 1 if sign == 1 else start - begin + 1
+        point = origin + start * step
+        r2 = point[0] ** 2 + point[1] ** 2 + point[2] ** 2
+        projection = point[0] * step[0] + point[1] * step[1] + point[2] * step[2]
+        rs = sign * projection
+        count = start - begin + 1
+        if sign == 1:
+            count = end - start + 1
         for p in range(exponents.size):
             value = np.exp(-exponents[p] * r2)
             ratio = np.exp(-exponents[p] * (2.0 * rs + s2))
@@ -218,13 +210,13 @@ def _add_line(row, line, begin, count):
     """Add an unwrapped line to the periodic grid row."""
     n = row.size
     k = 0
-    at = begin % n
+    place = begin % n
     while k < count:
-        run = min(n - at, count - k)
+        run = min(n - place, count - k)
         for m in range(run):
-            row[at + m] += line[k + m]
+            row[place + m] += line[k + m]
         k += run
-        at = 0
+        place = 0
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -232,13 +224,13 @@ def _take_line(line, row, begin, count):
     """Unwrapped copy of a periodic grid row."""
     n = row.size
     k = 0
-    at = begin % n
+    place = begin % n
     while k < count:
-        run = min(n - at, count - k)
+        run = min(n - place, count - k)
         for m in range(run):
-            line[k + m] = row[at + m]
+            line[k + m] = row[place + m]
         k += run
-        at = 0
+        place = 0
 
 
 @numba.njit(cache=True, fastmath=FAST, error_model="numpy")
@@ -275,9 +267,7 @@ def _collocate_atom(
 
 @numba.njit(cache=True, fastmath=FAST, error_model="numpy", forceinline=True)
 def _harmonic_times(out, degree, m, x, y, z, f, n):
-    """out = S_lm(x, y, z) f, the real solid harmonic in PySCF's order (x, y, z; xy, yz, z², xz,
-    x²-y²).
-    """
+    """out = S_lm(x, y, z) f, real solid harmonic (x, y, z; xy, yz, z², xz, x²-y²)."""
     if degree == 0:
         for k in range(n):
             out[k] = S0 * f[k]

@@ -41,9 +41,7 @@ def strained(atoms: Atoms, strain: float) -> Atoms:
 
 
 def spring_hessian(atoms: Atoms, springs: Springs = SPRINGS) -> np.ndarray:
-    """Hessian by springs along and across bonds between unlike atoms and along edges between N,
-    (3n, 3n), eV/Å².
-    """
+    """Hessian by springs on unlike bonds and on edges between N, (3n, 3n), eV/Å²."""
     from ase.neighborlist import neighbor_list
 
     symbols = np.array(atoms.get_chemical_symbols())
@@ -104,9 +102,7 @@ def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Relaxation:
     from ase.optimize import BFGS
 
     class Cautious(BFGS):
-        """BFGS whose soft directions are never taken for flat ones: no step overshoots along
-        them.
-        """
+        """BFGS whose soft directions are never taken for flat: no step overshoots along them."""
 
         def update(self, pos, forces, pos0, forces0):
             super().update(pos, forces, pos0, forces0)
@@ -125,7 +121,5 @@ def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Relaxation:
 
 
 def last_gap_eV(calculator: Calculator | None) -> float:
-    """Gap between occupied and empty levels that a calculator found last; NaN if its engine does
-    not tell.
-    """
+    """Gap between occupied and empty levels of a calculator; NaN if its engine does not tell."""
     return float(getattr(calculator, "gap_eV", np.nan))

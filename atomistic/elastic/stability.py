@@ -266,8 +266,8 @@ def _words(fit: EquationOfState) -> str:
 
 
 def _without(cell: Atoms, index: int) -> Atoms:
-    kept: Sequence[int] = [k for k in range(len(cell)) if k != index]
-    return cell[kept]
+    remaining: Sequence[int] = [k for k in range(len(cell)) if k != index]
+    return cell[remaining]
 
 
 def _shaken(cell: Atoms) -> Atoms:

@@ -50,8 +50,7 @@ def relaxed_structure(
     refused: str = "",
     progress: Progress | None = None,
 ) -> Structure:
-    """Relax the ions of a quenched cell and judge the result; a cell that no quench made right is
-    not relaxed at all.
+    """Relax the ions of a quenched cell and judge it; a cell that no quench made right stays.
 
     The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left
     in it.
@@ -79,19 +78,15 @@ def relaxed_structure(
             done = Relaxation(failure=f"relaxation: {error}")
     atoms = strained(quenched if done.failure else atoms, 0.0)
     verdict = examine(atoms, criteria)
-    reasons = [
-        *verdict.reasons,
-        *filter(None, [done.failure]),
-        *no_insulator(done.gap_eV, criteria),
-    ]
+    failures = [done.failure] if done.failure else []
+    reasons = [*verdict.reasons, *failures, *no_insulator(done.gap_eV, criteria)]
     return Structure(atoms, calculator, verdict, done, tuple(reasons))
 
 
 def trusted_moduli(
     fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[str, Any]]
 ) -> list[Modulus]:
-    """The bulk moduli of the ensemble, each trusted if its fit has no flag and its structure passed
-    its gate.
+    """Bulk moduli of the ensemble, trusted if a fit has no flag and its structure passed.
 
     Parameters
     ----------
@@ -105,30 +100,26 @@ def trusted_moduli(
             reasons = [*filter(None, [row["flags"]]), *gates[row["structure"]]["reasons"]]
             B = float(row["B_GPa"] or "nan")
             error = float(row["B_error_GPa"] or "nan")
-            moduli.append(
-                Modulus(row["structure"], row["xc"], B, not reasons, "; ".join(reasons), error)
-            )
+            why = "; ".join(reasons)
+            moduli.append(Modulus(row["structure"], row["xc"], B, not reasons, why, error))
     return moduli
+
+
+NESTED = ("relaxation", "gate", "provenance")
+"""Entries of a report that are no columns of a table."""
 
 
 def structure_rows(
     reports: Sequence[Mapping[str, Any]], quenches: Sequence[int]
 ) -> list[dict[str, Any]]:
-    """Rows of elastic/structures.csv from the structures' reports and the number of quenches each
-    one took.
-    """
-    return [
-        {
-            **{
-                key: value
-                for key, value in report.items()
-                if key not in ("relaxation", "gate", "provenance")
-            },
-            **report["relaxation"],
-            "quenches": count,
-            "status": "accepted"
-            if report["gate"]["passed"]
-            else "rejected: " + "; ".join(report["gate"]["reasons"]),
-        }
-        for report, count in zip(reports, quenches, strict=True)
-    ]
+    """Rows of elastic/structures.csv from the structures' reports and numbers of quenches."""
+    rows = []
+    for report, count in zip(reports, quenches, strict=True):
+        row = {key: value for key, value in report.items() if key not in NESTED}
+        row |= report["relaxation"]
+        row["quenches"] = count
+        row["status"] = "accepted"
+        if not report["gate"]["passed"]:
+            row["status"] = "rejected: " + "; ".join(report["gate"]["reasons"])
+        rows.append(row)
+    return rows

@@ -1,3 +1,1 @@
-"""Hardness against contact size: oxide asperities pressed by molecular dynamics
-(docs/hardness.md).
-"""
+"""Hardness against contact size: oxide asperities pressed by MD (docs/hardness.md)."""

@@ -78,9 +78,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Pressed:
-    """A pressed cut: pressure (GPa) and force (nN) at the end of its travel, and processor
-    seconds.
-    """
+    """A pressed cut: pressure (GPa) and force (nN) at the end of its travel, processor seconds."""
 
     pressure_GPa: float
     force_nN: float
@@ -132,24 +130,20 @@ class SmallClosings:
     def outputs(self, choice: Choice) -> np.ndarray:
         """Pressure and force of each cut, shape (cuts, 2)."""
         runs = [self.pressed(cut, choice) for cut in CUTS]
-        return np.array([(one.pressure_GPa, one.force_nN) for one in runs])
+        return np.array([(run.pressure_GPa, run.force_nN) for run in runs])
 
     def cpu_s(self, choice: Choice) -> float:
         """Mean over the cuts."""
         return float(np.mean([self.pressed(cut, choice).cpu_s for cut in CUTS]))
 
     def noise_percent(self) -> np.ndarray:
-        """Standard deviation of a run's pressure and force by the motion of its atoms, from one
-        repeat of each cut.
-        """
+        """Standard deviation of a run's pressure and force by its atoms' motion, from repeats."""
         first = self.outputs(Choice())
         again = self.outputs(Choice(reversed_velocities=True))
         return 100 * np.sqrt(np.mean((again / first - 1) ** 2, axis=0) / 2)
 
     def cutoff_nm(self, cut: int, iterations: int) -> tuple[float, float]:
-        """D0 of the top below a contact after so many steps of the minimiser, and its processor
-        seconds.
-        """
+        """D0 of the top below a contact after so many minimiser steps, and processor seconds."""
         run = self.pressed(cut, Choice())
         variables = {"pairs": "pairs", "segment": 1, "iterations": iterations}
         _, cpu_s = _timed(lambda: run_lammps("relax.in", run.folder, variables))
@@ -178,11 +172,8 @@ class SmallClosings:
 
     def _press(self, cut: int, choice: Choice) -> Pressed:
         run = self._run(cut)
-        body = lowered(
-            self._body(cut),
-            10 * (THICKER_BASE - choice.base) * self.base_nm,
-            formula_of(self.glass),
-        )
+        cut_off_A = 10 * (THICKER_BASE - choice.base) * self.base_nm
+        body = lowered(self._body(cut), cut_off_A, formula_of(self.glass))
         if choice.reversed_velocities and body.velocities_A_ps is not None:
             body = replace(body, velocities_A_ps=-body.velocities_A_ps)
         closing = self.closing.model_copy(
@@ -234,11 +225,10 @@ def _speeds(closings: SmallClosings) -> Variation:
     weights = {4: (1, 1, 2), 2: (2, 2), 1: (1, 1)}
 
     def deviations(speed: int) -> Deviations:
-        rest = 2 * closings.outputs(Choice(speed=1)) - closings.outputs(Choice(speed=2))
-        off = 100 * (closings.outputs(Choice(speed=speed)) / rest - 1)
-        noise = (
-            closings.noise_percent() * float(np.linalg.norm(weights[speed])) / np.sqrt(len(CUTS))
-        )
+        at_rest = 2 * closings.outputs(Choice(speed=1)) - closings.outputs(Choice(speed=2))
+        off = 100 * (closings.outputs(Choice(speed=speed)) / at_rest - 1)
+        of_sum = closings.noise_percent() * float(np.linalg.norm(weights[speed]))
+        noise = of_sum / np.sqrt(len(CUTS))
         return Deviations(off, noise, closings.cpu_s(Choice(speed=speed)))
 
     values = [(speed * used, partial(deviations, speed)) for speed in SPEEDS]
@@ -261,13 +251,10 @@ def _timesteps(closings: SmallClosings) -> Variation:
 def _bases(closings: SmallClosings) -> Variation:
     """The thickness of the base."""
     best = Choice(base=THICKER_BASE)
-    values = [
-        (
-            round(factor * closings.base_nm, 2),
-            partial(_against, closings, Choice(base=factor), best),
-        )
-        for factor in BASES
-    ]
+    values = []
+    for factor in BASES:
+        thickness_nm = round(factor * closings.base_nm, 2)
+        values.append((thickness_nm, partial(_against, closings, Choice(base=factor), best)))
     reference = f"{THICKER_BASE * closings.base_nm:.2f} nm, {_fast(closings)}"
     return Variation("base, nm", PRESSED, values, round(closings.base_nm, 2), reference, _samples())
 
@@ -279,9 +266,7 @@ def _against(closings: SmallClosings, choice: Choice, best: Choice) -> Deviation
 
 
 def _minimisers(closings: SmallClosings) -> Variation:
-    """The steps of the minimiser, by what they leave of D0: the same contact is relaxed each
-    time.
-    """
+    """Steps of the minimiser, by what they leave of D0: the same contact is relaxed each time."""
     best: list[float] = []
 
     def deviations(iterations: int) -> Deviations:
@@ -317,14 +302,14 @@ def _drifts(
         return drift_meV_atom_ps(record, len(atoms), timestep_fs)
 
     def deviations(timestep_fs: float) -> Deviations:
-        drifts, cpu_s = _timed(
-            lambda: np.array(
-                [
-                    [drift(timestep_fs, kelvin, cut) for kelvin in temperatures_K.values()]
-                    for cut in CUTS
-                ]
+
+        def drifts_of_cuts() -> np.ndarray:
+            kelvins = temperatures_K.values()
+            return np.array(
+                [[drift(timestep_fs, kelvin, cut) for kelvin in kelvins] for cut in CUTS]
             )
-        )
+
+        drifts, cpu_s = _timed(drifts_of_cuts)
         return Deviations(drifts, np.zeros(len(temperatures_K)), cpu_s / drifts.size)
 
     values = [(factor * used_fs, partial(deviations, factor * used_fs)) for factor in TIMESTEPS]
@@ -342,8 +327,9 @@ def lowered(body: Atoms, by_A: float, formula: np.ndarray) -> Atoms:
     by_A : thickness of the layer.
     formula : of `neutralise`.
     """
-    kept = body.take(body.positions_A[:, 2] >= by_A)
-    return neutralise(replace(kept, positions_A=kept.positions_A - [0.0, 0.0, by_A]), formula)
+    above = body.take(body.positions_A[:, 2] >= by_A)
+    standing = replace(above, positions_A=above.positions_A - [0.0, 0.0, by_A])
+    return neutralise(standing, formula)
 
 
 def at_depth(samples: Sequence[Sample], top_A: float, depth_A: float) -> tuple[float, float]:

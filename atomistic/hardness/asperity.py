@@ -8,9 +8,7 @@ TOP_ATOMS = 8  # the highest atoms, whose height is that of the top
 
 
 def profile(x: np.ndarray, y: np.ndarray, wavelength: float, amplitude: float) -> np.ndarray:
-    """Height Z = min[A sin(2πx/λ), A sin(2πy/λ)] (eq. 6), in the unit of `amplitude`; its peak is
-    at (λ/4, λ/4).
-    """
+    """Height Z = min[A sin(2πx/λ), A sin(2πy/λ)] (eq. 6), unit of `amplitude`; peak (λ/4, λ/4)."""
     k = 2 * np.pi / wavelength
     return amplitude * np.minimum(np.sin(k * x), np.sin(k * y))
 
@@ -31,7 +29,8 @@ def cut_asperity(glass: Atoms, tiles: int, amplitude_A: float, base_A: float, se
     rng = np.random.default_rng(np.random.SeedSequence([seed, 3]))
     shifted = np.mod(glass.positions_A + rng.uniform(0, 1, 3) * glass.cell_A, glass.cell_A)
     repeats = (np.arange(tiles), np.arange(tiles), np.arange(-below, above))
-    offsets = np.stack(np.meshgrid(*repeats, indexing="ij"), axis=-1).reshape(-1, 3)
+    offsets = np.stack(np.meshgrid(*repeats, indexing="ij"), axis=-1)
+    offsets = offsets.reshape(-1, 3)
     positions = (shifted[None] + (offsets * glass.cell_A)[:, None]).reshape(-1, 3)
     positions[:, 2] += base_A
     types = np.tile(glass.types, len(offsets))
@@ -67,10 +66,7 @@ def neutralise(atoms: Atoms, formula: np.ndarray) -> Atoms:
 
 
 def remove_strays(atoms: Atoms, formula: np.ndarray) -> Atoms:
-    """Remove atoms more than 2.5 Å above the eighth-highest one, keeping the sample neutral: they
-    are no surface.
-    """
+    """Remove atoms over 2.5 Å above the eighth-highest, neutrally: they are no surface."""
     height = atoms.positions_A[:, 2]
-    return neutralise(
-        atoms.take(height <= float(np.partition(height, -TOP_ATOMS)[-TOP_ATOMS]) + 2.5), formula
-    )
+    eighth = float(np.partition(height, -TOP_ATOMS)[-TOP_ATOMS])
+    return neutralise(atoms.take(height <= eighth + 2.5), formula)

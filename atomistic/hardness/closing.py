@@ -72,8 +72,7 @@ def run_closing(
     progress: Progress | None = None,
     base: tuple[Base, Atoms] | None = None,
 ) -> ClosedAsperity:
-    """Carry out a run, or go on with it if `work` holds its restart files; `work` is deleted at the
-    end.
+    """Carry out a run, or go on from `work`'s restart files; `work` is deleted at the end.
 
     Parameters
     ----------
@@ -91,19 +90,21 @@ def run_closing(
     if on_base and base is not None:
         protocol = slowed(protocol, base[0].below_films.timestep_factor)
     plan = plan_closing(closing, run, protocol)
+    choices = [
+        run.model_dump(),
+        material.formula_text,
+        closing.model_dump(),
+        protocol.model_dump(),
+        asdict(area),
+    ]
     identity = {
         "potential": potential.model_dump(),
-        "run": [
-            run.model_dump(),
-            material.formula_text,
-            closing.model_dump(),
-            protocol.model_dump(),
-            asdict(area),
-        ],
+        "run": choices,
         "glass": [glass.cell_A.tolist(), glass.positions_A.sum(axis=0).tolist()],
     }
     if base is not None:
-        identity["base"] = [base[0].material.model_dump(), base[1].positions_A.sum(axis=0).tolist()]
+        metal, cell = base
+        identity["base"] = [metal.material.model_dump(), cell.positions_A.sum(axis=0).tolist()]
     place = (run.seed, run.asperity.tiles, round(1000 * run.asperity.amplitude_nm))
     aside = LammpsFolder(work / "anneal", identity, "anneal.in")
     cut = cut_body(
@@ -144,21 +145,20 @@ def run_closing(
     result = read(cell, reached)
     snapshots = protocol.snapshots(reached.segments)
     # atoms of a base pull otherwise: their tops say nothing of the oxide's
-    tops = [NO_TOP if on_base else attraction_row(readout(cell), n, cell) for n in snapshots]
+    tops = [NO_TOP] * len(snapshots)
+    if not on_base:
+        tops = [attraction_row(readout(cell), number, cell) for number in snapshots]
     if run.asperity.film_nm and base is not None:
         start, end = (readout(cell).relaxed(n).frame for n in (0, snapshots[-1]))
         result.summary.update(film_properties(start, end, cell.wavelength_A, len(base[0].elements)))
     shutil.rmtree(work)
-    return replace(
-        result, witness=[{**row, **top} for row, top in zip(result.witness, tops, strict=True)]
-    )
+    rows = zip(result.witness, tops, strict=True)
+    return replace(result, witness=[{**row, **top} for row, top in rows])
 
 
 @dataclass(frozen=True)
 class CutBody:
-    """What is annealed and pressed: atoms, those of each type in a unit of its formula, and their
-    forces.
-    """
+    """What is annealed and pressed: atoms, those of each type in a formula unit, forces."""
 
     atoms: Atoms
     formula: np.ndarray
@@ -185,25 +185,27 @@ def cut_body(
     ------
     InputError : of `check_film`, or of a film without a base.
     """
-    of = run.asperity
+    asperity = run.asperity
     seed = lammps_seed(*place, 3)
-    amplitude_A = 10 * of.amplitude_nm
+    amplitude_A = 10 * asperity.amplitude_nm
     base_A = 10 * base_nm
-    film_nm = of.film_nm
+    film_nm = asperity.film_nm
     if film_nm is None:
-        cut = cut_asperity(glass, of.tiles, amplitude_A, base_A, seed)
+        cut = cut_asperity(glass, asperity.tiles, amplitude_A, base_A, seed)
         return CutBody(cut, formula_of(glass), potential)
     if base is None:
         raise InputError(
-            f"asperity {of.name}: film_nm = {film_nm:g} needs a body below; set hardness.base"
+            f"asperity {asperity.name}: film_nm = {film_nm:g} needs a body below; set hardness.base"
         )
     below, cell = base
     if film_nm == 0:
         return CutBody(
-            cut_base(cell, glass, of.tiles, amplitude_A, base_A, seed), formula_of(cell), below
+            cut_base(cell, glass, asperity.tiles, amplitude_A, base_A, seed),
+            formula_of(cell),
+            below,
         )
-    check_film(film_nm, RULES.max_area_fraction**0.5 * of.tiles * float(glass.cell_A[0]) / 10)
-    cut = lay(cell, glass, of.tiles, amplitude_A, 10 * film_nm, base_A, seed)
+    check_film(film_nm, RULES.max_area_fraction**0.5 * asperity.tiles * float(glass.cell_A[0]) / 10)
+    cut = lay(cell, glass, asperity.tiles, amplitude_A, 10 * film_nm, base_A, seed)
     formula = np.array([*(0 for _ in below.elements), *formula_of(glass)])
     return CutBody(cut, formula, Stack(potential, below))
 
@@ -225,11 +227,8 @@ def oxide_bond(
 def _read(
     readout: Readout, plan: Plan, snapshots: list[int], held_A: float, cell: PressedCell
 ) -> ClosedAsperity:
-    summary: dict[str, float] = {
-        "atoms": cell.atoms,
-        "steps": plan.total_steps,
-        "wavelength_nm": cell.wavelength_A / 10,
-    }
+    summary: dict[str, float] = {"atoms": cell.atoms, "steps": plan.total_steps}
+    summary["wavelength_nm"] = cell.wavelength_A / 10
     witness = witness_rows(
         [readout.relaxed(n) for n in snapshots], plan.timestep, plan.speed, held_A
     )
@@ -237,9 +236,7 @@ def _read(
 
 
 def attraction_row(readout: Readout, segment: int, cell: PressedCell) -> dict[str, float]:
-    """What `attract_top` says of the top after a segment, as columns of the witness; NaN while the
-    contact is small.
-    """
+    """What `attract_top` says of the top after a segment; NaN while the contact is small."""
     if (
         segment
         and (sample := readout.last_sample(segment)).area_A2 >= (10 * RULES.min_length_nm) ** 2

@@ -1,5 +1,4 @@
-"""Contact area: one definition, used for every run, calibrated on bodies of known section (study
-`hardness.area`).
+"""Contact area: one definition for every run, calibrated on known sections (`hardness.area`).
 
 Atoms nearer to the counterface than a depth (or beyond it) touch.  The space between touching atoms
 counts as contact where a disc of the closing radius does not fit; enclosed holes do too.  The rim
@@ -17,8 +16,7 @@ from atomistic.potentials import Potential
 
 @dataclass(frozen=True)
 class Area:
-    """Definition of the contact area, fixed by bodies of known section before any hardness was
-    looked at; in Å.
+    """Definition of the contact area, fixed by known sections before any hardness; in Å.
 
     Attributes
     ----------
@@ -47,9 +45,8 @@ def contact_area(
         where holes
         would stay open.
     """
-    return float(
-        np.sum(contact_map(touching_A, cell_A, area, centre_A)) * _spacing(cell_A, area).prod()
-    )
+    share = np.sum(contact_map(touching_A, cell_A, area, centre_A))
+    return float(share * _spacing(cell_A, area).prod())
 
 
 def contact_map(
@@ -67,21 +64,22 @@ def contact_map(
     shifted = np.mod(touching_A - np.asarray(centre_A) + cell / 2, cell)
     # a place that rounding puts on the far edge of the cell lies outside it for the tree
     tree = KDTree(np.where(shifted < cell, shifted, 0.0), boxsize=cell)
-    part = tuple(_reach(shifted[:, k], area.closing_A, spacing[k], shape[k]) for k in range(2))
-    middles = (
-        np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in shape), indexing="ij"), axis=-1)[part]
-        * spacing
-    )
+    windows = [_reach(shifted[:, k], area.closing_A, spacing[k], shape[k]) for k in range(2)]
+    window = tuple(windows)
+    numbers = np.meshgrid(*(np.arange(count) + 0.5 for count in shape), indexing="ij")
+    middles = np.stack(numbers, axis=-1)[window] * spacing
     distance, _ = tree.query(middles, distance_upper_bound=2 * area.closing_A)
     marked = np.asarray(binary_fill_holes(distance <= area.closing_A), dtype=bool)
     if marked.all():
         return np.ones(shape)
-    wide = np.pad(marked, margin := int(np.ceil(area.closing_A / spacing.min())) + 1, mode="wrap")
+    margin = int(np.ceil(area.closing_A / spacing.min())) + 1
+    wide = np.pad(marked, margin, mode="wrap")
     outside = np.asarray(distance_transform_edt(wide, sampling=spacing))[
         margin:-margin, margin:-margin
     ]
     shares = np.zeros(shape)
-    shares[part] = np.clip((outside - (area.closing_A - area.rim_A)) / spacing.mean(), 0, 1)
+    inner = area.closing_A - area.rim_A
+    shares[window] = np.clip((outside - inner) / spacing.mean(), 0, 1)
     return shares
 
 
@@ -100,19 +98,21 @@ def shares_in_contact(
     """
     cell = np.asarray(cell_A, dtype=float)
     inside = np.mod(places_A - np.asarray(centre_A) + cell / 2, cell) / cell
-    column, row = np.minimum((inside * shares.shape).astype(int), np.array(shares.shape) - 1).T
+    numbers = (inside * shares.shape).astype(int)
+    column, row = np.minimum(numbers, np.array(shares.shape) - 1).T
     return shares[column, row]
 
 
 def _reach(places_A: np.ndarray, reach_A: float, spacing_A: float, cells: int) -> slice:
-    """Cells within reach of the places and one more on either side, since a small contact need not
-    cost a whole map.
+    """Cells within reach of the places and one more on either side: small contacts cost less.
 
     All cells where the reach crosses the edge.
     """
     first = int(np.floor((places_A.min() - reach_A) / spacing_A)) - 1
     last = int(np.ceil((places_A.max() + reach_A) / spacing_A)) + 1
-    return slice(first, last) if first >= 0 and last <= cells else slice(0, cells)
+    if first < 0 or last > cells:
+        return slice(0, cells)
+    return slice(first, last)
 
 
 def _spacing(cell_A: tuple[float, float], area: Area) -> np.ndarray:

@@ -32,23 +32,25 @@ def closing_seconds(
     density = material.part("oxide_glass").quenched.atoms_per_nm3
     seconds = {}
     for run in planned_runs(settings):
-        film, protocol = run.asperity.film_nm, PROTOCOL
+        film = run.asperity.film_nm
+        protocol = PROTOCOL
         wavelength = run.asperity.tiles * glass_edge_A(settings, material) / 10
         mean_height = -4 / np.pi**2 * run.asperity.amplitude_nm  # of the smaller of two sines
         below = base_thickness_nm(settings.closing, wavelength) + mean_height
-        speed, of_base = ATOM_STEPS_PER_CORE_SECOND, 0.0
+        speed = ATOM_STEPS_PER_CORE_SECOND
+        of_base = 0.0
         if film is not None and base is not None:
             protocol = slowed(PROTOCOL, base.below_films.timestep_factor)
             # embedded atoms or a Tersoff potential, and pairs beside them
             speed, of_base = 0.6e6, base.atoms_per_nm3
             if film:
                 check_film(film, RULES.max_area_fraction**0.5 * wavelength)
-        atoms = wavelength**2 * (
-            density * below if film is None else density * film + of_base * below
-        )
-        seconds[run.name] = (
-            atoms * plan_closing(settings.closing, run, protocol).total_steps / speed
-        )
+        atoms_per_nm2 = density * below
+        if film is not None:
+            atoms_per_nm2 = density * film + of_base * below
+        atoms = wavelength**2 * atoms_per_nm2
+        steps = plan_closing(settings.closing, run, protocol).total_steps
+        seconds[run.name] = atoms * steps / speed
     return seconds
 
 

@@ -61,8 +61,7 @@ class Base(ABC):
     def make(
         self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None
     ) -> Atoms:
-        """A periodic cell of it that tiles the width of an asperity; resumes in `work` after a
-        kill.
+        """A periodic cell that tiles the width of an asperity; resumes in `work` after a kill.
 
         Parameters
         ----------
@@ -75,9 +74,7 @@ class Base(ABC):
         """
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
-        """What LAMMPS needs for a body without a film, as `Potential.files`; it keeps its energies
-        at every scale.
-        """
+        """What LAMMPS needs for a body without a film; it keeps its energies at every scale."""
         lines = [
             f"pair_style hybrid/overlay {' '.join(self.styles)}",
             *self.commands(0),

@@ -1,5 +1,4 @@
-"""How the body below changes the hardness of a film, H = H_base + (H_film - H_base) / (1 + k
-(L/t)^m), fitted to runs.
+"""Hardness of a film on a body, H = H_base + (H_film - H_base) / (1 + k (L/t)^m), from runs.
 
 L is the contact length and t the thickness of the film. Runs of oxide throughout are films of
 infinite thickness, runs of the base by itself films of none. Beside it stand the two laws that know
@@ -33,29 +32,34 @@ from atomistic.hardness.size_effect import (
 
 @dataclass(frozen=True)
 class FilmFit:
-    """How the law of films is fitted.
-
-    Attributes
-    ----------
-    bond : standard deviation of ln k by the assumed bonds of film and metal: films with bonds half
-        and 1.5 times as
-        deep have stresses that differ by 4 % with a scatter of 10 % (runs of scene films, commit
-        9151035b), seven times as much in k.
-    bin_nm : of contact length: a run has one mean stress in each.
-    least_points, least_thicknesses : mean stresses of films, and their thicknesses.
-    trials, draws : values drawn from the prior, and how many of them are kept by their likelihood.
-    negligible : likelihood over the largest that need not be drawn again.
-    prior : ranges of H_film, H_base, k, m.
-    """
+    """How the law of films is fitted."""
 
     bond: float = 0.5
+    """Standard deviation of ln k by the assumed bonds of film and metal.
+
+    Films with bonds half and 1.5 times as deep have stresses that differ by 4 % with a scatter of
+    10 % (runs of scene films, commit 9151035b), seven times as much in k."""
+
     bin_nm: float = 0.5
+    """Of contact length: a run has one mean stress in each."""
+
     least_points: int = 3
+    """Mean stresses of films."""
+
     least_thicknesses: int = 2
+    """Of films."""
+
     trials: int = 200_000
+    """Values drawn from the prior."""
+
     draws: int = 2000
+    """Values of these that their likelihood leaves."""
+
     negligible: float = 1e-4
+    """Likelihood over the largest that need not be drawn again."""
+
     prior: tuple[tuple[float, float], ...] = ((2, 20), (0.5, 100), (1e-3, 10), (0.5, 4))
+    """Ranges of H_film, H_base, k, m."""
 
 
 FILM_FIT = FilmFit()
@@ -63,8 +67,7 @@ LawOfHardness = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 class FilmPoints(NamedTuple):
-    """Mean stress of the contact at its length, by seed and thickness (0: base by itself, inf:
-    oxide throughout).
+    """Mean stress of contacts at a length, by seed and thickness (0: base, inf: oxide alone).
 
     Attributes
     ----------
@@ -76,9 +79,9 @@ class FilmPoints(NamedTuple):
     length_nm: np.ndarray
     stress_GPa: np.ndarray
 
-    def take(self, kept: np.ndarray) -> "FilmPoints":
+    def take(self, chosen: np.ndarray) -> "FilmPoints":
         """Some of the points."""
-        return FilmPoints(*(column[kept] for column in self))
+        return FilmPoints(*(column[chosen] for column in self))
 
     @property
     def film(self) -> np.ndarray:
@@ -110,25 +113,23 @@ def points_of(
         if point["sound"] == "True" and float(point["energy_scale"]) == 1.0:
             thickness = float(point["film_nm"]) if point["film_nm"] else np.inf
             stresses = mean_stresses(curves[point["run"]], float(point["wavelength_nm"]))
-            rows += [(float(point["seed"]), thickness, *of) for of in stresses]
+            rows += [(float(point["seed"]), thickness, *mean) for mean in stresses]
     return FilmPoints(*np.array(rows).reshape(-1, 4).T)
 
 
 def mean_stresses(
     curve: Sequence[Mapping[str, float]], wavelength_nm: float
 ) -> list[tuple[float, float]]:
-    """Mean contact length (nm) and stress (GPa) in every bin of length, while the contact is
-    judged.
-    """
-    length, stress = (
-        np.array([row[f"contact_{key}"] for row in curve]) for key in ("length_nm", "stress_GPa")
-    )
+    """Mean contact length (nm) and stress (GPa) per bin of length, while it is judged."""
+    length = np.array([row["contact_length_nm"] for row in curve])
+    stress = np.array([row["contact_stress_GPa"] for row in curve])
     widest = RULES.max_area_fraction**0.5 * wavelength_nm
     means = []
     for low in np.arange(RULES.min_length_nm, widest, FILM_FIT.bin_nm):
-        here = (length >= low) & (length < min(low + FILM_FIT.bin_nm, widest)) & (stress > 0)
-        if here.any():
-            means.append((float(np.mean(length[here])), float(np.mean(stress[here]))))
+        end = min(low + FILM_FIT.bin_nm, widest)
+        inside = (length >= low) & (length < end) & (stress > 0)
+        if inside.any():
+            means.append((float(np.mean(length[inside])), float(np.mean(stress[inside]))))
     return means
 
 
@@ -190,7 +191,8 @@ def fit(name: str, points: FilmPoints) -> np.ndarray:
         foretold = law(np.exp(logs), points.length_nm, points.thickness_nm)
         return np.log(foretold / points.stress_GPa)
 
-    solution = least_squares(misfit, np.log(start), bounds=(np.log(1e-3), np.log(50.0)))
+    bounds = (np.log(1e-3), np.log(50.0))
+    solution = least_squares(misfit, np.log(start), bounds=bounds)
     if not solution.success:
         raise InputError(
             f"hardness: the law {name} of films does not settle in {solution.nfev} steps; give more"
@@ -200,14 +202,13 @@ def fit(name: str, points: FilmPoints) -> np.ndarray:
 
 
 def left_out(name: str, points: FilmPoints) -> float:
-    """Root mean square error of a law, of ln H, at the films of a thickness that its fit had not,
-    one at a time.
+    """Root mean square error of ln H of a law at films that its fit had not, one at a time.
 
     The laws without film are fitted to the other films, `film` to oxide and base besides. Seeds are
     averaged."""
 
-    def foretell(others: FilmPoints, at: FilmPoints) -> np.ndarray:
-        return LAWS[name][0](fit(name, others), at.length_nm, at.thickness_nm)
+    def foretell(fitted: FilmPoints, points_left: FilmPoints) -> np.ndarray:
+        return LAWS[name][0](fit(name, fitted), points_left.length_nm, points_left.thickness_nm)
 
     return error_left_out(points, foretell, name == "film")
 
@@ -225,17 +226,16 @@ def error_left_out(
     errors = []
     for thickness in np.unique(points.thickness_nm[points.film]):
         same = points.thickness_nm == thickness
-        at = points.take(same)
-        wrong = np.log(
-            foretell(points.take(~same & (points.film | knows_bodies)), at) / at.stress_GPa
-        )
-        errors += [float(np.mean(wrong[at.bin == one])) for one in np.unique(at.bin)]
+        points_left = points.take(same)
+        predicted = foretell(points.take(~same & (points.film | knows_bodies)), points_left)
+        wrong = np.log(predicted / points_left.stress_GPa)
+        bins = points_left.bin
+        errors += [float(np.mean(wrong[bins == number])) for number in np.unique(bins)]
     return float(np.sqrt(np.mean(np.square(errors))))
 
 
 def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
-    """H_film, H_base, k and m by their likelihood, shape (draws, 4); the prior is flat in the
-    logarithms and in m.
+    """H_film, H_base, k and m by their likelihood, (draws, 4); prior flat in logarithms and m.
 
     The mean misfit of a run is one error, so that N runs of unknown scatter have the likelihood
     S^(-N/2), S the sum of squares (the scatter's own prior is Jeffreys's): seeds are too few for a
@@ -247,25 +247,24 @@ def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
     high = np.array([*np.log(high[:3]), high[3]])
     drawn, weights = _weighed(points, rng.uniform(low, high, (FILM_FIT.trials, 4)))
     counts = drawn[weights > FILM_FIT.negligible]
-    drawn, weights = _weighed(
-        points, rng.uniform(counts.min(axis=0), counts.max(axis=0), drawn.shape)
-    )
-    kept = drawn[rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())]
-    return np.column_stack([np.exp(kept[:, :3]), kept[:, 3]])
+    narrowed = rng.uniform(counts.min(axis=0), counts.max(axis=0), drawn.shape)
+    drawn, weights = _weighed(points, narrowed)
+    picks = rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())
+    chosen = drawn[picks]
+    return np.column_stack([np.exp(chosen[:, :3]), chosen[:, 3]])
 
 
 def _weighed(points: FilmPoints, drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Draws of ln H_film, ln H_base, ln k and m, shape (n, 4), with their likelihoods over the
-    largest.
-    """
-    _, run = np.unique(
-        np.column_stack([points.seed, points.thickness_nm]), axis=0, return_inverse=True
-    )
-    per_run = np.bincount(run.ravel())
+    """Draws of ln H_film, ln H_base, ln k and m, (n, 4), with likelihoods over the largest."""
+    runs = np.column_stack([points.seed, points.thickness_nm])
+    _, run = np.unique(runs, axis=0, return_inverse=True)
+    run = run.ravel()
+    per_run = np.bincount(run)
     values = np.vstack([np.exp(drawn[:, :3].T), drawn[:, 3]])
     misfits = np.zeros((per_run.size, len(drawn)))
-    for of, _, thickness, length, stress in zip(run.ravel(), *points, strict=True):
-        misfits[of] += np.log(film(values, length, thickness) / stress) / per_run[of]
+    for number, _, thickness, length, stress in zip(run, *points, strict=True):
+        misfit = np.log(film(values, length, thickness) / stress)
+        misfits[number] += misfit / per_run[number]
     squares = (misfits**2).sum(axis=0)
     return drawn, (squares / squares.min()) ** (-per_run.size / 2)
 
@@ -294,18 +293,17 @@ def fit_films(
     and in `film` what the runs say of the base, how well each law foretells a thickness that its
     fit had not, and the range of L/t."""
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
-    unsound = [
-        {"run": point["run"], "status": point["status"]}
-        for point in points
-        if point["sound"] != "True"
-    ]
+    unsound = []
+    for point in points:
+        if point["sound"] != "True":
+            unsound.append({"run": point["run"], "status": point["status"]})
     sound = len(points) - len(unsound)
     if sound < FIT_RULES.least_share * len(points):
         reasons.append(
             f"only {sound} of {len(points)} runs are sound (gate {FIT_RULES.least_share:.0%})"
         )
-    of = points_of(points, curves)
-    if few := too_few(of):
+    stresses = points_of(points, curves)
+    if few := too_few(stresses):
         reasons.append(few)
     throughout = [point for point in points if point["sound"] == "True" and not point["film_nm"]]
     slopes = steepness(throughout) if throughout else {}
@@ -326,12 +324,11 @@ def fit_films(
     if few:
         return result
     rng = np.random.default_rng(np.random.SeedSequence([43]))
-    draws = likely(of, rng)
-    shared = rng.normal(size=(2, FILM_FIT.draws)) * [
-        [np.linalg.norm([area_error / 3**0.5, *SYSTEMATIC.values()])],
-        [FILM_FIT.bond],
-    ]
-    draws *= np.exp([shared[0], shared[0], shared[1], 0 * shared[1]]).T
+    draws = likely(stresses, rng)
+    errors = [area_error / 3**0.5, *SYSTEMATIC.values()]
+    scatters = [[np.linalg.norm(errors)], [FILM_FIT.bond]]
+    of_area, of_bond = rng.normal(size=(2, FILM_FIT.draws)) * scatters
+    draws *= np.exp([of_area, of_area, of_bond, 0 * of_bond]).T
     h_film, base, k, m = draws.T
     scales = scales_of(throughout)
     if energies == "measured":
@@ -342,20 +339,17 @@ def fit_films(
         high = scales[-1]
         h_film *= rng.choice(scales, len(h_film))
     result["energies"] = [low, high]
+    with_h_film = {"h_film": spearman(h_film, k)}
+    with_both = {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}
     result["inputs"] = {
         "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
-        "k_film": samples_of(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},
-        "m_film": (
-            samples_of(m, "1")
-            | {"correlation": {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}}
-        ),
+        "k_film": samples_of(k, "1") | {"correlation": with_h_film},
+        "m_film": samples_of(m, "1") | {"correlation": with_both},
     }
+    ratio = stresses.length_over_thickness
     result["film"] = {
         "base_GPa": summary(base),
-        "left_out": {name: left_out(name, of) for name in LAWS},
-        "length_over_thickness": [
-            float(of.length_over_thickness.min()),
-            float(of.length_over_thickness.max()),
-        ],
+        "left_out": {name: left_out(name, stresses) for name in LAWS},
+        "length_over_thickness": [float(ratio.min()), float(ratio.max())],
     }
     return result

@@ -44,10 +44,9 @@ def random_start(
     elements = tuple(formula)
     units = max(1, round(settings.atoms / sum(formula.values())))
     counts = [units * count for count in formula.values()]
-    mass_g = (
-        sum(n * potential.species[ion].mass_u for n, ion in zip(counts, elements, strict=True))
-        / AVOGADRO
-    )
+    masses_u = [potential.species[ion].mass_u for ion in elements]
+    mass_u = sum(n * mass for n, mass in zip(counts, masses_u, strict=True))
+    mass_g = mass_u / AVOGADRO
     edge_A = (mass_g / material.part("oxide_glass").density_g_cm3 * 1e24) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 1]))
     placed = random_places(sum(counts), np.full(3, edge_A), NEAREST_START_A, rng)
@@ -67,8 +66,7 @@ def _formula(material: Material, potential: Potential) -> Mapping[str, int]:
 def write_forcefield(
     workspace: LammpsFolder, potential: ForceField, elements: tuple[str, ...], energy_scale: float
 ) -> None:
-    """Write the tables of a potential and the commands that use them (file `pairs`) into a
-    workspace.
+    """Write a potential's tables and the commands that use them (file `pairs`).
 
     They are written at every start, since LAMMPS executes `pairs`: one that came with a received
     folder must not run.
@@ -79,6 +77,10 @@ def write_forcefield(
     """
     for file, text in potential.files(elements, energy_scale).items():
         (workspace / file).write_text(text, encoding="utf-8")
+
+
+SEGMENT_KEYS = ("ensemble", "from", "to", "steps")
+"""What a segment of `glass.in` has."""
 
 
 def make_glass(
@@ -137,8 +139,7 @@ def run_segments(
     doing: str,
     progress: Progress | None,
 ) -> Atoms:
-    """Carry out the segments of a periodic cell (glass.in), or go on after a kill; deletes the
-    workspace at the end.
+    """Carry out segments of a periodic cell (glass.in), or go on; deletes the workspace at the end.
 
     Parameters
     ----------
@@ -157,6 +158,7 @@ def run_segments(
             progress(step / total, f"{step * timestep_fs / 1000:.0f} ps of {doing}")
 
     if left := segments[done:]:
+        columns = {key: [segment[key] for segment in left] for key in SEGMENT_KEYS}
         variables = {
             "data": "start.data",
             "pairs": "pairs",
@@ -164,10 +166,7 @@ def run_segments(
             "timestep": timestep_fs / 1000,
             "segment": range(done + 1, len(segments) + 1),
             "previous": range(done, len(segments)),
-            **{
-                key: [segment[key] for segment in left]
-                for key in ("ensemble", "from", "to", "steps")
-            },
+            **columns,
         }
         run_lammps("glass.in", workspace, variables, on_step)
     end = load_data(workspace / "glass.data", elements)
@@ -183,14 +182,14 @@ def schedule(settings: GlassSettings, segment_steps: int) -> list[dict]:
 
     melt, end = MELT_K, FINAL_K
     quench_ps = (melt - end) / settings.quench_rate_K_ps
-    parts = max(1, round(steps(quench_ps) / segment_steps))
-    ramp = np.linspace(melt, end, parts + 1).tolist()
+    count = max(1, round(steps(quench_ps) / segment_steps))
+    ramp = np.linspace(melt, end, count + 1).tolist()
     segments = [
         {"ensemble": "nvt", "from": 1.5 * melt, "to": melt, "steps": steps(0.3 * settings.melt_ps)},
         {"ensemble": "nvt", "from": melt, "to": melt, "steps": steps(0.7 * settings.melt_ps)},
     ]
     segments += [
-        {"ensemble": "npt", "from": high, "to": low, "steps": steps(quench_ps / parts)}
+        {"ensemble": "npt", "from": high, "to": low, "steps": steps(quench_ps / count)}
         for high, low in pairwise(ramp)
     ]
     return [
@@ -202,16 +201,14 @@ def schedule(settings: GlassSettings, segment_steps: int) -> list[dict]:
 def density_g_cm3(atoms: Atoms, force: ForceField) -> float:
     """Density of a periodic cell."""
     masses_u = np.array([force.masses_u[element] for element in atoms.elements])
-    return (
-        float(masses_u[atoms.types - 1].sum()) / AVOGADRO / (float(np.prod(atoms.cell_A)) * 1e-24)
-    )
+    mass_g = float(masses_u[atoms.types - 1].sum()) / AVOGADRO
+    return mass_g / (float(np.prod(atoms.cell_A)) * 1e-24)
 
 
 def unlike_neighbours(
     atoms: Atoms, kind: np.ndarray, reach_A: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of atoms of different kinds within a distance, shape (pairs, 2), and their distances
-    (Å).
+    """Pairs of unlike atoms within a distance, shape (pairs, 2), and their distances (Å).
 
     Parameters
     ----------
@@ -226,16 +223,13 @@ def unlike_neighbours(
 
 
 def glass_properties(material: Material, potential: Potential, atoms: Atoms) -> dict:
-    """Density, coordination and bond length of a glass, with the gate that compares them to its
-    material file.
-    """
+    """Density, coordination, bond length of a glass, and the gate of its material file."""
     reference: OxideGlass = material.part("oxide_glass")
     formula = material.formula_text
     sources = "; ".join(material.sources[name] for name in reference.sources)
     density = density_g_cm3(atoms, potential)
-    is_cation = np.isin(
-        atoms.types, [atoms.elements.index(ion) + 1 for ion in cations(material, potential)]
-    )
+    ions = [atoms.elements.index(ion) + 1 for ion in cations(material, potential)]
+    is_cation = np.isin(atoms.types, ions)
     _, r = unlike_neighbours(atoms, is_cation, SEARCHED_A)
     edges = np.arange(SHORTEST_BOND_A, SEARCHED_A, 0.02)
     middle = 0.5 * (edges[1:] + edges[:-1])
@@ -248,11 +242,12 @@ def glass_properties(material: Material, potential: Potential, atoms: Atoms) -> 
         "bond_A": (bond, reference.bond_range_A),
         "cation_coordination": (coordination, reference.coordination_range),
     }
-    reasons = [
-        f"{formula} glass: {name} {value:.3g} outside {low:g}..{high:g} ({sources})"
-        for name, (value, (low, high)) in checks.items()
-        if not low <= value <= high
-    ]
+    reasons = []
+    for name, (value, (low, high)) in checks.items():
+        if not low <= value <= high:
+            reasons.append(
+                f"{formula} glass: {name} {value:.3g} outside {low:g}..{high:g} ({sources})"
+            )
     return {
         "material": formula,
         "atoms": len(atoms),

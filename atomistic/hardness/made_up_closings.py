@@ -1,6 +1,4 @@
-"""Made-up curves and witnesses of closings, of which the hardness is known: for hard cases and
-tests.
-"""
+"""Made-up curves and witnesses of closings of known hardness, for hard cases and tests."""
 
 from collections.abc import Callable
 from typing import Any
@@ -34,19 +32,20 @@ def curve(
     temperature : K; above 300 it rises by 100.
     drift : of the energy between rows, meV per atom.
     """
-    length = contact_length_nm() if length is None else length
-    return [
-        {
-            "time_ps": 0.5 * (k + 1),
-            "displacement_nm": float(TRAVEL_NM[k]),
-            "contact_length_nm": float(length[k]),
-            "contact_area_nm2": float(length[k] ** 2),
-            "contact_stress_GPa": float(stress(length[k])),
-            "temperature_K": temperature + (100.0 * k / len(TRAVEL_NM) if temperature > 300 else 0),
-            "energy_drift_meV_per_atom": drift * k,
-        }
-        for k in range(len(TRAVEL_NM))
-    ]
+    if length is None:
+        length = contact_length_nm()
+    rows = []
+    for k in range(len(TRAVEL_NM)):
+        row = {"time_ps": 0.5 * (k + 1), "displacement_nm": float(TRAVEL_NM[k])}
+        row["contact_length_nm"] = float(length[k])
+        row["contact_area_nm2"] = float(length[k] ** 2)
+        row["contact_stress_GPa"] = float(stress(length[k]))
+        row["temperature_K"] = temperature
+        if temperature > 300:
+            row["temperature_K"] += 100.0 * k / len(TRAVEL_NM)
+        row["energy_drift_meV_per_atom"] = drift * k
+        rows.append(row)
+    return rows
 
 
 def witness(
@@ -64,14 +63,13 @@ def witness(
     rows = []
     for k in range(1, 12):
         travel = 0.1 * k
-        new = background if travel < onset else background + after
-        rows.append(
-            {
-                "displacement_nm": travel,
-                "new_exchanges": 0 if k == 1 else new,
-                "lowering_nm": lowering if travel >= onset else 0.0,
-            }
-        )
+        yields = travel >= onset
+        new = background + after if yields else background
+        if k == 1:
+            new = 0
+        row = {"displacement_nm": travel, "new_exchanges": new}
+        row["lowering_nm"] = lowering if yields else 0.0
+        rows.append(row)
     return rows
 
 

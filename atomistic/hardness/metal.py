@@ -1,5 +1,4 @@
-"""A metal below an oxide film: its embedded-atom potential for LAMMPS, and dense bodies of many
-grains.
+"""A metal below an oxide film: its embedded-atom potential, and dense bodies of grains.
 
 The functions are those of X. W. Zhou, R. A. Johnson and H. N. G. Wadley, Phys. Rev. B 69, 144113
 (2004)."""
@@ -23,33 +22,40 @@ from atomistic.materials import Eam
 
 @dataclass(frozen=True)
 class MetalNumerics:
-    """How the potential is tabulated and a body of grains is made.
-
-    Attributes
-    ----------
-    points, cutoff_A : of the tables; all functions of titanium are below 2e-6 eV at 7 Å; at the
-        authors' 6.56 Å lies a
-        shell of neighbours.
-    most_density : end of the table of embedding, over the density of the crystal.
-    too_near : of the nearest distance: of two atoms of different grains that are nearer one is left
-        out.
-    anneal_K, anneal_ps, final_K, timestep_fs : of the anneal.
-    max_strain : of the dense body, brought to the width of the asperity.
-    annealed_density : of grains after the anneal, over the crystal at 0 K (study `hardness.metal`).
-    widenings : steps in which the number of atoms follows the width, to 0.1 %.
-    """
+    """How the potential is tabulated and a body of grains is made."""
 
     points: int = 5000
+    """Of a table."""
+
     cutoff_A: float = 7.0
+    """Titanium's functions are below 2e-6 eV here; the authors' 6.56 Å is a shell of neighbours."""
+
     most_density: float = 4.0
+    """End of the table of embedding, over the density of the crystal."""
+
     too_near: float = 0.75
+    """Of the nearest distance: of two atoms of different grains that are nearer one is left out."""
+
     anneal_K: float = 900.0
+    """Of the anneal."""
+
     anneal_ps: float = 10.0
+    """Of the anneal, and as long of the cooling after it."""
+
     final_K: float = 300.0
+    """After the cooling."""
+
     timestep_fs: float = 3.0
+    """Of anneal, cooling and rest."""
+
     max_strain: float = 0.01
+    """Of the dense body, brought to the width of the asperity."""
+
     annealed_density: float = 0.972
+    """Of grains after the anneal, over the crystal at 0 K (study `hardness.metal`)."""
+
     widenings: int = 3
+    """Steps in which the number of atoms follows the width, to 0.1 %."""
 
 
 METAL = MetalNumerics()
@@ -61,7 +67,8 @@ def pair_energy(eam: Eam, r: np.ndarray) -> np.ndarray:
     """Energy of a pair (eV) at a distance (Å)."""
     x = r / eam.r_A
     repulsion = eam.A_eV * np.exp(-eam.alpha * (x - 1)) / (1 + (x - eam.kappa) ** 20)
-    return repulsion - eam.B_eV * np.exp(-eam.beta * (x - 1)) / (1 + (x - eam.lambda_) ** 20)
+    attraction = eam.B_eV * np.exp(-eam.beta * (x - 1)) / (1 + (x - eam.lambda_) ** 20)
+    return repulsion - attraction
 
 
 def electron_density(eam: Eam, r: np.ndarray) -> np.ndarray:
@@ -76,9 +83,8 @@ def embedding_energy(eam: Eam, density: np.ndarray) -> np.ndarray:
     middle = np.polyval(eam.F_middle_eV[::-1], density / eam.rho - 1)
     power = np.maximum(density / eam.rho, 1e-9) ** eam.eta
     outer = eam.F_outer_eV * (1 - np.log(power)) * power
-    return np.where(
-        density < 0.85 * eam.rho, inner, np.where(density < 1.15 * eam.rho, middle, outer)
-    )
+    beyond_inner = np.where(density < 1.15 * eam.rho, middle, outer)
+    return np.where(density < 0.85 * eam.rho, inner, beyond_inner)
 
 
 @dataclass(frozen=True)
@@ -128,8 +134,7 @@ class Metal(Base):
     def make(
         self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None
     ) -> Atoms:
-        """A cube of grains as wide as the asperity, annealed at zero pressure and cooled to 300 K
-        in the same time.
+        """A cube of grains as wide as the asperity, annealed at zero pressure, cooled to 300 K.
 
         Grain boundaries are cut too wide and close in the anneal, so that the cube starts wider
         than it comes out.
@@ -171,14 +176,14 @@ def crystal(metal: Metal, repeats: tuple[int, int, int]) -> Atoms:
     """A hexagonal crystal with its axis upright, in cells of a, a sqrt(3) and c."""
     a, c = metal.eam.lattice_A
     cell = np.array([a, a * np.sqrt(3), c])
-    offsets = np.stack(np.meshgrid(*map(np.arange, repeats), indexing="ij"), axis=-1).reshape(-1, 3)
+    numbers = np.meshgrid(*map(np.arange, repeats), indexing="ij")
+    offsets = np.stack(numbers, axis=-1).reshape(-1, 3)
     positions = (offsets[:, None] + PLACES).reshape(-1, 3) * cell
     return Atoms(metal.elements, np.ones(len(positions), int), positions, cell * repeats)
 
 
 def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms:
-    """A cube of grains of random places and orientations (Voronoi cells); dense only after
-    `annealed`.
+    """A cube of grains of random place and orientation (Voronoi); dense after `annealed`.
 
     Parameters
     ----------
@@ -187,35 +192,38 @@ def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms
     rng = np.random.default_rng(np.random.SeedSequence([seed, 41]))
     grains = max(1, round(edge_A**3 / (np.pi / 6 * grain_A**3)))
     centres = rng.uniform(0, edge_A, (grains, 3))
-    images = (
-        np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3) * edge_A
-    )
+    neighbours = np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij")
+    images = np.stack(neighbours, axis=-1).reshape(-1, 3) * edge_A
     nearest = KDTree((centres[:, None] + images).reshape(-1, 3))
     reach = min(3 * grain_A, 0.9 * edge_A)  # of a grain from its centre
-    cells = np.ceil(2 * reach / crystal(metal, (1, 1, 1)).cell_A).astype(int)
-    one = crystal(metal, (int(cells[0]), int(cells[1]), int(cells[2])))
+    cells_x, cells_y, cells_z = np.ceil(2 * reach / crystal(metal, (1, 1, 1)).cell_A).astype(int)
+    grain = crystal(metal, (int(cells_x), int(cells_y), int(cells_z)))
     grown = []
     for k, centre in enumerate(centres):
         turn = Rotation.random(rng=rng)
-        places = turn.apply(one.positions_A - one.cell_A / 2 + rng.uniform(-1, 1, 3)) + centre
-        grown.append(places[nearest.query(places)[1] == k * len(images) + len(images) // 2])
+        shift = rng.uniform(-1, 1, 3)
+        places = turn.apply(grain.positions_A - grain.cell_A / 2 + shift) + centre
+        own_image = k * len(images) + len(images) // 2
+        grown.append(places[nearest.query(places)[1] == own_image])
     positions = np.mod(np.concatenate(grown), edge_A)
     near = KDTree(positions, boxsize=edge_A).query_pairs(METAL.too_near * metal.eam.r_A)
     positions = np.delete(positions, sorted({max(pair) for pair in near}), axis=0)
-    return Atoms(metal.elements, np.ones(len(positions), int), positions, np.full(3, edge_A))
+    types = np.ones(len(positions), int)
+    return Atoms(metal.elements, types, positions, np.full(3, edge_A))
 
 
 def _segments() -> list[dict[str, Any]]:
     """Anneal, cooling and rest, as `run_segments` takes them."""
     steps = round(1000 * METAL.anneal_ps / METAL.timestep_fs)
-    parts = [
+    stages = [
         (METAL.anneal_K, METAL.anneal_K, steps),
         (METAL.anneal_K, METAL.final_K, steps),
         (METAL.final_K, METAL.final_K, steps // 3),
     ]
-    return [
-        {"ensemble": "npt", "from": start, "to": end, "steps": count} for start, end, count in parts
-    ]
+    segments = []
+    for start, end, count in stages:
+        segments.append({"ensemble": "npt", "from": start, "to": end, "steps": count})
+    return segments
 
 
 def _wide_enough(metal: Metal, edge_A: float, seed: int) -> Atoms:

@@ -20,9 +20,7 @@ def free_motion(
     steps: int,
     energy_scale: float = 1.0,
 ) -> tuple[np.ndarray, Atoms]:
-    """Run at constant energy; rows (step, potential, total energy in eV), and the atoms at the
-    end.
-    """
+    """Run at constant energy; rows (step, potential, total energy in eV), atoms at the end."""
     shutil.rmtree(work, ignore_errors=True)
     workspace = LammpsFolder(work, {}, "nve.in")
     write_forcefield(workspace, potential, atoms.elements, energy_scale)

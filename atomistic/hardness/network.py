@@ -1,5 +1,4 @@
-"""A covalent glass below an oxide film: silicon nitride by its Tersoff potential, melted and
-quenched.
+"""A covalent glass below an oxide film: silicon nitride by Tersoff, melted and quenched.
 
 The schedule is that of the elastic stage (`atomistic/elastic/networks.py`), in cells as wide as
 those of the oxide."""
@@ -72,8 +71,7 @@ class Network(Base):
     def make(
         self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None
     ) -> Atoms:
-        """A cell as wide as one of the oxide's glass, its height at zero pressure and 300 K;
-        resumes in `work`.
+        """A cell as wide as the oxide's glass, at zero pressure and 300 K; resumes in `work`.
 
         Raises
         ------
@@ -106,40 +104,33 @@ class Network(Base):
 
     def _random_start(self, edge_A: float, seed: int) -> Atoms:
         formula = self.material.formula
-        units = max(1, round((edge_A / 10) ** 3 * self.atoms_per_nm3 / sum(formula.values())))
+        formulas = (edge_A / 10) ** 3 * self.atoms_per_nm3 / sum(formula.values())
+        units = max(1, round(formulas))
         counts = [units * count for count in formula.values()]
         rng = np.random.default_rng(np.random.SeedSequence([seed, 47]))
         cell = np.full(3, edge_A)
         places = random_places(sum(counts), cell, NEAREST_START_A, rng)
-        return Atoms(
-            self.elements,
-            rng.permutation(np.repeat(np.arange(1, len(counts) + 1), counts)),
-            places,
-            cell,
-        )
+        types = rng.permutation(np.repeat(np.arange(1, len(counts) + 1), counts))
+        return Atoms(self.elements, types, places, cell)
 
     def properties(self, glass: Atoms) -> dict[str, float]:
-        """Density (g/cm3), median bond of unlike atoms (Å), and the mean coordination of each
-        element by them.
-        """
+        """Density (g/cm3), median unlike bond (Å), and mean coordination of each element."""
         bonds, lengths_A = unlike_neighbours(glass, glass.types, self.network.cutoff_A)
         neighbours = np.bincount(bonds.ravel(), minlength=len(glass))
-        return {
+        measured = {
             "density_g_cm3": density_g_cm3(glass, self),
             "bond_A": float(np.median(lengths_A)),
-            **{
-                f"coordination_{element}": float(neighbours[glass.types == kind].mean())
-                for kind, element in enumerate(glass.elements, 1)
-            },
         }
+        for kind, element in enumerate(glass.elements, 1):
+            measured[f"coordination_{element}"] = float(neighbours[glass.types == kind].mean())
+        return measured
 
     def faults(self, glass: Atoms) -> list[str]:
         """What of a glass is not as its material's file says."""
         measured = self.properties(glass)
         accepted = {"density_g_cm3": self.network.density_g_cm3}
-        accepted |= {
-            f"coordination_{element}": of for element, of in self.network.coordination.items()
-        }
+        for element, limits in self.network.coordination.items():
+            accepted[f"coordination_{element}"] = limits
         return [
             f"{name} {measured[name]:.3g} outside {low:g} to {high:g}"
             for name, (low, high) in accepted.items()
@@ -148,23 +139,17 @@ class Network(Base):
 
 
 def _segments() -> list[dict[str, Any]]:
-    """Melt and quench, as `run_segments` takes them: at constant volume, then the height is
-    free.
-    """
+    """Melt and quench for `run_segments`: at constant volume, then the height is free."""
     melt, free, end = QUENCH.melt_K, QUENCH.free_below_K, QUENCH.final_K
-    parts = [
+    stages = [
         ("nvt", 1.5 * melt, melt, 0.2 * QUENCH.melt_ps),
         ("nvt", melt, melt, 0.8 * QUENCH.melt_ps),
         ("nvt", melt, free, (melt - free) / QUENCH.rate_K_ps),
         ("npt_height", free, end, (free - end) / QUENCH.rate_K_ps),
         ("npt_height", end, end, QUENCH.rest_ps),
     ]
-    return [
-        {
-            "ensemble": ensemble,
-            "from": start,
-            "to": end,
-            "steps": round(1000 * duration_ps / QUENCH.timestep_fs),
-        }
-        for ensemble, start, end, duration_ps in parts
-    ]
+    segments = []
+    for ensemble, start, end, duration_ps in stages:
+        steps = round(1000 * duration_ps / QUENCH.timestep_fs)
+        segments.append({"ensemble": ensemble, "from": start, "to": end, "steps": steps})
+    return segments

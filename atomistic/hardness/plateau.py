@@ -16,53 +16,61 @@ Rows = Sequence[Mapping[str, float]]
 
 @dataclass(frozen=True)
 class Rules:
-    """What counts as yield, when a run may end, and which film does not count: its gates are
-    lengths of bonds.
+    """What counts as yield, when a run may end, and which film does not count (lengths of bonds).
 
     The error rates of study `hardness.detection` fix all that is no gate of a film.
-
-    Attributes
-    ----------
-    min_length_nm, max_area_fraction : contact length, and area over cell area, between which stress
-        is judged.
-    min_exchanges, min_lowering_A : changed bonds above the background, and lasting lowering, that
-        witness plasticity.
-    min_points : averages beyond the onset.
-    max_exponent : largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic.
-    stop_interval, stop_points, stop_area_fraction : a run has settled once half the 68 % interval
-        of its plateau is
-        this share of it, with as many averages, on this share of the cell (a larger asperity is to
-        give a larger one).
-    max_drift_meV_atom_ps, max_warming_K : largest drift of the conserved energy, largest rise of
-        temperature.
-    latest_start : of as many parts of the averages beyond the onset, the first is the last to hold
-        the plateau's start.
-    clearly_more : times the independent averages.
-    same_shape : contact length over wavelength: runs of one shape are alike there, whatever their
-        size.
-    least_covered : share of the base below a film.
-    largest_gap_A : between film and base, less in 95 % of the columns of atoms: twice a bond of
-        metal and oxygen.
-    largest_slip_A : of a film over its base below the contact, at the end: one bond.
     """
 
     min_length_nm: float = 2.0
+    """Contact length from which stress is judged."""
+
     max_area_fraction: float = 0.5
+    """Contact area over cell area up to which stress is judged."""
+
     min_exchanges: int = 5
+    """Changed bonds above the background that witness plasticity."""
+
     min_lowering_A: float = 0.5
+    """Lasting lowering that witnesses plasticity."""
+
     min_points: int = 4
+    """Averages beyond the onset."""
+
     max_exponent: float = 0.35
+    """Largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic."""
+
     stop_interval: float = 0.04
+    """A run has settled once half the 68 % interval of its plateau is this share of it."""
+
     stop_points: int = 12
+    """With as many averages."""
+
     stop_area_fraction: float = 0.25
+    """On this share of the cell: a larger asperity is to give a larger one."""
+
     max_drift_meV_atom_ps: float = 0.2
+    """Largest drift of the conserved energy."""
+
     max_warming_K: float = 150.0
+    """Largest rise of temperature."""
+
     latest_start: int = 3
+    """Of as many parts of the averages, the first is the last to hold the plateau's start."""
+
     clearly_more: float = 1.5
+    """Times the independent averages."""
+
     same_shape: tuple[float, float] = (0.5, 0.6)
+    """Contact length over wavelength: runs of one shape are alike, whatever their size."""
+
     least_covered: float = 0.95
+    """Share of the base below a film."""
+
     largest_gap_A: float = 4.2
+    """Between film and base, less in 95 % of columns: twice a bond of metal and oxygen."""
+
     largest_slip_A: float = 2.1
+    """Of a film over its base below the contact, at the end: one bond."""
 
 
 RULES = Rules()
@@ -70,8 +78,7 @@ RULES = Rules()
 
 @dataclass(frozen=True)
 class Hardness:
-    """What a run says about hardness; stresses in GPa, lengths in nm, NaN where there is nothing to
-    say.
+    """What a run says about hardness; GPa and nm, NaN where there is nothing to say.
 
     Attributes
     ----------
@@ -125,8 +132,7 @@ class Onset:
 def plastic_onset(
     witness: Rows, apart_nm: float, rules: Rules = RULES, by_bonds: bool = True
 ) -> Onset:
-    """First witness of plasticity among the relaxed snapshots; the bodies are apart for the first
-    `apart_nm` of travel.
+    """First witness of plasticity among relaxed snapshots; apart for `apart_nm` of travel.
 
     The top must stay `min_lowering_A` lower than in the last snapshot before contact, from then on.
     Where a metal lies below this is all (`by_bonds` False): its grain boundaries change neighbours
@@ -154,11 +160,9 @@ def plastic_onset(
     exposure = float(np.sum(travel[before]))
     background = float(np.sum(new[before])) / exposure
     expected = background * travel
-    limit = (
-        expected + np.maximum(rules.min_exchanges, 2 * np.sqrt(expected))
-        if by_bonds
-        else np.zeros(len(new))
-    )
+    limit = np.zeros(len(new))
+    if by_bonds:
+        limit = expected + np.maximum(rules.min_exchanges, 2 * np.sqrt(expected))
     lowering -= lowering[apart][-1]
     lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= rules.min_lowering_A
     onsets = np.flatnonzero((new >= limit) & lasting & ~apart)
@@ -239,25 +243,24 @@ def find_hardness(
     start = onset.displacement_nm
     if start is None:
         return Hardness("no_yield", **measured)
-    beyond = window & (travel >= start)
+    yielded = window & (travel >= start)
     last = witness[-1]
+    after = [row["new_exchanges"] for row in witness if row["displacement_nm"] >= start]
     measured |= {
         "onset_displacement_nm": start,
         "onset_length_nm": float(np.interp(start, travel, length)),
         "exchanges_at_onset": onset.exchanges,
         "onset_p_value": onset.p_value,
-        "exchanges_after": float(
-            np.mean([row["new_exchanges"] for row in witness if row["displacement_nm"] >= start])
-        ),
+        "exchanges_after": float(np.mean(after)),
         "lowering_nm": float(last["lowering_nm"]),
     }
-    if np.sum(beyond) < rules.min_points:
+    if np.sum(yielded) < rules.min_points:
         return Hardness(
             "rejected: too few averages between onset and the end of the window", **measured
         )
-    first = 0 if on_base else settled(stress[beyond])
-    plateau = stress[beyond][first:]
-    lengths = length[beyond][first:]
+    first = 0 if on_base else settled(stress[yielded])
+    plateau = stress[yielded][first:]
+    lengths = length[yielded][first:]
     exponent = _exponent(lengths, plateau)
     low, high = interval_of_mean(plateau)
     measured |= {
@@ -294,8 +297,7 @@ def may_stop(
     rules: Rules = RULES,
     on_base: bool = False,
 ) -> bool:
-    """Is a run complete: has the contact left its window, or is the interval of its plateau narrow
-    enough?
+    """Is a run complete: did it leave its window, or is its plateau's interval narrow enough?
 
     Parameters
     ----------
@@ -332,14 +334,11 @@ def point(curve: Rows, witness: Rows, run: Mapping[str, Any], potential: str) ->
     )
     if run["film_nm"] and (fault := film_fault(run)):
         hardness = replace(hardness, status=f"rejected: {fault}", sound=False)
-    return {
-        "run": run["run"],
-        "potential": potential,
-        **{key: run[key] for key in copied},
-        "atom_steps": run["atoms"] * run["steps"],
-        "lammps_cpu_s": run["lammps_cpu_s"],
-        **asdict(hardness),
-    }
+    row = {"run": run["run"], "potential": potential}
+    row |= {key: run[key] for key in copied}
+    row["atom_steps"] = run["atoms"] * run["steps"]
+    row["lammps_cpu_s"] = run["lammps_cpu_s"]
+    return row | asdict(hardness)
 
 
 def film_fault(summary: Mapping[str, Any], rules: Rules = RULES) -> str | None:
@@ -375,8 +374,7 @@ def _exponent(length: np.ndarray, stress: np.ndarray) -> float:
 
 
 def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
-    """68 % interval of the mean of correlated values: Student's t with the effective number of a
-    first-order process.
+    """68 % interval of the mean of correlated values: Student's t, effective number (AR(1)).
 
     The correlation of neighbours is corrected for its bias in short series (Kendall 1954).  How
     often the interval holds the truth, also after stopping on its width, is tested (study
@@ -386,8 +384,10 @@ def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
     from scipy.special import stdtrit
 
     effective = _effective_number(values)
-    half = float(stdtrit(effective - 1, 0.84)) * float(np.std(values, ddof=1)) / np.sqrt(effective)
-    return float(np.mean(values)) - half, float(np.mean(values)) + half
+    student = float(stdtrit(effective - 1, 0.84))
+    half = student * float(np.std(values, ddof=1)) / np.sqrt(effective)
+    mean = float(np.mean(values))
+    return mean - half, mean + half
 
 
 def settled(stress: np.ndarray) -> int:
@@ -401,7 +401,9 @@ def settled(stress: np.ndarray) -> int:
         _effective_number(stress[start:]) for start in range(len(stress) // RULES.latest_start + 1)
     ]
     best = int(np.argmax(independent))
-    return best if independent[best] > RULES.clearly_more * independent[0] else 0
+    if independent[best] <= RULES.clearly_more * independent[0]:
+        return 0
+    return best
 
 
 def _effective_number(values: np.ndarray) -> float:

@@ -60,9 +60,7 @@ def plan_closing(closing: ClosingSettings, run: ClosingRun, protocol: Protocol =
 def base_thickness_nm(
     closing: ClosingSettings, wavelength_nm: float, protocol: Protocol = PROTOCOL
 ) -> float:
-    """Thickness of the base under an asperity, so that the rigid bottom is not felt by the largest
-    contact.
-    """
+    """Thickness of the base, so that the largest contact does not feel the rigid bottom."""
     largest_nm = np.sqrt(RULES.max_area_fraction) * wavelength_nm
     return max(closing.base_nm, protocol.base_over_contact * float(largest_nm))
 
@@ -113,9 +111,7 @@ def prepare_body(
 
 
 def lammps_seed(*entropy: int) -> int:
-    """A seed that LAMMPS accepts; neighbouring ones (it adds the segment's number) stay
-    distinct.
-    """
+    """A seed that LAMMPS accepts; neighbouring ones (it adds the segment's number) differ."""
     return 1000 * (1 + int(np.random.SeedSequence(entropy).generate_state(1)[0] % 800_000))
 
 

@@ -31,9 +31,7 @@ class PressedCell:
 
 @dataclass(frozen=True)
 class OxideBond:
-    """What joins cation and anion, by their types in a body; `length_A` is the first minimum of
-    their g(r).
-    """
+    """What joins cation and anion, by type; `length_A` is the first minimum of their g(r)."""
 
     cation: int
     anion: int
@@ -58,9 +56,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class Relaxed:
-    """A snapshot relaxed without its counterface, with its bonds shorter than 0.9 and 1.2 of
-    `OxideBond.length_A`.
-    """
+    """A snapshot relaxed without its counterface, with bonds below 0.9 and 1.2 `length_A`."""
 
     step: int
     frame: Frame
@@ -98,9 +94,7 @@ class Readout:
         self._relaxed: dict[int, Relaxed] = {}
 
     def curve(self, segments: range) -> Rows:
-        """Averages over some samples of force, contact area and temperature, with the energy
-        balance.
-        """
+        """Averages over samples of force, contact area and temperature, with the energy balance."""
         samples: dict[int, Sample] = {}
         for n in (
             segments
@@ -108,8 +102,8 @@ class Readout:
             if n not in self._samples:
                 self._samples[n] = load_samples(self._workspace, n, self.area, self._cell)
             samples = self._samples[n] | samples
-        ends = {n: self._end(n) for n in (segments[0] - 1, *segments)}
-        drift = energy_drift(ends, self._segment_steps, samples)
+        balances = {n: self._end(n) for n in (segments[0] - 1, *segments)}
+        drift = energy_drift(balances, self._segment_steps, samples)
         return curve_rows(samples, drift, self._timestep_ps, self._per_average, self._cell)
 
     def _end(self, segment: int) -> np.ndarray:
@@ -152,7 +146,7 @@ def load_samples(
 
 
 def energy_drift(
-    ends: Mapping[int, np.ndarray], segment_steps: int, samples: Mapping[int, Sample]
+    balances: Mapping[int, np.ndarray], segment_steps: int, samples: Mapping[int, Sample]
 ) -> dict[int, float]:
     """What the energy balance gained until the end of each segment, eV by step.
 
@@ -165,23 +159,21 @@ def energy_drift(
         where the balance
         begins.
     """
-    numbers = sorted(ends)
-    place, energy, heat = np.array([ends[n] for n in numbers]).T
+    numbers = sorted(balances)
+    place, energy, heat = np.array([balances[n] for n in numbers]).T
     steps = sorted(samples)
     position, drive, _ = np.array([samples[step].averages for step in steps]).T
     # between the samples by trapezoids, since the force rises; beyond the last before an end it is
     # held
-    between = np.concatenate(
-        [[0.0], np.cumsum(0.5 * (drive[1:] + drive[:-1]) * (position[:-1] - position[1:]))]
-    )
+    steps_of_work = 0.5 * (drive[1:] + drive[:-1]) * (position[:-1] - position[1:])
+    between = np.concatenate([[0.0], np.cumsum(steps_of_work)])
     last = np.searchsorted(steps, segment_steps * np.array(numbers[1:]), side="right") - 1
-    work = (
-        drive[0] * (place[0] - position[0])
-        + between[last]
-        + drive[last] * (position[last] - place[1:])
-    )
+    before = drive[0] * (place[0] - position[0])
+    after = drive[last] * (position[last] - place[1:])
+    work = before + between[last] + after
     gained = energy[1:] - energy[0] + np.cumsum(heat[1:]) - work
-    return dict(zip([segment_steps * n for n in numbers], [0.0, *gained.tolist()], strict=True))
+    drift = [0.0, *gained.tolist()]
+    return dict(zip([segment_steps * n for n in numbers], drift, strict=True))
 
 
 def curve_rows(
@@ -202,25 +194,28 @@ def curve_rows(
     gained = np.interp(steps, list(drift), list(drift.values()))
     curve = []
     for k in range(0, len(steps) - per_average + 1, per_average):
-        part = slice(k, k + per_average)
+        window = slice(k, k + per_average)
         averaged = [samples[step] for step in steps[k : k + per_average]]
         contact = float(np.mean([sample.area_A2 for sample in averaged]))
-        push = float(np.mean(force[part]))
+        push = float(np.mean(force[window]))
+        step = steps[k + per_average - 1]
+        contact_stress = float("nan")
+        if contact > 0:
+            contact_stress = push / contact * EV_PER_A3_IN_GPA
+        atoms = [len(sample.touching_A) for sample in averaged]
         curve.append(
             {
-                "step": steps[k + per_average - 1],
-                "time_ps": steps[k + per_average - 1] * timestep_ps,
-                "displacement_nm": float(position[0] - np.mean(position[part])) / 10,
+                "step": step,
+                "time_ps": step * timestep_ps,
+                "displacement_nm": float(position[0] - np.mean(position[window])) / 10,
                 "force_nN": push * EV_PER_A3_IN_GPA / 100,
                 "nominal_stress_GPa": push / cell.wavelength_A**2 * EV_PER_A3_IN_GPA,
                 "contact_area_nm2": contact / 100,
                 "contact_length_nm": float(np.sqrt(contact)) / 10,
-                "contact_stress_GPa": push / contact * EV_PER_A3_IN_GPA
-                if contact > 0
-                else float("nan"),
-                "temperature_K": float(np.mean(temperature[part])),
-                "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[part])) / cell.atoms,
-                "contact_atoms": float(np.mean([len(sample.touching_A) for sample in averaged])),
+                "contact_stress_GPa": contact_stress,
+                "temperature_K": float(np.mean(temperature[window])),
+                "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[window])) / cell.atoms,
+                "contact_atoms": float(np.mean(atoms)),
                 "atoms": cell.atoms,
             }
         )
@@ -242,17 +237,20 @@ def witness_rows(
     """
     first = snapshots[0].frame
     held = first[:, 3] < first[:, 3].min() + 0.8 * held_A
-    tops = [_top(s.frame) - np.mean(s.frame[held, 3] - first[held, 3]) for s in snapshots]
-    return [
-        {
-            "step": snapshot.step,
-            "displacement_nm": snapshot.step * timestep_ps * speed_A_ps / 10,
-            "exchanged_bonds": _exchanges(snapshots[0].bonds, snapshot.bonds),
-            "new_exchanges": _exchanges(snapshots[max(0, k - 1)].bonds, snapshot.bonds),
-            "lowering_nm": float(tops[0] - tops[k]) / 10,
-        }
-        for k, snapshot in enumerate(snapshots)
-    ]
+    tops = []
+    for snapshot in snapshots:
+        settled = np.mean(snapshot.frame[held, 3] - first[held, 3])
+        tops.append(_top(snapshot.frame) - settled)
+    bonds = [snapshot.bonds for snapshot in snapshots]
+    rows = []
+    for k, snapshot in enumerate(snapshots):
+        row: dict[str, float] = {"step": snapshot.step}
+        row["displacement_nm"] = snapshot.step * timestep_ps * speed_A_ps / 10
+        row["exchanged_bonds"] = _exchanges(bonds[0], bonds[k])
+        row["new_exchanges"] = _exchanges(bonds[max(0, k - 1)], bonds[k])
+        row["lowering_nm"] = float(tops[0] - tops[k]) / 10
+        rows.append(row)
+    return rows
 
 
 def _exchanges(before: tuple[Bonds, Bonds], after: tuple[Bonds, Bonds]) -> int:
@@ -261,9 +259,7 @@ def _exchanges(before: tuple[Bonds, Bonds], after: tuple[Bonds, Bonds]) -> int:
 
 
 def bonds_of(frame: Frame, bond: OxideBond | None, factor: float, wavelength_A: float) -> Bonds:
-    """Pairs of cation and anion nearer to each other than `factor` times the length of a bond, as
-    rows of the frame.
-    """
+    """Pairs of cation and anion nearer than `factor` bond lengths, as rows of the frame."""
     if bond is None:
         return set()
     box = np.array([wavelength_A, wavelength_A, 0.0])  # 0: not periodic

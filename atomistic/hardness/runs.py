@@ -1,6 +1,4 @@
-"""Which closing runs a scene asks for, and what all of them have in common (imports nothing
-heavy).
-"""
+"""Which closing runs a scene asks for, and what all have in common (imports nothing heavy)."""
 
 from asperity.guards.settings import Settings
 from atomistic.settings import AsperitySettings, HardnessSettings
@@ -16,8 +14,7 @@ class ClosingRun(Settings):
 
 
 class Protocol(Settings):
-    """What all closings have in common, fixed before any hardness was looked at; evidence and tests
-    vary it.
+    """What all closings have in common, fixed before any hardness; evidence and tests vary it.
 
     Attributes
     ----------
@@ -51,9 +48,7 @@ class Protocol(Settings):
     segments_per_snapshot: int = 1
 
     def snapshots(self, segments: int) -> list[int]:
-        """After which of so many segments the body is relaxed: before and after the first, then
-        regularly.
-        """
+        """After which segments the body is relaxed: before and after the first, then regularly."""
         return [0, *range(1, segments + 1, self.segments_per_snapshot)]
 
 
@@ -61,15 +56,12 @@ PROTOCOL = Protocol()
 
 
 def slowed(protocol: Protocol, factor: float) -> Protocol:
-    """The protocol with a shorter time step, for bodies whose bonds vibrate faster than those of
-    the oxide.
-    """
+    """The protocol with a shorter time step, for bodies whose bonds vibrate faster."""
     return protocol.model_copy(update={"timestep_fs": factor * protocol.timestep_fs})
 
 
 def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
-    """Every asperity x seed x energy scale of the settings; films and their base at full energies
-    alone.
+    """Every asperity x seed x energy scale; films and their base at full energies only.
 
     A base keeps its energies, and oxide with halved ones is no harder than titanium: no effect of a
     film would be left."""

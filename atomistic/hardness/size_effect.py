@@ -70,7 +70,7 @@ def fit_size_effect(
     h_macro: Callable[[np.ndarray], np.ndarray],
     energies: Energies = "measured",
     indentation_GPa: tuple[float, float] | None = None,
-    others: Mapping[str, float] = SYSTEMATIC,
+    systematic_errors: Mapping[str, float] = SYSTEMATIC,
 ) -> dict:
     """H' and the hardness of the runs with 68 % intervals, judged whether they may be used.
 
@@ -88,17 +88,17 @@ def fit_size_effect(
     -------
     Content of fit.json (docs/hardness.md).
     """
-    asked = [
-        point for point in points if energies == "scales" or float(point["energy_scale"]) == 1.0
-    ]
-    used = [point for point in asked if point["status"] == "yield"]
+    counted = points
+    if energies != "scales":
+        counted = [point for point in points if float(point["energy_scale"]) == 1.0]
+    used = [point for point in counted if point["status"] == "yield"]
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
-    reasons += _too_few(used, asked)
+    reasons += _too_few(used, counted)
     result: dict = {
         "method": "literature",
         "energies_from": energies,
         "points_used": len(used),
-        "points_total": len(asked),
+        "points_total": len(counted),
         "points_rejected": refused_runs(points),
         "twins": twins(points),
         "free_fit": free_fit(used),
@@ -108,7 +108,7 @@ def fit_size_effect(
     if not used:
         return result
     # the error of the area lies anywhere within that of its calibration: a uniform distribution
-    systematic = {"area": area_error / np.sqrt(3), **others}
+    systematic = {"area": area_error / np.sqrt(3), **systematic_errors}
     slopes = steepness(used)
     if not slopes:
         reasons.append(
@@ -117,8 +117,8 @@ def fit_size_effect(
         )
         return result
     ways = {}
-    for way, (runs, bounds) in energy_ways(points, slopes, indentation_GPa).items():
-        ways[way] = bounds, *hardness_samples(runs, systematic, bounds)
+    for source, (runs, bounds) in energy_ways(points, slopes, indentation_GPa).items():
+        ways[source] = bounds, *hardness_samples(runs, systematic, bounds)
     bounds, length, h_film = ways[energies]
     h_macro_GPa = h_macro(_rng(13).random(FIT_RULES.samples))
     h_prime = (h_film - h_macro_GPa) * np.sqrt(length)
@@ -136,7 +136,7 @@ def fit_size_effect(
         },
         "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
     }
-    result["hardness_GPa"] = {way: summary(drawn) for way, (_, _, drawn) in ways.items()}
+    result["hardness_GPa"] = {source: summary(drawn) for source, (_, _, drawn) in ways.items()}
     result["H_macro_GPa"] = summary(h_macro_GPa)
     result["H_prime_GPa_nm0.5"] = summary(h_prime)
     result["curve"] = band(h_macro_GPa, h_prime)
@@ -149,18 +149,21 @@ def fit_size_effect(
     return result
 
 
-def _too_few(used: Sequence[PointRow], asked: Sequence[PointRow]) -> list[str]:
+def _too_few(used: Sequence[PointRow], counted: Sequence[PointRow]) -> list[str]:
     """Why the defended runs among those asked for are too few; empty where they are enough."""
     reasons = []
     if len(used) < FIT_RULES.least_runs:
         reasons.append(
-            f"{len(used)} of {len(asked)} runs gave a defended hardness, {FIT_RULES.least_runs} are"
+            f"{len(used)} of {len(counted)} runs gave a defended hardness,"
+            f" {FIT_RULES.least_runs} are"
             " needed"
         )
-    elif len(used) < FIT_RULES.least_share * len(asked):
+    elif len(used) < FIT_RULES.least_share * len(counted):
         share = f"gate {FIT_RULES.least_share:.0%}"
-        reasons.append(f"only {len(used)} of {len(asked)} runs gave a defended hardness ({share})")
-    if missing := sorted(set(scales_of(asked)) - set(scales_of(used))):
+        reasons.append(
+            f"only {len(used)} of {len(counted)} runs gave a defended hardness ({share})"
+        )
+    if missing := sorted(set(scales_of(counted)) - set(scales_of(used))):
         reasons.append(
             f"no defended hardness at energy scale {', '.join(f'{scale:g}' for scale in missing)}"
         )
@@ -177,8 +180,7 @@ def refused_runs(points: Sequence[PointRow]) -> list[dict[str, str]]:
 
 
 def twins(points: Sequence[PointRow]) -> list[dict[str, Any]]:
-    """Hardness of runs with scaled energies over that of their twins with full ones, by energy
-    scale.
+    """Hardness of runs with scaled energies over that of their full twins, by energy scale.
 
     A pair has the same asperity and glass. Both of its runs scatter by `RUN_SCATTER`, which makes
     the 68 % interval.
@@ -187,46 +189,40 @@ def twins(points: Sequence[PointRow]) -> list[dict[str, Any]]:
     -------
     `energy_scale`, `pairs`, `full_GPa`, `scaled_GPa` and `ratio` (median, low, high) of each scale
     with a pair."""
-    hardness = {
-        (point["asperity"], point["seed"], float(point["energy_scale"])): float(
-            point["hardness_GPa"]
-        )
-        for point in points
-        if point["status"] == "yield" and not point["film_nm"]
-    }
+    hardness = {}
+    for point in points:
+        if point["status"] == "yield" and not point["film_nm"]:
+            key = (point["asperity"], point["seed"], float(point["energy_scale"]))
+            hardness[key] = float(point["hardness_GPa"])
     rows = []
     for scale in scales_of(points):
         if scale == 1.0:
             continue
-        pairs = [
-            (hardness[asperity, seed, 1.0], scaled)
-            for (asperity, seed, energies), scaled in hardness.items()
-            if energies == scale and (asperity, seed, 1.0) in hardness
-        ]
+        pairs = []
+        for (asperity, seed, energies), scaled in hardness.items():
+            if energies == scale and (asperity, seed, 1.0) in hardness:
+                pairs.append((hardness[asperity, seed, 1.0], scaled))
         if not pairs:
             continue
         full, scaled = np.array(pairs).T
         ratio = float(np.exp(np.mean(np.log(scaled / full))))
         error = np.sqrt(2 / len(pairs)) * RUN_SCATTER
+        low = ratio * np.exp(-error)
+        high = ratio * np.exp(error)
         rows.append(
             {
                 "energy_scale": scale,
                 "pairs": len(pairs),
                 "full_GPa": float(full.mean()),
                 "scaled_GPa": float(scaled.mean()),
-                "ratio": {
-                    "median": ratio,
-                    "low": ratio * np.exp(-error),
-                    "high": ratio * np.exp(error),
-                },
+                "ratio": {"median": ratio, "low": low, "high": high},
             }
         )
     return rows
 
 
 def free_fit(used: Sequence[PointRow]) -> dict[str, Any] | None:
-    """Least squares of both parameters of eq. 4, as the paper fits them, and whether the runs tell
-    both.
+    """Least squares of both parameters of eq. 4 as in the paper; whether runs tell both.
 
     The runs at full energies count alike: they scatter by more than each one's own interval.
 
@@ -248,15 +244,11 @@ def free_fit(used: Sequence[PointRow]) -> dict[str, Any] | None:
     half = errors * student.ppf(FIT_RULES.interval[1], freedom)
     surely_positive = values - errors * student.ppf(FIT_RULES.identified, freedom) > 0
     names = ("H_macro_GPa", "H_prime_GPa_nm0.5")
-    fitted = {
-        name: {"mean": value, "low": value - width, "high": value + width}
-        for name, value, width in zip(names, values.tolist(), half.tolist(), strict=True)
-    }
-    unknown = [
-        name.partition("_GPa")[0]
-        for name, sure in zip(names, surely_positive, strict=True)
-        if not sure
-    ]
+    fitted = {}
+    for name, value, width in zip(names, values.tolist(), half.tolist(), strict=True):
+        fitted[name] = {"mean": value, "low": value - width, "high": value + width}
+    sure_names = zip(names, surely_positive, strict=True)
+    unknown = [name.partition("_GPa")[0] for name, sure in sure_names if not sure]
     verdict = f"{len(full)} runs tell both"
     if unknown:
         verdict = f"{len(full)} runs do not tell {' and '.join(unknown)} from zero"
@@ -268,8 +260,7 @@ def energy_ways(
     slopes: Mapping[str, Sequence[float]],
     indentation_GPa: tuple[float, float] | None,
 ) -> dict[Energies, tuple[list[PointRow], tuple[float, float]]]:
-    """Both ways to bound the energies: the defended runs that count, and the range of the factor on
-    their hardness.
+    """Both ways to bound the energies: the runs that count, and the range of their factor.
 
     The second is left out where no run has scaled energies, the first where none with full ones is
     defended."""
@@ -295,8 +286,7 @@ def energy_bounds(
     scales: Sequence[float],
     indentation_GPa: tuple[float, float] | None,
 ) -> tuple[float, float]:
-    """Factors on the energies of a potential that bound the measured hardness of its glass, and 1
-    between them.
+    """Factors on a potential's energies that bound its glass's measured hardness; 1 between.
 
     Hardness is proportional to the energies (`twins`).
 
@@ -330,13 +320,14 @@ def hardness_samples(
     rng = _rng(11)
     hardness, spread, length, scale = _columns(points)
     _, of_scale, runs = np.unique(scale, return_inverse=True, return_counts=True)
-    chosen = rng.choice(len(points), size=count, p=1 / (len(runs) * runs[of_scale]))
+    probability = 1 / (len(runs) * runs[of_scale])
+    chosen = rng.choice(len(points), size=count, p=probability)
     # factors on the hardness of all runs alike
-    shared = 1 + np.array(list(systematic.values())) @ _rng(15).normal(
-        size=(len(systematic), count)
-    )
+    normals = _rng(15).normal(size=(len(systematic), count))
+    shared = 1 + np.array(list(systematic.values())) @ normals
     shared *= rng.uniform(*energies, count)
-    return length[chosen], (hardness[chosen] + spread[chosen] * rng.normal(size=count)) * shared
+    drawn = hardness[chosen] + spread[chosen] * rng.normal(size=count)
+    return length[chosen], drawn * shared
 
 
 def relative_hardness(slope: float) -> float:
@@ -344,14 +335,14 @@ def relative_hardness(slope: float) -> float:
 
     Straight in the logarithm of the slope, as in an expanding cavity (Johnson, J. Mech. Phys.
     Solids 18, 115, 1970)."""
-    return float(
-        np.interp(np.log(slope), np.log(list(SLOPES)), list(SLOPES.values()), np.nan, np.nan)
-    )
+    slopes = np.log(list(SLOPES))
+    return float(np.interp(np.log(slope), slopes, list(SLOPES.values()), np.nan, np.nan))
 
 
 def rms_slope(point: PointRow) -> float:
     """RMS slope of eq. 6: one of two sine waves, wherever it is the lower one."""
-    return float(np.sqrt(2) * np.pi * float(point["amplitude_nm"]) / float(point["wavelength_nm"]))
+    amplitude = float(point["amplitude_nm"])
+    return float(np.sqrt(2) * np.pi * amplitude / float(point["wavelength_nm"]))
 
 
 def steepness(points: Sequence[PointRow]) -> dict[str, list[float]]:
@@ -371,9 +362,8 @@ def band(h_macro: np.ndarray, h_prime: np.ndarray) -> list[dict[str, float]]:
     """H(L), L = sqrt(A) from 1 to 20 nm, with its 68 % band."""
     rows = []
     for length in np.geomspace(1, 20, 40).tolist():
-        low, middle, high = np.quantile(
-            h_macro + h_prime / np.sqrt(length), [FIT_RULES.interval[0], 0.5, FIT_RULES.interval[1]]
-        )
+        shares = [FIT_RULES.interval[0], 0.5, FIT_RULES.interval[1]]
+        low, middle, high = np.quantile(h_macro + h_prime / np.sqrt(length), shares)
         rows.append(
             {"contact_length_nm": length, "low_GPa": low, "median_GPa": middle, "high_GPa": high}
         )

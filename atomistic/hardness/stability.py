@@ -1,5 +1,4 @@
-"""Stiff and extreme cases of the hardness stage, each judged by what must hold (target
-`stability`).
+"""Stiff and extreme cases of the hardness stage, judged by what must hold (`stability`).
 
 Made-up closings without a hardness must be refused, with the reason. Atoms that are cold, hot,
 molten or pressed too fast must keep their energy. What cannot be computed must end in one line."""

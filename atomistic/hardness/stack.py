@@ -1,5 +1,4 @@
-"""A film of oxide glass on another body: its force field, how it is laid and welded, and what it
-must look like.
+"""A film of oxide glass on another body: force field, how it is laid, how it must look.
 
 Nobody published how atoms of the two potentials act on each other. The file of the base states an
 assumption (`film_base`): Morse bonds of some pairs and a short-range repulsion of the others."""
@@ -24,9 +23,7 @@ GAP_A = 1.6  # between the surfaces that are laid on each other
 
 @dataclass(frozen=True)
 class Stack:
-    """Oxide on a base, as a force field: the types of the base come first, those of the oxide
-    follow.
-    """
+    """Oxide on a base, as a force field: the base's types come first, then the oxide's."""
 
     oxide: Potential
     base: Base
@@ -37,8 +34,7 @@ class Stack:
         return {**self.oxide.masses_u, **self.base.masses_u}
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
-        """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds, the
-        base keeps its own.
+        """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds.
 
         Raises
         ------
@@ -75,34 +71,31 @@ class Stack:
         )
 
     def bond(self, pair: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Energy (eV) and force (eV/Å) of an atom of the base and an ion, shifted to vanish at the
-        cut-off.
-        """
+        """Energy (eV) and force (eV/Å) of a base atom and an ion, zero at the cut-off."""
         below = self.base.below_films
         end = np.array([self.oxide.cutoff_A])
-        morse = Morse(
-            term="morse", **below.bonds[pair].model_dump(), source=below.source, confidence="low"
-        )
+        parameters = below.bonds[pair].model_dump()
+        morse = Morse(term="morse", **parameters, source=below.source, confidence="low")
         (energy, slope) = morse.energy_and_slope(r)
         (energy_end, slope_end) = morse.energy_and_slope(end)
         return energy - energy_end - slope_end * (r - end), slope_end - slope
 
 
 def base_of(material: Material) -> Base:
-    """The body below a film, by what its material's file holds: a metal, or a glass of covalent
-    bonds.
+    """The body below a film, by its material's file: a metal, or a glass of covalent bonds.
 
     Raises
     ------
     InputError : nothing is known of films on the material.
     """
     material.part("film_base")
-    return Metal(material) if material.eam is not None else Network(material)
+    if material.eam is not None:
+        return Metal(material)
+    return Network(material)
 
 
 def check_ions(base: Material, ions: Iterable[str]) -> None:
-    """Refuse a film with an ion of which the base's file does not say how it acts on each of its
-    atoms.
+    """Refuse a film with an ion whose action on the base's atoms its file does not state.
 
     Raises
     ------
@@ -165,12 +158,9 @@ def lay(
     x, y, z = film.positions_A.T
     floor = base_A + GAP_A + profile(x, y, float(film.cell_A[0]), amplitude_A)
     film = neutralise(film.take(z > floor), formula_of(glass))
-    return Atoms(
-        (*base.elements, *film.elements),
-        np.concatenate([below.types, film.types + len(base.elements)]),
-        np.concatenate([below.positions_A, film.positions_A]),
-        film.cell_A,
-    )
+    types = np.concatenate([below.types, film.types + len(base.elements)])
+    positions_A = np.concatenate([below.positions_A, film.positions_A])
+    return Atoms((*base.elements, *film.elements), types, positions_A, film.cell_A)
 
 
 def cut_base(
@@ -211,9 +201,11 @@ def film_properties(
     beneath = (
         near & ~film & (z > z[near & ~film].max() - 6.0)
     )  # its way is compared with that of the film
-    slid = np.median(moved[near & film], axis=0) - np.median(moved[beneath], axis=0)
+    film_moved = np.median(moved[near & film], axis=0)
+    slid = film_moved - np.median(moved[beneath], axis=0)
+    gaps = (low - top)[both]
     return {
         "covered_share": float(np.mean(np.isfinite(low))),
-        "gap_95_A": float(np.quantile((low - top)[both], 0.95)),
+        "gap_95_A": float(np.quantile(gaps, 0.95)),
         "slid_A": float(np.hypot(*slid)),
     }

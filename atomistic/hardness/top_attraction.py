@@ -1,5 +1,4 @@
-"""How strongly a top made of atoms attracts a smooth body, as the cut-off D0 of the law of
-attraction.
+"""How strongly a top of atoms attracts a smooth body, as the cut-off D0 of the law.
 
 Every atom of the top attracts a smooth rigid half-space by a 9-3 potential
 (Steele 1973, doi:10.1016/0039-6028(73)90264-1)
@@ -92,40 +91,33 @@ def gap_cutoff(
     by_work = combined_cutoffs_nm(top for tops in runs.values() for top in tops)[1]
     logs = np.log(by_run[:, 1])
     rng = np.random.default_rng(0)
-    errors = (
-        mean_over_glasses(logs, [glasses[run] for run in runs], FIT_RULES.samples, rng)
-        - logs.mean()
-    )
+    of_runs = [glasses[run] for run in runs]
+    errors = mean_over_glasses(logs, of_runs, FIT_RULES.samples, rng) - logs.mean()
     follow = rng.normal(*FOLLOW, FIT_RULES.samples)
     rim = np.exp(rng.uniform(-RIM_ERROR, RIM_ERROR, FIT_RULES.samples))
     cutoffs = by_work * np.exp(errors) * follow * rim
-    return {
-        **samples_of(cutoffs, "nm"),
-        "runs": [
-            {"run": run, "snapshots": len(tops), "by_force_nm": force, "by_work_nm": work}
-            for (run, tops), (force, work) in zip(runs.items(), by_run.tolist(), strict=True)
-        ],
-    }
+    rows = []
+    for (run, tops), (force, work) in zip(runs.items(), by_run.tolist(), strict=True):
+        row = {"run": run, "snapshots": len(tops), "by_force_nm": force, "by_work_nm": work}
+        rows.append(row)
+    return {**samples_of(cutoffs, "nm"), "runs": rows}
 
 
 def tops_of(witness: Sequence[Mapping[str, float]]) -> list[TopAttraction]:
     """Tops of the snapshots of a run with a contact; rows of `Closing.witness`."""
-    return [
-        TopAttraction(
-            100 * row["top_area_nm2"],
-            row["top_force_over_hamaker"] / 10,
-            row["top_work_over_hamaker"],
-        )
-        for row in witness
-        if row["top_area_nm2"] > 0
-    ]
+    tops = []
+    for row in witness:
+        if row["top_area_nm2"] > 0:
+            force = row["top_force_over_hamaker"] / 10
+            work = row["top_work_over_hamaker"]
+            tops.append(TopAttraction(100 * row["top_area_nm2"], force, work))
+    return tops
 
 
 def mean_over_glasses(
     values: np.ndarray, glasses: Sequence[int], count: int, rng: np.random.Generator
 ) -> np.ndarray:
-    """Samples of the mean over all glasses, of which a few were made and each was used for several
-    runs.
+    """Samples of the mean over all glasses, of which a few were made and used repeatedly.
 
     Runs scatter within a glass, and glasses differ. Two glasses leave open by how much. So all
     standard deviations count, each by its restricted likelihood; that of glasses over that of runs
@@ -146,19 +138,18 @@ def mean_over_glasses(
     weights = 1 / (of_runs**2 * (ratio**2 + 1 / runs))
     total = weights.sum(axis=-1)
     centre = weights @ means / total
-    logs = 0.5 * (np.log(weights) - weights * (means - centre[..., None]) ** 2).sum(
-        axis=-1
-    ) - 0.5 * np.log(total)
+    squares = weights * (means - centre[..., None]) ** 2
+    logs = 0.5 * (np.log(weights) - squares).sum(axis=-1) - 0.5 * np.log(total)
     logs += (-freedom * np.log(of_runs) - 0.5 * within / of_runs**2)[..., 0]
     logs += (np.log(ratio) - np.log1p(ratio**2))[..., 0]  # even steps of the logarithm
     shares = np.exp(logs - logs.max()).ravel()
     chosen = rng.choice(shares.size, count, p=shares / shares.sum())
-    return centre.ravel()[chosen] + rng.normal(size=count) / np.sqrt(total.ravel()[chosen])
+    error = rng.normal(size=count) / np.sqrt(total.ravel()[chosen])
+    return centre.ravel()[chosen] + error
 
 
 def combined_cutoffs_nm(tops: Iterable[TopAttraction]) -> tuple[float, float]:
-    """Cut-offs D0 of several contacts that pull side by side, nm: by their forces, and by their
-    works.
+    """Cut-offs D0 of contacts that pull side by side, nm: by their forces, and by works.
 
     Forces, works and areas add up, so that each contact counts with its area.
     """
@@ -201,11 +192,11 @@ def attract_top(
         return float(shares @ _pull(gap + depths, contact))
 
     gaps = np.arange(0.5 * contact, 3 * contact, STEP_A)
-    rest = _lowest(energy, gaps)
-    apart = np.arange(rest, 3 * contact, STEP_A)
+    resting = _lowest(energy, gaps)
+    apart = np.arange(resting, 3 * contact, STEP_A)
     strongest = _lowest(lambda gap: -pull(gap), apart)
     of_hamaker = 1 / (6 * np.pi * density_per_A3)
-    return TopAttraction(area_A2, of_hamaker * pull(strongest), -of_hamaker * energy(rest))
+    return TopAttraction(area_A2, of_hamaker * pull(strongest), -of_hamaker * energy(resting))
 
 
 @lru_cache
@@ -231,12 +222,11 @@ def contact_distance_A(density_per_A3: float) -> float:
 
 
 def bulk_density_per_A3(positions_A: np.ndarray, area_A2: float) -> float:
-    """Atoms a volume of the base, from positions of shape (atoms, 3) over a cell of the area
-    `area_A2`.
-    """
+    """Atoms a volume of the base, from positions (atoms, 3) over a cell of `area_A2`."""
     heights = positions_A[:, 2] - positions_A[:, 2].min()
     low, high = 6.0, 18.0  # above the frozen bottom's lowest atom: glass without a surface
-    return float(np.sum((heights >= low) & (heights < high)) / (area_A2 * (high - low)))
+    inside = (heights >= low) & (heights < high)
+    return float(np.sum(inside) / (area_A2 * (high - low)))
 
 
 def _energy(distances_A: np.ndarray, contact_A: float) -> np.ndarray:

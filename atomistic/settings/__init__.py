@@ -1,6 +1,4 @@
-"""Settings of the atomistic stages, a module each: every key with its default, unit and accepted
-range.
-"""
+"""Settings of the atomistic stages, a module each: keys with default, unit and range."""
 
 from atomistic.settings.elastic import DftSettings, ElasticSettings, NitrideGlassSettings
 from atomistic.settings.hardness import (

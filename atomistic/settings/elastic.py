@@ -28,9 +28,7 @@ class DftSettings(Settings):
 
     @property
     def forces_cutoff_Ha(self) -> float:
-        """Plane-wave cutoff of forces: at 80 Ha they are within 0.5 eV/Å of those at 140; no
-        volumes are compared.
-        """
+        """Cutoff of forces: 80 Ha are within 0.5 eV/Å of 140; no volumes are compared."""
         return min(self.cutoff_Ha, 80.0)
 
 

@@ -21,11 +21,10 @@ from evidence.attacks.runs import Attack, figures, table
 from mesoscale.contact.cycle import run_cycle
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import ContactSettings, DeviceSettings
-from mesoscale.studies.answer_stability import made_up_law
-from mesoscale.switch.beam_switch import BeamStates, solve_beam
-from mesoscale.switch.electrode import with_pad
+from mesoscale.studies.answer_stability import made_up_pad, solved_beam
+from mesoscale.switch.beam_switch import BeamStates
 
 __all__ = ["contacts", "devices", "figures", "presses", "rows", "stresses"]
 SOFTER = 2.0**-14
@@ -162,8 +161,8 @@ def _copied(rng: np.random.Generator) -> str:
         contact=(0.0, 1.0) if rng.random() < 0.7 else tuple(np.sort(rng.uniform(0.0, 1.0, 2))),
         stopper_nm=rng.choice([0.0, 50.0]),
     )
-    law = made_up_law(rng.choice([0.0, 10.0 ** rng.uniform(-1, 2)]))
-    solved, _ = with_pad(lambda pad: solve_beam(settings, pad, 64), law)
+    law = made_up_pad(rng.choice([0.0, 10.0 ** rng.uniform(-1, 2)]))
+    solved = solved_beam(settings, law, 64)
     softer = settings.model_copy(
         update={
             name: SOFTER * getattr(settings, name)
@@ -171,10 +170,10 @@ def _copied(rng: np.random.Generator) -> str:
         }
     )
     flats = replace(law.flats, hamaker=SOFTER * law.flats.hamaker)
-    soft_law = PadLaw(
+    soft_law = PadCurves(
         law.separation_nm, SOFTER * law.closing, law.depth_nm, SOFTER * law.opening, flats
     )
-    copy, _ = with_pad(lambda pad: solve_beam(softer, pad, 64), soft_law)
+    copy = solved_beam(softer, soft_law, 64)
     return _differ(solved, copy)
 
 
@@ -200,12 +199,12 @@ def stresses(seed: int, count: int) -> Iterator[Attack]:
 
 
 def _swept(rng: np.random.Generator) -> str:
-    law = made_up_law(10.0 ** rng.uniform(-1, 1.3))
+    law = made_up_pad(10.0 ** rng.uniform(-1, 1.3))
     settings = DeviceSettings(thickness_um=rng.uniform(3.0, 5.0))
     solved = []
     for stress in np.arange(-4.0, 40.0, 1.0):
         at_stress = settings.model_copy(update={"residual_stress_MPa": float(stress)})
-        solved.append(with_pad(lambda pad, of=at_stress: solve_beam(of, pad), law)[0])
+        solved.append(solved_beam(at_stress, law))
     for name in ("pull_in_V", "release_V"):
         volts = np.array([getattr(states, name) for states in solved])
         jumps = abs(np.diff(volts, 2))

@@ -15,7 +15,8 @@ import numpy as np
 
 from mesoscale.contact.menisci import reach_nm
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.pad.cells import SideBySide, sample_cells
+from mesoscale.pad.cells import sample_cells
+from mesoscale.pad.pilots import SideBySide
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import AirSettings
 

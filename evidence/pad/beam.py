@@ -16,9 +16,10 @@ from typing import Any
 from evidence.pad import finite_differences
 from evidence.pad.loop import central_pad
 from mesoscale.answer.spread import departed
+from mesoscale.pad.curves import on_deep_enough
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.beam_switch import solve_beam
-from mesoscale.switch.electrode import with_pad
+from mesoscale.studies.answer_stability import solved_beam
+from mesoscale.switch import switch_of
 
 CAUSES = {
     "bending": {"bends_as": "beam", "fringe": 0.0, "anchor_um_per_N": 1e9},
@@ -39,15 +40,15 @@ def arguments(parser: ArgumentParser) -> None:
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """A row for each scene, case and method."""
     for folder in given.results:
-        device, law = central_pad(folder)
+        device, pad = central_pad(folder)
         for case, change in CAUSES.items():
             settings = device.model_copy(update=change)
             for elements in ELEMENTS:
-                yield {"scene": folder.name, "case": case, **_by_elements(settings, law, elements)}
+                yield {"scene": folder.name, "case": case, **_by_elements(settings, pad, elements)}
             if case != "bending":  # whose twin has rigid anchors
-                yield {"scene": folder.name, "case": case, **_by_differences(settings, law)}
+                yield {"scene": folder.name, "case": case, **_by_differences(settings, pad)}
         for case, settings in _departed(device):
-            yield {"scene": folder.name, "case": case, **_by_elements(settings, law, ELEMENTS[1])}
+            yield {"scene": folder.name, "case": case, **_by_elements(settings, pad, ELEMENTS[1])}
 
 
 def _departed(device: DeviceSettings) -> Iterator[tuple[str, DeviceSettings]]:
@@ -60,16 +61,16 @@ def _departed(device: DeviceSettings) -> Iterator[tuple[str, DeviceSettings]]:
     yield "other nickel", device.model_copy(update={"youngs_modulus_GPa": OTHER_NICKEL_GPa})
 
 
-def _by_elements(settings: DeviceSettings, law: Any, elements: int) -> dict[str, Any]:
+def _by_elements(settings: DeviceSettings, pad: Any, elements: int) -> dict[str, Any]:
     started = process_time()
-    states = with_pad(lambda pad: solve_beam(settings, pad, elements), law)[0]
+    states = solved_beam(settings, pad, elements)
     volts = {"pull_in_V": states.pull_in_V, "release_V": states.release_V}
     return {"by": f"{elements} elements", **volts, "cpu_s": process_time() - started}
 
 
-def _by_differences(settings: DeviceSettings, law: Any) -> dict[str, Any]:
+def _by_differences(settings: DeviceSettings, pad: Any) -> dict[str, Any]:
     started = process_time()
-    pad = with_pad(lambda pad: solve_beam(settings, pad), law)[1]
+    _, pad = on_deep_enough(pad, switch_of(settings).states_on)
     pull_in, release = finite_differences.release(settings, pad)
     return {
         "by": "finite differences",

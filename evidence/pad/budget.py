@@ -16,8 +16,8 @@ from asperity.guards.foreign_yaml import load_mapping
 from evidence.pad.runs import finished
 from evidence.record import ROOT
 from mesoscale.answer.budget import budget, effects_of
-from mesoscale.answer.points import solve_point, solve_points, surfaces_of
 from mesoscale.answer.release import switch_on_pad
+from mesoscale.answer.switches import solve_point, solve_points, surfaces_of
 from workflow.scene import load_scene
 
 

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from evidence.record import load_table
-from mesoscale.answer.points import Point, solve_point
+from mesoscale.answer.points import Point
+from mesoscale.answer.switches import solve_point
 from mesoscale.inputs.table import from_rows
-from mesoscale.pad.numerics import PAD
+from mesoscale.pad.cells import FIRST_SEED
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.pooling import Pooled, pool
 from mesoscale.topography.records import in_order
@@ -52,9 +53,9 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
             point = Point(values, contact.gap_cutoff_nm, scene.device)
             count = round(given.area / (side / 1000.0) ** 2)
             for repeat in range(given.repeats):
-                solved = solve_point(point, contact, count, PAD.first_seed + APART * repeat)
+                solved = solve_point(point, contact, count, FIRST_SEED + APART * repeat)
                 opening = (
-                    solved.pad.law.opening[0].sum(axis=0) if solved.pad else np.array([np.nan])
+                    solved.pad.curves.opening[0].sum(axis=0) if solved.pad else np.array([np.nan])
                 )
                 yield {
                     "scene": given.scene,
@@ -63,7 +64,7 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
                     "cells": count,
                     "repeat": repeat,
                     "rms_nm": values["rms"],
-                    "release_V": solved.states.get("release_V", np.nan),
+                    "release_V": solved.states.release_V if solved.states else np.nan,
                     "pull_off_kPa": -1e6 * float(np.nanmin(opening)),
                 }
 

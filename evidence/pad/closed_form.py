@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesoscale.pad.memory import Flats, PadLaw
+from mesoscale.pad.curves import Flats, PadCurves
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ class ClosedForm:
             1.0 + self.lifted * np.maximum(1.0 - left, 0.0) ** 3
         )
 
-    def law(self, separation_nm: Array, depth_nm: Array) -> PadLaw:
+    def curves(self, separation_nm: Array, depth_nm: Array) -> PadCurves:
         """Its curves at rising separations, opened from rising depths."""
         opening = np.full((len(depth_nm), 2, separation_nm.size), np.nan)
         for k, depth in enumerate(depth_nm):
@@ -71,11 +71,11 @@ class ClosedForm:
             opening[k, 0, above] = np.minimum(
                 opening[k, 0, above], self.closing_GPa(separation_nm[above])[0]
             )
-        return PadLaw(
+        return PadCurves(
             separation_nm, np.stack(self.closing_GPa(separation_nm)), depth_nm, opening, self.flats
         )
 
-    def pressed(self, wanted_GPa: Array, separation_nm: Array, depths: int = 24) -> PadLaw:
+    def pressed(self, wanted_GPa: Array, separation_nm: Array, depths: int = 24) -> PadCurves:
         """Its curves from where closing carries what is wanted at rising separations, or the most
         that it does.
         """
@@ -84,4 +84,4 @@ class ClosedForm:
         s = separation_nm[deep[-1] if deep.size else int(net.argmax()) :]
         load = self.closing_GPa(s)[0]
         shallow = np.flatnonzero(load > 1e-4 * load[0])[-1]
-        return self.law(s, s[np.unique(np.linspace(0, shallow, depths).round().astype(int))])
+        return self.curves(s, s[np.unique(np.linspace(0, shallow, depths).round().astype(int))])

@@ -18,15 +18,17 @@ from scipy.stats import qmc
 
 from evidence.pad.large_surfaces import random_cells
 from evidence.pad.runs import finished
-from mesoscale.answer.points import Point, point_of, surfaces_of, values_at
+from mesoscale.answer.points import Point, point_of, values_at
+from mesoscale.answer.switches import close_for, surfaces_of
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.pad.cells import Cell, plan_grid, sample_cells
-from mesoscale.pad.curves import press_cells
-from mesoscale.pad.memory import PadLaw, flats_of
+from mesoscale.pad.cells import Cell, sample_cells
+from mesoscale.pad.closing import press_cells
+from mesoscale.pad.curves import PadCurves
+from mesoscale.pad.pilots import Pilots
+from mesoscale.pad.pressed import flats_of
 from mesoscale.settings import ContactSettings
-from mesoscale.switch.electrode import presser, solve_deepened
-from mesoscale.switch.pressing import pressing, pressure_to_compute
+from mesoscale.switch import switch_of
 
 OTHER_CELLS = 64
 OTHERS = 500_000
@@ -49,7 +51,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         device, coarse = points.device, points.on_grid
         apart = {}
         for k, one in enumerate(model.points):
-            release = one.states.get("release_V", np.nan)
+            release = one.states.release_V if one.states else np.nan
             yield _row(
                 folder.name,
                 "answer",
@@ -104,13 +106,13 @@ def release_V(
 
     Pilots tell how far they are closed: of cells drawn alike, the first have hardly a rough place.
     """
-    device = pressing(point.device)
     try:
-        grid = plan_grid(inputs, settings, pilots, pressure_to_compute(device), presser(device))
+        first = close_for(switch_of(point.device.level), Pilots(inputs, settings, pilots))
+        grid = first.grid()
         pad, flats = press_cells(inputs, settings, grid, cells), flats_of(inputs, settings)
         closing, opening = pad.mean(pad.closing)[:, ::-1], pad.mean(pad.opening)[::-1, :, ::-1]
-        law = PadLaw(grid.separation_nm[::-1], closing, grid.depth_nm[::-1], opening, flats)
-        return solve_deepened(point.device, law)["release_V"]
+        curves = PadCurves(grid.separation_nm[::-1], closing, grid.depth_nm[::-1], opening, flats)
+        return switch_of(point.device).states(curves).release_V
     except InputError:
         return np.nan
 

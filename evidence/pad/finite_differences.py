@@ -109,7 +109,7 @@ def settle(beam, w, deepest_nm, pad, voltage, largest_nm=0.25):
         load, slope = beam.width * push * 1e9 - q, beam.width * steep * 1e18 - dq
         inertia = beam.width * 1e9 / speed
         x, _ = beam.step(w, load, slope, inertia)
-        allowed = np.maximum(0.25 * (s - pad.law.separation_nm[0] - 40.0), largest_nm).clip(
+        allowed = np.maximum(0.25 * (s - pad.curves.separation_nm[0] - 40.0), largest_nm).clip(
             max=50.0
         )
         over = np.max(abs(x) * 1e9 / allowed)

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact import ContactInputs
-from mesoscale.pad.cells import Cell, PadGrid, plan_grid
-from mesoscale.pad.curves import PadCells, press_cells
-from mesoscale.pad.numerics import PAD
+from mesoscale.pad.cells import FIRST_SEED, Cell
+from mesoscale.pad.closing import PadCells, press_cells
+from mesoscale.pad.grid import PadGrid
+from mesoscale.pad.pilots import plan_grid
 from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
@@ -45,7 +46,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         update={"pixels": SIDE * PIXELS, "length_nm": SIDE * contact.length_nm}
     )
     grid = opened_grid(INPUTS, contact)
-    small = closed(INPUTS, contact, grid, random_cells(given.cells, PAD.first_seed))
+    small = closed(INPUTS, contact, grid, random_cells(given.cells, FIRST_SEED))
     yield from comparison_rows(
         small, closed(INPUTS, wide, grid, random_cells(given.large, FIRST_LARGE_SEED))
     )
@@ -68,12 +69,12 @@ def closed(
 
 def opened_grid(inputs: ContactInputs, contact: ContactSettings) -> PadGrid:
     """Separations of the pad, opened from those at which pilot cells carry the loads."""
-    pilots, largest_GPa = random_cells(PILOTS, PAD.first_seed), max(LOADS_MPa) * 1e-3
+    pilots, largest_GPa = random_cells(PILOTS, FIRST_SEED), max(LOADS_MPa) * 1e-3
     grid = plan_grid(
         inputs,
         contact,
         pilots,
-        lambda separation: np.full_like(separation, largest_GPa),
+        largest_GPa,
         step_nm=0.1,
     )
     shut = closed(inputs, contact, PadGrid(grid.separation_nm, np.empty(0, int)), pilots)

@@ -22,11 +22,10 @@ from evidence.pad.runs import finished
 from mesoscale.circuit.lumps import LumpErrors, Lumps, lumps_of
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import spice_switch
-from mesoscale.pad.memory import PadLaw, attracting
+from mesoscale.pad.curves import PadCurves, attracting, on_deep_enough
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.beam import lumped_beam
-from mesoscale.switch.beam_switch import BeamStates, solve_beam, solve_bent
-from mesoscale.switch.electrode import with_pad
+from mesoscale.switch.beam import beam_of, lumped_beam
+from mesoscale.switch.beam_switch import BeamStates, BeamSwitch
 
 PAIRS = (4, 8, 12, 16, 20, 24, 28, 32, 48, 64)
 ELEMENTS = 1024
@@ -64,18 +63,17 @@ def arguments(parser: ArgumentParser) -> None:
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """A row for each scene, attraction and model."""
     for folder in given.results:
-        device, scene_law = central_pad(folder)
+        device, scene_pad = central_pad(folder)
         for times in (1.0, 0.0):
             same = {"scene": folder.name, "attraction": times}
             started = process_time()
-            exact, law = with_pad(
-                lambda pad, of=device: solve_beam(of, pad, ELEMENTS), attracting(scene_law, times)
-            )
+            beam = BeamSwitch(device, beam_of(device, ELEMENTS))
+            exact, pad = on_deep_enough(attracting(scene_pad, times), beam.states_on)
             yield same | _of("fe", ELEMENTS, exact, started)
             enough = 0
             for pairs in PAIRS:
                 started = process_time()
-                states = solve_bent(lumped_beam(device, pairs), device, law)
+                states = BeamSwitch(device, lumped_beam(device, pairs)).states_on(pad)
                 yield same | _of("lumps", pairs, states, started)
                 if (
                     not enough
@@ -83,14 +81,14 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
                 ):
                     enough = pairs
             if times:
-                loop = _by_ngspice(lumps_of(device, enough), law, OVER * exact.pull_in_V)
+                loop = _by_ngspice(lumps_of(device, enough), pad, OVER * exact.pull_in_V)
                 yield same | {"by": "ngspice", "pairs": enough} | loop
 
 
-def central_pad(results: Path) -> tuple[DeviceSettings, PadLaw]:
+def central_pad(results: Path) -> tuple[DeviceSettings, PadCurves]:
     """The switch of a scene, and its pad at central inputs."""
     points, model = finished(results)
-    return points.device, model.central.pressed.law
+    return points.device, model.central.pressed.curves
 
 
 def _of(by: str, pairs: int, states: BeamStates, started: float) -> dict[str, Any]:
@@ -123,13 +121,13 @@ def _loop(time_s: Any, volts: Any, middle_nm: Any, held_fF: float, cpu_s: float)
     }
 
 
-def _by_ngspice(lumps: Lumps, law: PadLaw, top: float) -> dict[str, Any]:
+def _by_ngspice(lumps: Lumps, pad: PadCurves, top: float) -> dict[str, Any]:
     started = getrusage(RUSAGE_CHILDREN).ru_utime
     voltages = " ".join(
         f"{at} {share * top:.9g}" for at, share in zip(TIMES_S, SHARES, strict=True)
     )
     with tempfile.TemporaryDirectory() as folder:
-        netlist = spice_switch(lumps, LumpErrors(lumps.count, *[0.0] * 6), law, 1, top / OVER)
+        netlist = spice_switch(lumps, LumpErrors(lumps.count, *[0.0] * 6), pad, 1, top / OVER)
         (Path(folder) / "switch.sub").write_text(netlist, encoding="utf-8")
         (Path(folder) / "loop.cir").write_text(NGSPICE.format(voltages=voltages), encoding="utf-8")
         subprocess.run(["ngspice", "-b", "loop.cir"], cwd=folder, check=True, capture_output=True)

@@ -26,9 +26,9 @@ from evidence.pad.large_surfaces import (
 )
 from mesoscale.contact.displacement import close_by_separation
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
-from mesoscale.pad.cells import Cell, close_cells, plan_grid, surface_of
-from mesoscale.pad.curves import assemble
-from mesoscale.pad.numerics import PAD
+from mesoscale.pad.cells import FIRST_SEED, Cell, surface_of
+from mesoscale.pad.closing import assemble, close_cells
+from mesoscale.pad.pilots import plan_grid
 from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
@@ -56,12 +56,12 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     grid = plan_grid(
         FILM,
         contact,
-        random_cells(PILOTS, PAD.first_seed),
-        lambda separation: np.full_like(separation, LARGEST_GPa),
+        random_cells(PILOTS, FIRST_SEED),
+        LARGEST_GPa,
         step_nm=0.1,
         depths=2,
     )
-    cells = random_cells(given.cells, PAD.first_seed)
+    cells = random_cells(given.cells, FIRST_SEED)
     pads = {
         "film": closed(FILM, contact, grid, cells),
         "alike": closed(MEDIAN, contact, grid, cells),

@@ -13,7 +13,8 @@ from types import SimpleNamespace
 from typing import Any
 
 from evidence.record import load_table
-from mesoscale.answer.points import Point, on_pad_grid, press_pad, surfaces_of
+from mesoscale.answer.points import Point, on_pad_grid
+from mesoscale.answer.switches import press_pad, surfaces_of
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad.adhesion import adhesion_of
 from mesoscale.settings.inputs import WorkAndRangeSettings
@@ -49,7 +50,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         for number in range(given.pads):
             point = Point(inputs, cutoff, scene.device)
             pad = press_pad(point, contact, given.cells, surfaces_of(number))
-            for opened in adhesion_of(pad.law):
+            for opened in adhesion_of(pad.curves):
                 yield {
                     "attraction": attraction,
                     "gap_cutoff_nm": cutoff,

@@ -20,12 +20,13 @@ from mesoscale.answer.points import Point, point_of, values_at
 from mesoscale.failure.population import Attracted, Population
 from mesoscale.failure.rate import corrected, learn
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.pressing import EXACT, pressure_to_compute
+from mesoscale.settings.device import SPREAD, SpreadSettings
+from mesoscale.switch import switch_of
 from mesoscale.uncertainty.rare_events import sample_event
 
-PLATE = DeviceSettings(spring_N_per_m=170.0, spread=EXACT)
+PLATE = DeviceSettings(spring_N_per_m=170.0, spread=SpreadSettings(**dict.fromkeys(SPREAD)))
 TABLE = InputTable(
     tuple(
         UncertainInput(name, "", distribution, "literature", "")
@@ -49,12 +50,12 @@ EXACT_P, DIMENSION, CONFIDENCE = 1e-6, 12, 0.9
 class KnownPad:
     """A pad whose curves are known, so that all its cells agree."""
 
-    law: PadLaw
+    curves: PadCurves
 
     @property
-    def halves(self) -> tuple[PadLaw, PadLaw]:
+    def halves(self) -> tuple[PadCurves, PadCurves]:
         """The same curves twice."""
-        return self.law, self.law
+        return self.curves, self.curves
 
 
 def known_pad(point: Point, *_: int) -> KnownPad:
@@ -79,7 +80,7 @@ def known_pad(point: Point, *_: int) -> KnownPad:
         offset_nm=point.gap_cutoff_nm,
     )
     s = np.linspace(0.05, 12.0, 1200) * rms
-    return KnownPad(form.pressed(pressure_to_compute(point.device)(s), s))
+    return KnownPad(form.pressed(switch_of(point.device).least_GPa(s), s))
 
 
 def population(points: int = 128) -> Population:
@@ -105,7 +106,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     z = np.random.default_rng(1).normal(size=(given.brute_force, plates.dimension))
     failed, started = dict.fromkeys(ATTRACTIONS, 0), process_time()
     for point in plates.points(z, plates.hold_V):
-        plate = Attracted(point.device, known_pad(point).law, 0.0, 0)
+        plate = Attracted(point.device, known_pad(point).curves, 0.0, coarse=True)
         for name, times in ATTRACTIONS.items():
             failed[name] += plate.fails(times)
     for name, count in failed.items() if len(z) else ():

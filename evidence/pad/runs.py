@@ -3,7 +3,7 @@
 from pathlib import Path
 from types import SimpleNamespace
 
-from mesoscale.answer.points import PadModel
+from mesoscale.answer.switches import PadModel
 from workflow.run.contact_settings import contact_settings
 from workflow.run.pads import ScenePoints, load_model, points_of
 from workflow.scene import load_scene

@@ -24,7 +24,7 @@ from mesoscale.answer.points import point_of, values_at
 from mesoscale.failure.population import Attracted, Population
 from mesoscale.failure.rate import learn
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.switch.plate import plate_from_settings, solve_on_pad
+from mesoscale.switch import switch_of
 from mesoscale.uncertainty.rare_events import LEAST, quantiles_of
 
 EACH = ("hamaker", "rms")
@@ -102,7 +102,9 @@ def shares_that_fail(z: np.ndarray, times: float) -> np.ndarray:
                 (point,) = plates().points(
                     np.array([[ndtri(0.5 + 0.5 * node), row[1], middle, row[3]]]), plates().hold_V
                 )
-                fails = Attracted(point.device, known_pad(point).law, 0.0, 0).fails(times)
+                fails = Attracted(point.device, known_pad(point).curves, 0.0, coarse=True).fails(
+                    times
+                )
                 low, high = (middle, high) if fails else (low, middle)  # smoother films fail
             shares[k] += 0.5 * weight * ndtr(0.5 * (low + high))
     return shares
@@ -114,10 +116,7 @@ def releases_V(units: np.ndarray) -> np.ndarray:
         point_of(row, TABLE.names, PLATE) for row in values_at(units, TABLE, PLATE, CUTOFFS_NM)
     ]
     return np.array(
-        [
-            solve_on_pad(plate_from_settings(PLATE), known_pad(point).law, None).release_V
-            for point in points
-        ]
+        [switch_of(PLATE).states_on(known_pad(point).curves).release_V for point in points]
     )
 
 

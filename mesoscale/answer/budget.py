@@ -9,13 +9,14 @@ from pydantic import model_validator
 from scipy.constants import elementary_charge
 
 from asperity.guards.settings import Settings, key
-from mesoscale.answer.by_key import OF_A_PLATE, value_of
-from mesoscale.answer.points import Solved
+from mesoscale.answer.other_devices import value_of
 from mesoscale.answer.spread import departed
+from mesoscale.answer.switches import Solved
 from mesoscale.errors import InputError
+from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.electrode import solve_deepened
-from mesoscale.switch.plate import NM, VACUUM_PERMITTIVITY
+from mesoscale.switch import States, switch_of
+from mesoscale.units import NM, VACUUM_PERMITTIVITY
 
 HERE = "this scene's points"
 SETTLE = {"common": "measure it", "each": "control it from device to device"}
@@ -127,16 +128,16 @@ def budget(
     by_hardness : of `release_by_hardness`; None: effects on the hardness have no row.
     errors_V : errors of the release by numerical choice, as answer/errors.csv has them; None: not
         known."""
-    if central.pad is None or not central.states or central.states["release_V"] == 0.0:
+    if central.pad is None or central.states is None or central.states.release_V == 0.0:
         return []
-    pressed = _Pressed(central)
+    pressed = _Pressed(central.point.device, central.pad.curves, central.states)
     of_device = [*_of_device(pressed)]
     rows = [*of_device, *_computed(switch, {row["effect"] for row in of_device})]
     if errors_V:
         rows.append(_numerical(errors_V))
     for name, effect in effects.items():
-        if effect.changes and not central.point.device.bends and effect.changes not in OF_A_PLATE:
-            continue  # a plate on a spring has no such property
+        if effect.changes and not pressed.device.has(effect.changes):
+            continue
         if effect.varied_as and effect.varied_as in central.point.values:
             continue
         if effect.hardness is not None and by_hardness is None:
@@ -216,23 +217,25 @@ def _numerical(errors_V: Mapping[str, float]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class _Pressed:
-    """The central pad, under the stated device and others."""
+    """The central pad, under the stated device and others.
 
-    central: Solved
+    Attributes
+    ----------
+    states : of the stated device.
+    """
 
-    @property
-    def device(self) -> DeviceSettings:
-        """The stated one."""
-        return self.central.point.device
+    device: DeviceSettings
+    pad: PadCurves
+    states: States
 
     def release_V(self, device: DeviceSettings) -> float:
         """Release of a device."""
-        return solve_deepened(device, self.central.pressed.law)["release_V"]
+        return switch_of(device).states(self.pad).release_V
 
     def reach_V(self, *devices: DeviceSettings) -> tuple[float | None, str]:
         """From the least to the largest release of devices and the stated one, and a remark."""
         try:
-            releases = [self.central.states["release_V"], *map(self.release_V, devices)]
+            releases = [self.states.release_V, *map(self.release_V, devices)]
         except InputError as error:
             return None, f"; no answer: {str(error).partition(';')[0]}"
         return max(releases) - min(releases), "; it may stick" * (min(releases) == 0.0)
@@ -257,14 +260,15 @@ def _moved_V(
     effect: Effect, pressed: _Pressed, by_hardness: Mapping[float, float]
 ) -> tuple[float | None, str]:
     """By how much an effect moves the release of the central switch, and a remark."""
-    device, release = pressed.device, pressed.central.states["release_V"]
+    device = pressed.device
+    release = pressed.states.release_V
     if effect.hardness is not None:
         usual, other = by_hardness[1.0], by_hardness[effect.hardness]
         if not np.isfinite(usual - other):
             return None, "; no answer"
         return abs(other - usual), "; it may stick" * (other == 0.0)
     if effect.changes:
-        return pressed.reach_V(_changed(effect, pressed.central))
+        return pressed.reach_V(_changed(effect, pressed))
     if effect.charge_e_cm2 is not None:
         density = effect.charge_e_cm2 * elementary_charge * 1e4
         return density * device.dielectric_nm * NM / (VACUUM_PERMITTIVITY * device.permittivity), ""
@@ -274,11 +278,10 @@ def _moved_V(
     return effect.volts if effect.share is None else effect.share * release, ""
 
 
-def _changed(effect: Effect, central: Solved) -> DeviceSettings:
-    device = central.point.device
+def _changed(effect: Effect, pressed: _Pressed) -> DeviceSettings:
+    """The device with the property that an effect changes."""
+    device = pressed.device
     if effect.to:
         return device.model_copy(update={effect.changes: effect.to})
-    value = (
-        value_of(device, effect.changes, central.states["pull_in_V"]) * effect.factor + effect.step
-    )
-    return device.model_copy(update={effect.changes: value})
+    value = value_of(device, effect.changes, pressed.states.pull_in_V)
+    return device.model_copy(update={effect.changes: value * effect.factor + effect.step})

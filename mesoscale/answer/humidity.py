@@ -12,8 +12,8 @@ from typing import Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.answer.points import PadModel, solve_point, surfaces_of
 from mesoscale.answer.release import probability
+from mesoscale.answer.switches import PadModel, solve_point, surfaces_of
 from mesoscale.contact.menisci import reach_nm
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.adhesion import adhesion_of
@@ -62,13 +62,13 @@ def humidity_rows(
         for opening in openings:
             chosen = contact.model_copy(update={"air": air.model_copy(update={"opening": opening})})
             solved = solve_point(point, chosen, 2 * point_cells, surfaces_of(0))
-            opened = adhesion_of(solved.pad.law)[0] if solved.pad else None
+            opened = adhesion_of(solved.pad.curves)[0] if solved.pad else None
             rows.append(
                 {
                     "humidity": humidity,
                     "opening": opening,
                     "reach_nm": reach_nm(air.model_copy(update={"humidity": humidity})),
-                    "release_V": solved.states.get("release_V"),
+                    "release_V": solved.states.release_V if solved.states else None,
                     "error_V": solved.error_V if solved.states else None,
                     "energy_mJ_m2": opened.energy_uJ_m2 * 1e-3 if opened else None,
                     "pull_off_kPa": opened.pull_off_kPa if opened else None,

@@ -1,7 +1,7 @@
 """The answer: release voltage and probability of sticking over all that is uncertain, and what
 makes them so.
 
-It is taken from the switches of `mesoscale.answer.points` as they are. A point without an answer
+It is taken from the switches of `mesoscale.answer.switches` as they are. A point without an answer
 has its reason, and the probability's interval counts it both ways."""
 
 from dataclasses import asdict, dataclass
@@ -10,14 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.answer.by_key import release_by_key
 from mesoscale.answer.known import ENDS, fit_additive, known
-from mesoscale.answer.points import PadModel, Solved
+from mesoscale.answer.other_devices import release_by_key
+from mesoscale.answer.switches import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.pad.adhesion import adhesion_of
-from mesoscale.pad.memory import attracting
-from mesoscale.switch.electrode import release_or_nan_V
-from mesoscale.switch.numerics import SWITCH
+from mesoscale.pad.curves import attracting
+from mesoscale.switch import release_or_nan_V
 
 Array = NDArray[np.float64]
 
@@ -25,6 +24,12 @@ WORKS = (1.0 / 3.0, 1.0, 3.0)
 """Both laws of attraction differ by a factor of 3 in their work at touch (docs/contact.md); no
 statistics decides.
 """
+ELECTRODES = {"beam": "bending", "plate": "flat"}
+"""What the result files call them."""
+SOLVED_SHARE = 0.8
+"""Of the points must be solved, since those that cannot be are no random part of them."""
+RESAMPLES = 1000
+"""Of the points, for the errors of quantiles."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +90,7 @@ def answer(model: PadModel) -> Answer:
     InputError : too few of them have an answer.
     """
     solved, refused = [model.points[k] for k in model.solved], model.refused
-    if len(solved) < SWITCH.solved * len(model.points):
+    if len(solved) < SOLVED_SHARE * len(model.points):
         raise InputError(
             f"device: {len(refused)} of {len(model.points)} switches cannot be solved: {refused[0]}"
         )
@@ -154,7 +159,7 @@ def probability(count: int, total: int) -> dict[str, float]:
 def _quantile_errors(release: Array) -> dict[str, float]:
     """Standard errors of quantiles by resampling the points; a Latin hypercube errs by less."""
     rng = np.random.default_rng(np.random.SeedSequence([0, 0xB007]))
-    picks = rng.integers(release.size, size=(SWITCH.resamples, release.size))
+    picks = rng.integers(release.size, size=(RESAMPLES, release.size))
     errors = np.quantile(release[picks], ENDS, axis=1).std(axis=1)
     return {f"{end:g}": float(error) for end, error in zip(ENDS, errors, strict=True)}
 
@@ -180,23 +185,30 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         except InputError as error:
             status = str(error)
     return {
-        "electrode": "bending" if settings.bends else "flat",
+        "electrode": ELECTRODES[settings.kind],
         "cells_computed": cells.count if cells else 0,
         "cells_of_pad": settings.pad_um2 * 1e6 / cell_area_nm2,
-        "central": {**central.states, "error_V": central.error_V} if central.states else None,
+        "central": _central(central),
         "by_attraction": [
             {"times": times, "release_V": _release_V(central, times)} for times in WORKS
         ],
         "adhesion": (
-            [asdict(opened) for opened in adhesion_of(central.pad.law)] if central.pad else []
+            [asdict(opened) for opened in adhesion_of(central.pad.curves)] if central.pad else []
         ),
         "by_key": (
-            release_by_key(settings, central.pad.law) if central.states and central.pad else []
+            release_by_key(settings, central.pad.curves) if central.states and central.pad else []
         ),
         "gate": {"passed": not (reasons := _reasons(central)), "reasons": reasons},
         "answer": said,
         "answer_status": status,
     }
+
+
+def _central(central: Solved) -> dict[str, float] | None:
+    """What the switch at central inputs does; None where it has no answer."""
+    if central.states is None:
+        return None
+    return {**central.states.numbers, "error_V": central.error_V}
 
 
 def _reasons(central: Solved) -> list[str]:
@@ -219,5 +231,5 @@ def _release_V(central: Solved, times: float) -> float | None:
     """Release at `times` the attraction; None where it is not known."""
     if central.pad is None:
         return None
-    release = release_or_nan_V(central.point.device, attracting(central.pad.law, times))
+    release = release_or_nan_V(central.point.device, attracting(central.pad.curves, times))
     return release if np.isfinite(release) else None

@@ -87,32 +87,30 @@ def load_measurements(table: MeasurementTable, path: str | Path | None = None) -
     """
     file = table.file
     header, table_rows = foreign_table(path or file, file)
-    rows = [
-        [(value or "").strip() for value in row.values() if not isinstance(value, list)]
-        for row in table_rows
-    ]
+    rows = []
+    for row in table_rows:
+        values = [value for value in row.values() if not isinstance(value, list)]
+        rows.append([(value or "").strip() for value in values])
     if not rows:
         raise InputError(f"{file}: has no rows; give a header and at least one measurement")
     places = _places(file, table.kind, header)
-    columns = {
-        quantity: (
-            factor
-            * np.array(
-                [_number(file, line, header[place], row, place) for line, row in enumerate(rows, 1)]
-            )
-        )
-        for quantity, (place, factor) in places.items()
-    }
-    named = header.index("specimen") if "specimen" in header else None
-    if named is None and table.kind in CURVES:
+    columns = {}
+    for quantity, (place, factor) in places.items():
+        name = header[place]
+        numbers = [_number(file, line, name, row, place) for line, row in enumerate(rows, 1)]
+        columns[quantity] = factor * np.array(numbers)
+    if "specimen" in header:
+        place = header.index("specimen")
+        specimens = tuple(row[place] for row in rows)
+    elif table.kind in CURVES:
         raise InputError(
             f"{file}: no column specimen; name the specimen of every point, one curve each"
         )
-    specimens = tuple(
-        f"{table.kind} {line}" if named is None else row[named] for line, row in enumerate(rows, 1)
-    )
+    else:
+        specimens = tuple(f"{table.kind} {line}" for line in range(1, len(rows) + 1))
+    zero_known = table.zero == "known"
     loaded = Measurements(
-        table.kind, columns, specimens, table.zero == "known", table.discrepancy, file, table.source
+        table.kind, columns, specimens, zero_known, table.discrepancy, file, table.source
     )
     _check(loaded)
     return loaded
@@ -123,7 +121,7 @@ def _places(file: str, kind: str, header: Sequence[str]) -> dict[str, tuple[int,
     places = {}
     for quantity, measure in COLUMNS[kind].items():
         names = {
-            f"{quantity}_{unit}" if unit else quantity: factor
+            f"{quantity}_{unit}".removesuffix("_"): factor
             for unit, factor in UNITS[measure].items()
         }
         matches = [(place, names[name]) for place, name in enumerate(header) if name in names]
@@ -148,7 +146,7 @@ def _places(file: str, kind: str, header: Sequence[str]) -> dict[str, tuple[int,
     return places
 
 
-def _number(file: str, line: int, header: Sequence[str], row: Sequence[str], place: int) -> float:
+def _number(file: str, line: int, name: str, row: Sequence[str], place: int) -> float:
     text = row[place] if place < len(row) else ""
     try:
         value = float(text)
@@ -156,8 +154,7 @@ def _number(file: str, line: int, header: Sequence[str], row: Sequence[str], pla
         value = math.nan
     if not math.isfinite(value):
         raise InputError(
-            f"{file}: row {line}, column {header[place]} = {text[:40]!r}: accepted is a finite"
-            " number"
+            f"{file}: row {line}, column {name} = {text[:40]!r}: accepted is a finite number"
         )
     return value
 
@@ -165,15 +162,16 @@ def _number(file: str, line: int, header: Sequence[str], row: Sequence[str], pla
 def _check(data: Measurements) -> None:
     columns = data.columns
     for name in columns:
-        if name.endswith("_error"):  # of a curve, one of the two errors may be zero
-            wrong = columns[name] < 0 if data.kind in CURVES else columns[name] <= 0
+        if name.endswith("_error"):
+            # of a curve, one of the two errors may be zero
+            wrong = columns[name] < 0
+            if data.kind not in CURVES:
+                wrong = columns[name] <= 0
             _refuse(data, wrong, "an error is positive; give one standard deviation", name)
     if data.kind in CURVES:
-        _refuse(
-            data,
-            np.all([columns.get(name, 0 * columns["force"]) == 0 for name in OPTIONAL], axis=0),
-            "both errors are zero",
-        )
+        nothing = 0 * columns["force"]
+        no_error = [columns.get(name, nothing) == 0 for name in OPTIONAL]
+        _refuse(data, np.all(no_error, axis=0), "both errors are zero")
         for specimen, points in by_specimen(data).items():
             _check_curve(
                 f"{data.file}: curve {specimen}",
@@ -183,9 +181,8 @@ def _check(data: Measurements) -> None:
     elif data.kind == "sticking":
         stuck = columns["stuck"]
         switches = columns["switches"]
-        wrong = (
-            (switches < 1) | (stuck < 0) | (stuck > switches) | (stuck % 1 > 0) | (switches % 1 > 0)
-        )
+        broken = (stuck % 1 > 0) | (switches % 1 > 0)
+        wrong = (switches < 1) | (stuck < 0) | (stuck > switches) | broken
         _refuse(
             data,
             wrong,
@@ -194,11 +191,9 @@ def _check(data: Measurements) -> None:
         )
     else:
         value = next(iter(COLUMNS[data.kind]))
-        stuck = (
-            "; a switch that stuck belongs to a table of kind sticking"
-            if data.kind == "release"
-            else ""
-        )
+        stuck = ""
+        if data.kind == "release":
+            stuck = "; a switch that stuck belongs to a table of kind sticking"
         _refuse(data, columns[value] <= 0, f"accepted is a positive number{stuck}", value)
         if (columns[f"{value}_error"] > columns[value]).all():
             raise InputError(
@@ -212,7 +207,9 @@ def _refuse(
     """Refuse the first row that is wrong, with its value in a column."""
     if np.any(wrong):
         row = int(np.argmax(wrong))
-        value = f", {column} = {data.columns[column][row]:g}" if column else ""
+        value = ""
+        if column is not None:
+            value = f", {column} = {data.columns[column][row]:g}"
         raise InputError(f"{data.file}: row {row + 1}{value}: {why}")
 
 

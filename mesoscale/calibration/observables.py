@@ -39,16 +39,12 @@ NAMES = (*curve_names("closing"), *curve_names("opening"), *SCALARS.values())
 
 
 def enter_by_logarithm(names: Sequence[str]) -> NDArray[np.bool_]:
-    """Which observables scatter log-normally: all but the separations of curves, whose zero is no
-    point of physics.
-    """
+    """Observables that scatter log-normally: all but separations, which have no zero."""
     return np.array([name not in ("closing_begin_nm", "opening_begin_nm") for name in names])
 
 
 def force_levels_nN(max_force_nN: float) -> Array:
-    """Net forces (nN) of the curves' observables, shape (LEVELS,); below the largest repulsion by
-    attraction.
-    """
+    """Net forces (nN) of the curves' observables, (LEVELS,); below the largest repulsion."""
     return max_force_nN * np.geomspace(0.02, 0.5, LEVELS)
 
 
@@ -64,8 +60,7 @@ def observe(cycle: "Cycle", max_force_nN: float) -> dict[str, float]:
 
 
 def separations_at(branch: "Branch", forces_nN: Array) -> Array:
-    """Separations (nm) at which the net force first reaches given ones, coming from afar; NaN where
-    it never does.
+    """Separations (nm) where the net force first reaches levels from afar; NaN where it never does.
 
     Parameters
     ----------
@@ -100,18 +95,16 @@ class Cycles:
     y: Array
 
     def of(self, names: Sequence[str]) -> Array:
-        """Some observables, their logarithms where they enter by them, shape (m, len(names)); NaN
-        where missing.
-        """
+        """Observables, (m, len(names)), in logarithms where they enter so; NaN where missing."""
         y = self.y[:, [NAMES.index(name) for name in names]]
         by_logarithm = enter_by_logarithm(names)
-        return np.where(
-            by_logarithm, np.log(np.where(~by_logarithm | (y > 0), np.abs(y), np.nan)), y
-        )
+        positive = np.where(~by_logarithm | (y > 0), np.abs(y), np.nan)
+        return np.where(by_logarithm, np.log(positive), y)
 
     def __add__(self, other: "Cycles") -> "Cycles":
         """These and further ones."""
-        return Cycles(np.vstack([self.x, other.x]), np.vstack([self.y, other.y]))
+        x = np.vstack([self.x, other.x])
+        return Cycles(x, np.vstack([self.y, other.y]))
 
 
 def observe_runs(
@@ -124,11 +117,10 @@ def observe_runs(
 
     rows = []
     for run, cycle in compute_all(runs, contact, progress):
-        seen = (
-            dict.fromkeys(NAMES, np.nan)
-            if isinstance(cycle, str)
-            else observe(cycle, contact.max_force_nN)
-        )
+        if isinstance(cycle, str):
+            seen = dict.fromkeys(NAMES, np.nan)
+        else:
+            seen = observe(cycle, contact.max_force_nN)
         rows.append({"run": run.index, "seed": run.seed, **run.values, **seen})
     return rows
 
@@ -136,9 +128,10 @@ def observe_runs(
 def cycles_of_rows(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> Cycles:
     """Cycles from rows of `observe_runs`, or the same as text, with inputs of these names."""
 
+    def number(text: Any) -> float:
+        return float(text) if text != "" else np.nan
+
     def columns(chosen: Sequence[str]) -> Array:
-        return np.array(
-            [[float(row[name]) if row[name] != "" else np.nan for name in chosen] for row in rows]
-        )
+        return np.array([[number(row[name]) for name in chosen] for row in rows])
 
     return Cycles(columns(names), columns(NAMES))

@@ -1,6 +1,4 @@
-"""From measurements to the posterior of the inputs, with responses that are refined where it
-lies.
-"""
+"""From measurements to the posterior of the inputs, with responses refined where it lies."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -40,39 +38,38 @@ class Posterior:
 
     Attributes
     ----------
-    prior, parts : data that are independent of each other at given inputs.
+    prior, data : data that are independent of each other at given inputs.
     """
 
     prior: InputTable
-    parts: tuple[SurfaceData | ValueData | StickingData, ...]
+    data: tuple[SurfaceData | ValueData | StickingData, ...]
 
     @cached_property
     def free(self) -> NDArray[np.int_]:
         """Inputs that have a width; the others are not sampled."""
-        return np.flatnonzero([np.ptp(row.distribution.span()) > 0 for row in self.prior.rows])
+        widths = [np.ptp(row.distribution.span()) for row in self.prior.rows]
+        return np.flatnonzero([width > 0 for width in widths])
 
     @property
     def surfaces(self) -> SurfaceData | None:
         """The part that was measured on surfaces."""
-        return next((part for part in self.parts if isinstance(part, SurfaceData)), None)
+        return next((data for data in self.data if isinstance(data, SurfaceData)), None)
 
     def inputs(self, z: Array) -> Array:
         """Inputs (m, n) from points z (m, free) where their prior is standard normal."""
-        every = np.zeros((len(z), len(self.prior.rows)))
-        every[:, self.free] = z
-        return self.prior.transform(
-            np.clip(ndtr(every), 1e-15, 1 - 1e-15)
-        )  # an unbounded prior stays finite
+        variables = np.zeros((len(z), len(self.prior.rows)))
+        variables[:, self.free] = z
+        # an unbounded prior stays finite
+        probability = np.clip(ndtr(variables), 1e-15, 1 - 1e-15)
+        return self.prior.transform(probability)
 
     def log_likelihood(self, x: Array) -> Array:
         """Logarithm of the likelihood at inputs x (m, n), shape (m,)."""
-        return sum((part.log_likelihood(x) for part in self.parts), np.zeros(len(x)))
+        return sum((data.log_likelihood(x) for data in self.data), np.zeros(len(x)))
 
     def simulated(self, x: Array, rng: np.random.Generator) -> "Posterior":
-        """The posterior of data made up at inputs x (1, n), with the same errors as the measured
-        ones.
-        """
-        return Posterior(self.prior, tuple(part.simulated(x, rng) for part in self.parts))
+        """The posterior of data made up at inputs x (1, n), with the measured errors."""
+        return Posterior(self.prior, tuple(data.simulated(x, rng) for data in self.data))
 
     def draw(self, settings: Sampling | None = None, progress: Progress | None = None) -> Chain:
         """Samples."""
@@ -104,8 +101,10 @@ class Model:
         InputError : see `surface_data`.
         """
         surfaces = surface_data(tables, self.cycles, self.prior, self.max_force_nN)
-        others = tuple(self._part(data) for data in tables if data.kind not in KINDS)
-        return Posterior(self.prior, (surfaces, *others) if surfaces else others)
+        values = tuple(self._part(data) for data in tables if data.kind not in KINDS)
+        if surfaces is None:
+            return Posterior(self.prior, values)
+        return Posterior(self.prior, (surfaces, *values))
 
     def _part(self, data: Measurements) -> ValueData | StickingData:
         """The data of a table that was measured on no surface."""
@@ -119,23 +118,24 @@ class Model:
         errors = data.columns[f"{column}_error"]
         if column in ("release", "pull_in"):
             volts = self.voltages[column]
+
+            def voltage(x: Array) -> Array:
+                return volts(x)[:, None]
+
             return ValueData(
-                values,
-                errors,
-                lambda x: volts(x)[:, None],
-                data.discrepancy,
-                volts.shared_V,
-                volts.each_V,
+                values, errors, voltage, data.discrepancy, volts.shared_V, volts.each_V
             )
 
-        def model(x: Array) -> Array:
-            inputs = {name: x[:, [k]] for k, name in enumerate(self.prior.names)}
-            return (
-                inputs["e_star"]
-                if column == "e_star"
-                else HardnessLaw.of(inputs).pressure(data.columns["area"])
-            )
+        def inputs(x: Array) -> dict[str, Array]:
+            return {name: x[:, [k]] for k, name in enumerate(self.prior.names)}
 
+        def modulus(x: Array) -> Array:
+            return inputs(x)["e_star"]
+
+        def hardness(x: Array) -> Array:
+            return HardnessLaw.of(inputs(x)).pressure(data.columns["area"])
+
+        model = modulus if column == "e_star" else hardness
         return ValueData(values, errors, model, data.discrepancy)
 
     def check_range(self, data: Measurements) -> None:
@@ -145,26 +145,30 @@ class Model:
         ------
         InputError
         """
-        (part,) = self.posterior([data]).parts
-        if isinstance(part, StickingData):
+        (model_data,) = self.posterior([data]).data
+        if isinstance(model_data, StickingData):
             return
-        if isinstance(part, SurfaceData):
-            shares = part.misfits(*expected_over_prior(self.cycles, part.responses.names))
+        if isinstance(model_data, SurfaceData):
+            shares = model_data.misfits(
+                *expected_over_prior(self.cycles, model_data.responses.names)
+            )
             if shares.min() < 1e-9:  # six standard deviations of one number
-                name = part.specimens[int(shares.argmin())]
+                name = model_data.specimens[int(shares.argmin())]
                 raise InputError(
                     f"{data.file}: {data.kind} of {name}: the model gives nothing like it anywhere"
                     " in the prior; look at units, columns and contact area, or widen the inputs"
                 )
             return
-        model = part.model(self.prior.sample(2000, 1))
+        model = model_data.model(self.prior.sample(2000, 1))
         low = model.min(axis=0)
         high = model.max(axis=0)
-        reach = 0.5 * (high - low) + 3 * np.hypot(part.errors, np.hypot(part.shared, part.single))
-        wrong = np.flatnonzero((part.values > high + reach) | (part.values < low - reach))
+        error = np.hypot(model_data.errors, np.hypot(model_data.shared, model_data.single))
+        reach = 0.5 * (high - low) + 3 * error
+        values = model_data.values
+        wrong = np.flatnonzero((values > high + reach) | (values < low - reach))
         if wrong.size:
             raise InputError(
-                f"{data.file}: row {wrong[0] + 1}: {data.kind} = {part.values[wrong[0]]:.4g}: the"
+                f"{data.file}: row {wrong[0] + 1}: {data.kind} = {values[wrong[0]]:.4g}: the"
                 f" model gives {low.min():.3g} .. {high.max():.3g} anywhere in the prior; look at"
                 " unit and columns, or widen the inputs"
             )
@@ -191,7 +195,9 @@ class Calibration:
     @property
     def reasons(self) -> list[str]:
         """Why there is no posterior."""
-        return [] if self.chain.converged else [f"the chain has not converged: {self.chain.reason}"]
+        if self.chain.converged:
+            return []
+        return [f"the chain has not converged: {self.chain.reason}"]
 
 
 def calibrate(
@@ -232,16 +238,10 @@ def calibrate(
         x = posterior.inputs(
             centre + 1.3 * (chain.z[picks] - centre)
         )  # wider, so that its tails are known, too
-        first = turn * more
-        runs = [
-            Run(
-                first + k,
-                -1,
-                FIRST_LOCAL_SEED + first + k,
-                dict(zip(model.prior.names, row, strict=True)),
-            )
-            for k, row in enumerate(x.tolist())
-        ]
+        runs = []
+        for index, row in enumerate(x.tolist(), turn * more):
+            values = dict(zip(model.prior.names, row, strict=True))
+            runs.append(Run(index, -1, FIRST_LOCAL_SEED + index, values))
         added = cycles_of_rows(observe_runs(runs, contact, progress), model.prior.names)
         model = Model(model.prior, model.cycles + added, model.voltages, model.max_force_nN)
         turn += 1
@@ -252,7 +252,8 @@ def _error_shares(posterior: Posterior, chain: Chain) -> dict[str, float]:
     if posterior.surfaces is None:
         return {}
     responses = posterior.surfaces.responses
-    prediction = responses(posterior.inputs(chain.z[:: max(1, len(chain.z) // 500)]))
+    stride = max(1, len(chain.z) // 500)
+    prediction = responses(posterior.inputs(chain.z[::stride]))
     known = np.einsum("mkk->mk", prediction.scatter) * prediction.error[:, None]
     shares = np.sqrt(known.mean(axis=0)) / prediction.mean.std(axis=0)
     return dict(zip(responses.names, shares.tolist(), strict=True))

@@ -1,5 +1,4 @@
-"""Responses of the observables to the inputs, their scatter from surface to surface, and their own
-error.
+"""Responses of the observables to the inputs, their scatter between surfaces, and their error.
 
 All observables share one basis, so that what the finite number of cycles leaves open is one number
 per point, the leverage of least squares times the scatter (Draper and Smith, Applied Regression
@@ -76,25 +75,20 @@ class Responses:
 
 
 def _units(names: Sequence[str], rms: Array) -> tuple[Array, Array]:
-    """What is added to a response, and by what it is multiplied, so that lengths count in RMS
-    heights; (m, k) each.
-    """
+    """Shift and factor of a response, (m, k) each, so that lengths count in RMS heights."""
     length = np.array([name.endswith("_nm") for name in names])
     by_logarithm = enter_by_logarithm(names)
     rms = np.maximum(rms, 1e-300)[:, None]
-    return np.where(length & by_logarithm, np.log(rms), 0.0), np.where(
-        length & ~by_logarithm, rms, 1.0
-    )
+    shift = np.where(length & by_logarithm, np.log(rms), 0.0)
+    return shift, np.where(length & ~by_logarithm, rms, 1.0)
 
 
-def _terms(varying: NDArray[np.bool_], most: int) -> NDArray[np.int_]:
-    """Terms of the inputs that vary: constant, linear, products of two, squares, cubes; at most so
-    many of them.
-    """
+def _terms(varying: NDArray[np.bool_], largest: int) -> NDArray[np.int_]:
+    """Terms of the varying inputs: constant, linear, products, squares, cubes; at most so many."""
     linear = np.eye(len(varying), dtype=int)[varying]
-    products = [one + two for k, one in enumerate(linear) for two in linear[:k]]
+    products = [power + other for k, power in enumerate(linear) for other in linear[:k]]
     rows = [np.zeros(len(varying), int), *linear, *(2 * linear), *products, *(3 * linear)]
-    return np.array(rows[: max(most, 1 + len(linear))])
+    return np.array(rows[: max(largest, 1 + len(linear))])
 
 
 def fit_responses(names: Sequence[str], cycles: Cycles, table: InputTable) -> Responses:
@@ -117,7 +111,9 @@ def fit_responses(names: Sequence[str], cycles: Cycles, table: InputTable) -> Re
     target = target[usable]
     degrees = _terms(np.ptp(ranges, axis=1) > 0, len(u) // FEWEST_PER_TERM)
     if FEWEST_PER_TERM * len(degrees) > len(u):
-        words = ", ".join(names) if len(names) < 4 else "the observables"
+        words = "the observables"
+        if len(names) < 4:
+            words = ", ".join(names)
         raise InputError(
             f"measurements.runs: {len(u)} of {len(cycles.x)} cycles give all of {words}; at least"
             f" {FEWEST_PER_TERM * len(degrees)} are needed; raise it, or lower the lowest measured"
@@ -129,7 +125,8 @@ def fit_responses(names: Sequence[str], cycles: Cycles, table: InputTable) -> Re
     leverage = np.einsum("mt,ts,ms->m", basis, inverse, basis, optimize=True)
     left_out = (target - basis @ coefficients) / np.maximum(1 - leverage, 1e-3)[:, None]
     linear = np.column_stack([np.ones(len(u)), u])
-    slopes = np.linalg.lstsq(linear, np.log(left_out**2 + 1e-12), rcond=None)[0][1:]
+    log_squares = np.log(left_out**2 + 1e-12)
+    slopes = np.linalg.lstsq(linear, log_squares, rcond=None)[0][1:]
     alike = left_out * np.exp(-0.5 * u @ slopes)
     covariance = alike.T @ alike / len(alike) + 1e-12 * np.eye(len(names))
     return Responses(

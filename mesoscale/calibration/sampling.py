@@ -92,27 +92,29 @@ def sample(
     numbers = settings or Sampling()
     rng = np.random.default_rng(np.random.SeedSequence([numbers.seed, 0xCA]))
     pool = rng.standard_normal((numbers.prior_draws, dimensions))
-    weights = np.concatenate(
-        [log_likelihood(part) for part in np.array_split(pool, numbers.prior_draws // 500)]
-    )
+    batches = np.array_split(pool, numbers.prior_draws // 500)
+    weights = np.concatenate([log_likelihood(points) for points in batches])
+    weights = np.where(np.isfinite(weights), weights, -np.inf)
     walkers = max(numbers.walkers, 4 * dimensions)
     samplers = []
     states = []
     for ensemble in range(numbers.ensembles):
-        jumps = [
+        moves = [
             (emcee.moves.DEMove(), 0.3),
             (emcee.moves.DEMove(gamma0=0.2), 0.4),
             (emcee.moves.DEMove(gamma0=1), 0.2),
+            (emcee.moves.StretchMove(), 0.1),
         ]
-        moves = [*jumps, (emcee.moves.StretchMove(), 0.1)]
         sampler = emcee.EnsembleSampler(
             walkers, dimensions, log_density, moves=moves, vectorize=True
         )
         sampler.random_state = np.random.RandomState([numbers.seed, ensemble]).get_state()
         samplers.append(sampler)
-        start = pool[_starts(np.where(np.isfinite(weights), weights, -np.inf), walkers, rng)]
+        start = pool[_starts(weights, walkers, rng)]
         states.append(start + 1e-2 * rng.standard_normal(start.shape))
-    r_hat, effective, done = np.inf, 0.0, 0
+    r_hat = np.inf
+    effective = 0.0
+    done = 0
     while done < numbers.max_steps and not (
         r_hat < numbers.largest_r_hat and effective > numbers.fewest_effective
     ):
@@ -122,12 +124,10 @@ def sample(
         ]
         done += numbers.block
         # the density beside the inputs: walkers that still fall onto a ridge do not show in those
-        chains = [
-            np.dstack(
-                [sampler.get_chain(discard=done // 2), sampler.get_log_prob(discard=done // 2)]
-            )
-            for sampler in samplers
-        ]
+        chains = []
+        for sampler in samplers:
+            inputs = sampler.get_chain(discard=done // 2)
+            chains.append(np.dstack([inputs, sampler.get_log_prob(discard=done // 2)]))
         r_hat, effective = diagnose(np.stack(chains))
         if progress:
             share = done / numbers.max_steps
@@ -154,9 +154,7 @@ def sample(
 
 
 def _starts(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.int_]:
-    """Draws of the prior where walkers start, by a likelihood tempered until enough of them
-    differ.
-    """
+    """Draws of the prior where walkers start, tempered until enough of them differ."""
     temper = 1.0
     while True:
         weights = np.exp(temper * (log_weights - log_weights.max()))
@@ -164,7 +162,8 @@ def _starts(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray
         if 1 / (weights**2).sum() > 4 * count or temper < 1e-6:
             break
         temper *= 0.7
-    return rng.choice(len(weights), size=count, replace=int((weights > 0).sum()) < count, p=weights)
+    replace = int((weights > 0).sum()) < count
+    return rng.choice(len(weights), size=count, replace=replace, p=weights)
 
 
 def diagnose(chains: Array) -> tuple[float, float]:
@@ -182,14 +181,17 @@ def diagnose(chains: Array) -> tuple[float, float]:
     from scipy.stats import rankdata  # slow to import
 
     half = chains.shape[1] // 2
-    chains = rankdata(chains.reshape(-1, chains.shape[-1]), axis=0).reshape(chains.shape)
+    ranks = rankdata(chains.reshape(-1, chains.shape[-1]), axis=0)
+    chains = ranks.reshape(chains.shape)
     variance = chains.var(axis=(0, 1, 2))
-    means = np.concatenate([chains[:, :half].mean(axis=(1, 2)), chains[:, half:].mean(axis=(1, 2))])
+    first_means = chains[:, :half].mean(axis=(1, 2))
+    second_means = chains[:, half:].mean(axis=(1, 2))
+    means = np.concatenate([first_means, second_means])
     r_hat = np.sqrt(1 + means.var(axis=0, ddof=1) / variance)
     # the series whose autocorrelation counts is the ensemble's mean (Goodman and Weare, Comm. App.
     # Math. Comp. Sci. 5, 65, 2010, doi 10.2140/camcos.2010.5.65)
     series = chains.mean(axis=2)
-    times = np.mean([integrated_time(one[:, None], tol=0, quiet=True) for one in series], axis=0)
+    times = [integrated_time(mean[:, None], tol=0, quiet=True) for mean in series]
     of_means = series.var(axis=(0, 1))
-    effective = variance / of_means * series.shape[0] * series.shape[1] / times
+    effective = variance / of_means * series.shape[0] * series.shape[1] / np.mean(times, axis=0)
     return float(r_hat.max()), float(effective.min())

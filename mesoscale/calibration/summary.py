@@ -1,6 +1,4 @@
-"""What the measurements changed, and whether they agree: content of the result files of the
-calibration.
-"""
+"""What the measurements changed, and whether they agree: result files of the calibration."""
 
 from importlib.metadata import version
 from typing import Any
@@ -26,11 +24,11 @@ Array = NDArray[np.float64]
 def _spread(states: dict[str, Array]) -> dict[str, float]:
     """Quantiles before and after."""
     quantiles = {"q05": 0.05, "q50": 0.5, "q95": 0.95}
-    return {
-        f"{state}_{name}": float(np.quantile(values, share))
-        for state, values in states.items()
-        for name, share in quantiles.items()
-    }
+    spread = {}
+    for state, values in states.items():
+        for name, share in quantiles.items():
+            spread[f"{state}_{name}"] = float(np.quantile(values, share))
+    return spread
 
 
 def summary_rows(result: Calibration) -> list[dict[str, Any]]:
@@ -38,14 +36,11 @@ def summary_rows(result: Calibration) -> list[dict[str, Any]]:
     if not result.chain.converged:
         return []
     prior = result.model.prior.sample(len(result.x), 1)
-    return [
-        {
-            "parameter": row.name,
-            "unit": row.unit,
-            **_spread({"prior": prior[:, k], "posterior": result.x[:, k]}),
-        }
-        for k, row in enumerate(result.model.prior.rows)
-    ]
+    rows = []
+    for k, row in enumerate(result.model.prior.rows):
+        spread = _spread({"prior": prior[:, k], "posterior": result.x[:, k]})
+        rows.append({"parameter": row.name, "unit": row.unit, **spread})
+    return rows
 
 
 def sample_rows(result: Calibration) -> list[dict[str, float]]:
@@ -58,52 +53,41 @@ def sample_rows(result: Calibration) -> list[dict[str, float]]:
 
 
 def predictive_rows(result: Calibration) -> list[dict[str, Any]]:
-    """What the next surface and the next switch will show, before and after the measurements (5,
-    50, 95 %).
-    """
+    """What the next surface and switch will show, before and after the data (5, 50, 95 %)."""
     if not result.chain.converged:
         return []
     rng = np.random.default_rng(np.random.SeedSequence([0xCE]))
     model = result.model
-    states = {
-        "prior": model.prior.sample(1000, 2),
-        "posterior": result.x[rng.integers(len(result.x), size=1000)],
-    }
+    picks = rng.integers(len(result.x), size=1000)
+    states = {"prior": model.prior.sample(1000, 2), "posterior": result.x[picks]}
     responses = fit_responses(NAMES, model.cycles, model.prior)
     seen: dict[str, Array] = {}
     for state, x in states.items():
         prediction = responses(x)
         root = np.linalg.cholesky(prediction.scatter * (1 + prediction.error)[:, None, None])
-        f = prediction.mean + np.einsum(
-            "mjk,mk->mj", root, rng.standard_normal(prediction.mean.shape)
-        )
-        seen[state] = np.where(enter_by_logarithm(NAMES), np.exp(np.minimum(f, 700.0)), f)
+        normals = rng.standard_normal(prediction.mean.shape)
+        f = prediction.mean + np.einsum("mjk,mk->mj", root, normals)
+        values = np.exp(np.minimum(f, 700.0))
+        seen[state] = np.where(enter_by_logarithm(NAMES), values, f)
     rows = []
     for branch in CURVES.values():
         first = NAMES.index(curve_names(branch)[0])
         for k, force in enumerate(force_levels_nN(model.max_force_nN)):
-            separation = {
-                state: y[:, first] - y[:, first + 1 : first + 1 + k].sum(axis=1)
-                for state, y in seen.items()
-            }
-            rows.append(
-                {
-                    "quantity": f"{branch} separation",
-                    "unit": "nm",
-                    "force_nN": force,
-                    **_spread(separation),
-                }
-            )
+            separation = {}
+            for state, y in seen.items():
+                steps = y[:, first + 1 : first + 1 + k]
+                separation[state] = y[:, first] - steps.sum(axis=1)
+            row = {"quantity": f"{branch} separation", "unit": "nm", "force_nN": force}
+            rows.append({**row, **_spread(separation)})
     for kind, name in SCALARS.items():
         values = {state: y[:, NAMES.index(name)] for state, y in seen.items()}
-        rows.append(
-            {"quantity": kind, "unit": name.rpartition("_")[2], "force_nN": "", **_spread(values)}
-        )
+        row = {"quantity": kind, "unit": name.rpartition("_")[2], "force_nN": ""}
+        rows.append({**row, **_spread(values)})
     for kind, volts in model.voltages.items():
         width = np.hypot(volts.shared_V, volts.each_V)
-        values = {
-            state: volts(x) + width * rng.standard_normal(len(x)) for state, x in states.items()
-        }
+        values = {}
+        for state, x in states.items():
+            values[state] = volts(x) + width * rng.standard_normal(len(x))
         rows.append({"quantity": kind, "unit": "V", "force_nN": "", **_spread(values)})
     return rows
 
@@ -113,25 +97,30 @@ def checks(result: Calibration) -> dict[str, dict[str, Any]]:
     rng = np.random.default_rng(np.random.SeedSequence([Sampling.seed, 0xCC]))
     agreement = {}
     for data in result.tables:
-        rest = [other for other in result.tables if other is not data]
-        others = result.model.posterior(rest)
-        z = others.draw().z if rest else rng.standard_normal((len(result.x), len(others.free)))
-        probability = predictive_probability(result.model.posterior([data]), others.inputs(z), rng)
-        expectation = "what the other measurements and the prior lead to" if rest else "the prior"
+        other_tables = [other for other in result.tables if other is not data]
+        reference = result.model.posterior(other_tables)
+        if other_tables:
+            z = reference.draw().z
+            expectation = "what the other measurements and the prior lead to"
+        else:
+            z = rng.standard_normal((len(result.x), len(reference.free)))
+            expectation = "the prior"
+        table = result.model.posterior([data])
+        probability = predictive_probability(table, reference.inputs(z), rng)
         verdict = f"agrees with {expectation}"
         if probability < 0.01:
+            as_unlikely = "no" if probability == 0 else "few"
             verdict = (
-                f"contradicts {expectation}: {'no' if probability == 0 else 'few'} made-up data"
-                " sets are as unlikely; an error that is too small, another contact area, a prior"
-                " too narrow, or the model itself"
+                f"contradicts {expectation}: {as_unlikely} made-up data sets are as unlikely; an"
+                " error that is too small, another contact area, a prior too narrow, or the model"
+                " itself"
             )
         agreement[data.kind] = {"probability": probability, "verdict": verdict}
     return agreement
 
 
 def predictive_probability(data: Posterior, x: Array, rng: np.random.Generator) -> float:
-    """Share of made-up data sets that are less likely than the measured ones, given samples x (m,
-    n) of the inputs.
+    """Share of made-up data sets less likely than the measured ones, at samples x (m, n).
 
     Box, J. R. Statist. Soc. A 143, 383 (1980): the predictive density at the data is compared with
     those of its draws."""
@@ -147,33 +136,32 @@ def predictive_probability(data: Posterior, x: Array, rng: np.random.Generator) 
 
 
 def posterior_json(result: Calibration, agreement: dict[str, dict[str, Any]]) -> dict[str, Any]:
-    """Content of posterior.json: the gate, the chain, the tables, and the inputs as the next stage
-    takes them.
+    """Content of posterior.json: the gate, the chain, the tables, and inputs for the next stage.
 
     Parameters
     ----------
     agreement : see `checks`; empty without a posterior.
     """
     chain, surfaces = result.chain, result.posterior.surfaces
-    tables = {
-        data.kind: {
+    tables = {}
+    for data in result.tables:
+        tables[data.kind] = {
             "file": data.file,
             "source": data.source,
             "rows": len(data),
             "discrepancy": data.discrepancy,
             **agreement.get(data.kind, {}),
         }
-        for data in result.tables
+    sampler = {
+        "sampler": f"emcee {version('emcee')}",
+        "r_hat": chain.r_hat,
+        "independent_draws": chain.effective,
+        "steps": chain.steps,
     }
     return {
         "gate": {"passed": not result.reasons, "reasons": result.reasons},
         "remarks": _remarks(result, tables) if chain.converged else [],
-        "chain": {
-            "sampler": f"emcee {version('emcee')}",
-            "r_hat": chain.r_hat,
-            "independent_draws": chain.effective,
-            "steps": chain.steps,
-        },
+        "chain": sampler,
         "cycles": len(result.model.cycles.x),
         "response_error_share": max(result.error_share.values(), default=0.0),
         "tables": tables,
@@ -206,20 +194,21 @@ def _inputs(result: Calibration) -> dict[str, Any]:
     from scipy.stats import rankdata  # slow to import
 
     names, free = result.model.prior.names, result.posterior.free
-    ranks = np.corrcoef([rankdata(result.x[:, k]) for k in free]).reshape(len(free), -1)
+    ranked = [rankdata(result.x[:, k]) for k in free]
+    ranks = np.corrcoef(ranked).reshape(len(free), -1)
     inputs: dict[str, Any] = {}
     for k, name in enumerate(names):
         place = np.flatnonzero(free == k)
-        partners = {
-            names[other]: float(ranks[place[0], j])
-            for j, other in enumerate(free)
-            if place.size and other < k
-        }
+        partners = {}
+        for j, other in enumerate(free):
+            if place.size and other < k:
+                partners[names[other]] = float(ranks[place[0], j])
+        values = result.x[:, k]
         inputs[name] = {
             "distribution": "samples",
-            "a": float(result.x[:, k].mean()),
-            "b": float(result.x[:, k].std()),
-            "values": np.quantile(result.x[:, k], np.linspace(0, 1, 401)).tolist(),
+            "a": float(values.mean()),
+            "b": float(values.std()),
+            "values": np.quantile(values, np.linspace(0, 1, 401)).tolist(),
             "correlation": partners,
         }
     return inputs

@@ -31,6 +31,8 @@ Part = tuple[Array, Array, Array, Array]
 
 KINDS = (*CURVES, *SCALARS)
 """Kinds that name, or may name, the specimen; the same name means the same surface."""
+MOST_STEPS = 30  # towards the place where data are linearised
+SETTLED = 1e-3  # last step, in standard deviations of the prior; beyond, it has not settled
 
 
 @dataclass(frozen=True)
@@ -65,32 +67,26 @@ class SurfaceData:
         information = self.information[..., None]
         off = information - precision @ mean  # (m, s, k, 1)
         spread = eye + precision @ scatter
-        pulled = np.linalg.solve(
-            spread, np.concatenate([off, np.broadcast_to(precision, spread.shape)], axis=-1)
-        )
-        pulled, known = pulled[..., :1], pulled[..., 1:].sum(axis=1)
-        result = (
-            _inner(mean, information + off)
-            + _inner(off, scatter @ pulled)
-            - np.linalg.slogdet(spread)[1]
-        )
+        columns = [off, np.broadcast_to(precision, spread.shape)]
+        solved = np.linalg.solve(spread, np.concatenate(columns, axis=-1))
+        pulled = solved[..., :1]
+        known = solved[..., 1:].sum(axis=1)
+        of_specimens = _inner(mean, information + off) + _inner(off, scatter @ pulled)
+        result = of_specimens - np.linalg.slogdet(spread)[1]
         total = pulled.sum(axis=1)
         shared = eye + known @ common
-        last = _inner(total, common @ np.linalg.solve(shared, total)) - np.linalg.slogdet(shared)[1]
+        of_all = _inner(total, common @ np.linalg.solve(shared, total))
+        last = of_all - np.linalg.slogdet(shared)[1]
         return 0.5 * (result.sum(axis=1) + last - self._constant)
 
     @cached_property
     def _constant(self) -> float:
-        """What the logarithms have in common: that of data which lie on the response, whatever the
-        inputs.
-        """
+        """What the logarithms share: that of data on the response, whatever the inputs."""
         inverse, _ = _pseudo_inverse(self.precision)
         return float(np.einsum("sj,sjk,sk->", self.information, inverse, self.information))
 
     def _common(self, prediction: Prediction) -> Array:
-        """Covariance that all specimens share: the model's own error and that of the responses,
-        shape (m, k, k).
-        """
+        """Covariance (m, k, k) that specimens share: error of model and responses."""
         common = prediction.error[:, None, None] * prediction.scatter
         if self.model_error.any():
             to_own = np.linalg.inv(_separations(self.responses.names, prediction.mean)[1])
@@ -112,9 +108,7 @@ class SurfaceData:
         return replace(self, information=np.einsum("sjk,sk->sj", self.precision, f) + noise)
 
     def misfits(self, mean: Array, covariance: Array) -> Array:
-        """Probability of a specimen as far as each is from observables of this mean (k,) and
-        covariance (k, k).
-        """
+        """Probability of specimens as far from this mean (k,) and covariance (k, k)."""
         from scipy.stats import chi2  # slow to import
 
         off = self.information - self.precision @ mean
@@ -127,26 +121,25 @@ class SurfaceData:
         """Specimens that inputs x (m, n) of the posterior cannot explain, in words."""
         prediction = self.responses(x)
         covariances = prediction.scatter + self._common(prediction)
-        shares = np.mean(
-            [self.misfits(*at) for at in zip(prediction.mean, covariances, strict=True)], axis=0
-        )
-        return [
-            f"specimen {name} lies far from the others (probability {share:.1g}); its data are used"
-            " as they are"
-            for name, share in zip(self.specimens, shares, strict=True)
-            if share < 0.01 / len(shares)
-        ]
+        normals = zip(prediction.mean, covariances, strict=True)
+        shares = np.mean([self.misfits(*normal) for normal in normals], axis=0)
+        lonely = []
+        for name, share in zip(self.specimens, shares, strict=True):
+            if share < 0.01 / len(shares):
+                lonely.append(
+                    f"specimen {name} lies far from the others (probability {share:.1g}); its data"
+                    " are used as they are"
+                )
+        return lonely
 
 
-def _inner(one: Array, other: Array) -> Array:
+def _inner(first: Array, second: Array) -> Array:
     """Inner products of columns (..., k, 1)."""
-    return (one * other).sum(axis=(-2, -1))
+    return (first * second).sum(axis=(-2, -1))
 
 
 def _pseudo_inverse(matrices: Array) -> tuple[Array, Array]:
-    """Pseudo-inverses and ranks of covariances or precisions (s, k, k), whatever the units of their
-    rows.
-    """
+    """Pseudo-inverses and ranks of covariances (s, k, k), whatever the units of their rows."""
     diagonal = np.einsum("skk->sk", matrices)
     unit = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
     # smaller eigenvalues are rounding
@@ -172,12 +165,14 @@ def surface_data(
     tables = [table for table in tables if table.kind in KINDS]
     if not tables:
         return None
-    by_table = [
-        curve_names(CURVES[table.kind]) if table.kind in CURVES else [SCALARS[table.kind]]
-        for table in tables
-    ]
+    by_table = []
+    for table in tables:
+        if table.kind in CURVES:
+            by_table.append(curve_names(CURVES[table.kind]))
+        else:
+            by_table.append([SCALARS[table.kind]])
     names = [name for some in by_table for name in some]
-    parts: dict[str, list[Part]] = {}
+    specimens: dict[str, list[Part]] = {}
     model_error = np.zeros((len(names), len(names)))
     left_out = 0
     for table, seen in zip(tables, by_table, strict=True):
@@ -190,27 +185,33 @@ def surface_data(
             columns = np.zeros((len(values), len(names)))
             columns[:, block] = points
             free = np.full(len(values), float(table.kind in CURVES and not table.zero_known))
-            parts.setdefault(specimen, []).append((columns, values, variances, free))
+            specimens.setdefault(specimen, []).append((columns, values, variances, free))
     expected = expected_over_prior(cycles, names)
-    terms = [
-        _linearised(names, expected, *map(np.concatenate, zip(*part, strict=True)))
-        for part in parts.values()
-    ]
-    precision, information = (np.array(column) for column in zip(*terms, strict=True))
+    bend = any(table.kind in CURVES for table in tables)  # other data are linear everywhere
+    precision = []
+    information = []
+    for specimen, tables_of_specimen in specimens.items():
+        columns = (np.concatenate(column) for column in zip(*tables_of_specimen, strict=True))
+        a, b, last_step = _linearised(names, expected, *columns)
+        if bend and not last_step <= SETTLED:
+            raise InputError(
+                f"{tables[0].file}: specimen {specimen}: its observables do not settle in"
+                f" {MOST_STEPS} steps; look at units, columns and errors, or leave it out"
+            )
+        precision.append(a)
+        information.append(b)
     return SurfaceData(
         fit_responses(names, cycles, prior),
-        tuple(parts),
-        precision,
-        information,
+        tuple(specimens),
+        np.array(precision),
+        np.array(information),
         model_error,
         left_out,
     )
 
 
 def expected_over_prior(cycles: Cycles, names: Sequence[str]) -> tuple[Array, Array]:
-    """Mean and covariance of observables over cycles; data that do not determine a curve are
-    linearised there.
-    """
+    """Mean and covariance of observables over cycles, where undetermined curves are linearised."""
     seen = cycles.of(names)
     mean = np.nanmean(seen, axis=0)
     centred = np.where(np.isnan(seen), 0.0, seen - mean)
@@ -218,8 +219,7 @@ def expected_over_prior(cycles: Cycles, names: Sequence[str]) -> tuple[Array, Ar
 
 
 def check_points(table: Measurements, max_force_nN: float) -> None:
-    """Refuse curves with too few points in the range of forces of the responses, and values that
-    are hardly known.
+    """Refuse curves with too few points in the range of the responses, and values hardly known.
 
     Raises
     ------
@@ -233,9 +233,7 @@ def check_points(table: Measurements, max_force_nN: float) -> None:
 def _points(
     table: Measurements, specimen: str, rows: NDArray[np.int_], max_force_nN: float
 ) -> tuple[Array, Array, Array, int]:
-    """A specimen's data as sums of observables (p, k), values, variances (p,), and how many points
-    are left out.
-    """
+    """A specimen's data as sums of observables (p, k), values, variances (p,), points left out."""
     if table.kind in CURVES:
         return _curve(table, specimen, rows, max_force_nN)
     values = table.columns[table.kind][rows]
@@ -252,9 +250,7 @@ def _points(
 def _curve(
     table: Measurements, specimen: str, rows: NDArray[np.int_], max_force_nN: float
 ) -> tuple[Array, Array, Array, int]:
-    """As `_points`, of a curve; a force below three of its errors is left out, as its logarithm
-    would be biased.
-    """
+    """The data of a curve; forces below three errors are left out, as their logarithm is biased."""
     levels = force_levels_nN(max_force_nN)
     force = table.columns["force"][rows]
     separation = table.columns["separation"][rows]
@@ -269,24 +265,22 @@ def _curve(
             " force"
         )
     log_force = np.log(force[usable])
-    columns = np.stack(
-        [np.interp(log_force, np.log(levels), row) for row in np.eye(LEVELS)], axis=1
-    )
-    bend = np.polynomial.Polynomial.fit(
-        log_force, separation[usable], min(2, int(usable.sum()) - 2)
-    )
+    log_levels = np.log(levels)
+    columns = [np.interp(log_force, log_levels, row) for row in np.eye(LEVELS)]
+    degree = min(2, int(usable.sum()) - 2)
+    bend = np.polynomial.Polynomial.fit(log_force, separation[usable], degree)
     slope = bend.deriv()(log_force) / force[usable]
     variances = own_error[usable] ** 2 + (slope * force_error[usable]) ** 2
     floor = np.median(variances) * 1e-4 + 1e-12  # where a fitted slope crosses zero
-    return columns, separation[usable], np.maximum(variances, floor), int((~usable).sum())
+    variances = np.maximum(variances, floor)
+    return np.stack(columns, axis=1), separation[usable], variances, int((~usable).sum())
 
 
 def _separations(names: Sequence[str], f: Array) -> tuple[Array, Array]:
-    """Observables f (..., k) with each curve as separations at its forces, and their derivatives
-    (..., k, k).
-    """
+    """Observables f (..., k), curves as separations, and derivatives (..., k, k)."""
     values = f.copy()
-    slopes = np.broadcast_to(np.eye(len(names)), (*f.shape, len(names))).copy()
+    count = len(names)
+    slopes = np.broadcast_to(np.eye(count), (*f.shape, count)).copy()
     for branch in CURVES.values():
         begin = curve_names(branch)[0]
         if begin not in names:
@@ -296,7 +290,8 @@ def _separations(names: Sequence[str], f: Array) -> tuple[Array, Array]:
         steps = np.exp(f[..., block])
         values[..., block] = f[..., first, None] - np.cumsum(steps, axis=-1)
         slopes[..., block, first] = 1.0
-        slopes[..., block, block] = -np.tril(np.repeat(steps[..., None, :], LEVELS - 1, axis=-2))
+        falling = np.repeat(steps[..., None, :], LEVELS - 1, axis=-2)
+        slopes[..., block, block] = -np.tril(falling)
     return values, slopes
 
 
@@ -307,8 +302,10 @@ def _linearised(
     values: Array,
     variances: Array,
     free: Array,
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array, float]:
     """A and b of the data of one specimen, linear in its observables where data and prior put them.
+
+    The last step towards that place comes with them, in standard deviations of the prior.
 
     Parameters
     ----------
@@ -323,24 +320,25 @@ def _linearised(
     mean, covariance = expected
     stiffness = np.linalg.inv(covariance)
     f = mean.copy()
-    for _ in range(30):  # steps of Gauss and Newton
+    deviations = np.array([np.inf])
+    for _ in range(MOST_STEPS):  # of Gauss and Newton
         physical, slopes = _separations(names, f)
         linear = columns @ slopes
         pull = linear.T @ weights @ (values - columns @ physical) + stiffness @ (mean - f)
         step = np.linalg.solve(linear.T @ weights @ linear + stiffness, pull)
-        f = f + step / max(1.0, np.abs(step / np.sqrt(np.diag(covariance))).max())
+        deviations = np.abs(step / np.sqrt(np.diag(covariance)))
+        f = f + step / max(1.0, deviations.max())
     physical, slopes = _separations(names, f)
     linear = columns @ slopes
-    return linear.T @ weights @ linear, linear.T @ weights @ (
-        values - columns @ physical + linear @ f
-    )
+    precision = linear.T @ weights @ linear
+    information = linear.T @ weights @ (values - columns @ physical + linear @ f)
+    return precision, information, float(deviations.max())
 
 
 def _model_error(table: Measurements, size: int) -> Array:
-    """Covariance of the model's own error in what a table sees; over a decade of force it stays
-    correlated.
-    """
+    """Covariance of the model's own error in a table; correlated over a decade of force."""
     if table.kind == "contact_begin":  # stated in nm, the observable is its logarithm
-        return np.full((1, 1), (table.discrepancy / np.median(table.columns["contact_begin"])) ** 2)
+        typical_nm = np.median(table.columns["contact_begin"])
+        return np.full((1, 1), (table.discrepancy / typical_nm) ** 2)
     decades = np.log10(force_levels_nN(1.0))[:size]
     return table.discrepancy**2 * np.exp(-np.abs(decades[:, None] - decades))

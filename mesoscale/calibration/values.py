@@ -1,6 +1,4 @@
-"""Likelihood of values that the inputs alone decide: hardness points, elastic moduli, and voltages
-of switches.
-"""
+"""Likelihood of values that the inputs alone decide: hardness, moduli, voltages of switches."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -41,11 +39,8 @@ class ValueData:
         """Data with the same errors, drawn at inputs x (1, n)."""
         model = self.model(x)
         noise = rng.standard_normal(self.values.shape)
-        drawn = (
-            model
-            + self._common(model) * rng.standard_normal()
-            + np.hypot(self.errors, self.single) * noise
-        )
+        shared = self._common(model) * rng.standard_normal()
+        drawn = model + shared + np.hypot(self.errors, self.single) * noise
         return replace(self, values=drawn[0])
 
     def _common(self, model: Array) -> Array:
@@ -53,14 +48,11 @@ class ValueData:
 
 
 def normal_with_common(residuals: Array, variances: Array, common: Array) -> Array:
-    """Logarithm of a normal density with covariance diag(variances) + common common^T, over the
-    last axis.
-    """
+    """Log of a normal density of covariance diag(variances) + common common^T."""
     variances = np.broadcast_to(variances, residuals.shape)
     common = np.broadcast_to(common, residuals.shape)
     separate = (residuals**2 / variances).sum(axis=-1)
     cross = (residuals * common / variances).sum(axis=-1)
     gain = 1 + (common**2 / variances).sum(axis=-1)
-    return -0.5 * (
-        separate - cross**2 / gain + np.log(gain) + np.log(2 * np.pi * variances).sum(axis=-1)
-    )
+    determinant = np.log(2 * np.pi * variances).sum(axis=-1)
+    return -0.5 * (separate - cross**2 / gain + np.log(gain) + determinant)

@@ -1,5 +1,4 @@
-"""Measured voltages of switches, compared with the switches on pads that were pressed over the
-prior.
+"""Measured voltages, compared with the switches on pads that were pressed over the prior.
 
 Each voltage is a regression over these switches, in the inputs and in all else that they differ by.
 What the inputs do is the response; the rest is scatter, shared by all measured switches (D0, what
@@ -12,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaln, log_ndtr, ndtr
 
-from mesoscale.answer.points import PadModel
+from mesoscale.answer.switches import PadModel
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.uncertainty.censored import censored_chaos
@@ -48,15 +47,16 @@ def fit_voltages(model: PadModel, prior: InputTable) -> dict[str, Voltage]:
     ------
     InputError : too few of the switches have an answer, or let go.
     """
-    design = model.design
+    sampled = model.design
     solved = [model.points[k] for k in model.solved]
-    others = [k for k in design.varying if design.names[k] not in prior.names]
-    of_device = np.array([design.varies[k] == "each" for k in others], bool)
+    unmeasured = [k for k in sampled.varying if sampled.names[k] not in prior.names]
+    of_device = np.array([sampled.varies[k] == "each" for k in unmeasured], bool)
     inputs = np.array([[point.point.values[name] for name in prior.names] for point in solved])
-    drawn = np.hstack(
-        [inputs.reshape(len(solved), -1), design.probability[model.solved][:, others]]
-    )
-    ranges = np.vstack([prior.ranges(), np.tile([0.0, 1.0], (len(others), 1))])
+    inputs = inputs.reshape(len(solved), -1)
+    probabilities = sampled.probability[model.solved][:, unmeasured]
+    drawn = np.hstack([inputs, probabilities])
+    unit_ranges = np.tile([0.0, 1.0], (len(unmeasured), 1))
+    ranges = np.vstack([prior.ranges(), unit_ranges])
     x = np.clip(drawn, *ranges.T)
     release = model.states("release_V")
     if (release > 0).sum() < 2 * len(ranges):
@@ -65,30 +65,29 @@ def fit_voltages(model: PadModel, prior: InputTable) -> dict[str, Voltage]:
             f" go, and {2 * len(ranges)} are needed to compare measured voltages with: raise it, or"
             " narrow the inputs"
         )
+    pull_in = model.states("pull_in_V")
     return {
-        "pull_in": _regressed(x, model.states("pull_in_V"), ranges, of_device),
+        "pull_in": _regressed(x, pull_in, ranges, of_device),
         "release": _regressed(x, release, ranges, of_device),
     }
 
 
 def _regressed(x: Array, volts: Array, ranges: Array, of_device: NDArray[np.bool_]) -> Voltage:
-    """Regression in inputs and, behind them, in the probabilities of all else, of which some are of
-    each device.
-    """
+    """Regression in inputs and, behind them, in probabilities of all else (some of each device)."""
     stuck = volts == 0.0
     if stuck.any():
         fit, missed_V = censored_chaos(x, volts, stuck, ranges)
     else:
         fit = sparse_chaos(x, volts, ranges, degree=2)
-        missed_V = np.sqrt(((volts - fit(x)) ** 2).sum() / max(len(x) - len(fit.degrees), 1))
+        squares = ((volts - fit(x)) ** 2).sum()
+        missed_V = np.sqrt(squares / max(len(x) - len(fit.degrees), 1))
     inputs = len(ranges) - len(of_device)
     of_others = fit.degrees[:, inputs:]
     variance = fit.coefficients**2 / np.prod(2 * fit.degrees + 1, axis=1)
     of_each = (of_others[:, of_device] > 0).any(axis=1)
     of_inputs = ~(of_others > 0).any(axis=1)
-    response = Surrogate(
-        ranges[:inputs], fit.degrees[of_inputs][:, :inputs], fit.coefficients[of_inputs]
-    )
+    degrees = fit.degrees[of_inputs][:, :inputs]
+    response = Surrogate(ranges[:inputs], degrees, fit.coefficients[of_inputs])
     shared_V = np.sqrt(variance[~of_each & ~of_inputs].sum() + missed_V**2)
     return Voltage(response, float(shared_V), float(np.sqrt(variance[of_each].sum())))
 
@@ -112,15 +111,12 @@ class StickingData:
 
     def simulated(self, x: Array, rng: np.random.Generator) -> "StickingData":
         """Data drawn at inputs x (1, n)."""
-        return replace(
-            self,
-            stuck=rng.binomial(self.switches.astype(int), ndtr(-self._margin(x))).astype(float),
-        )
+        stuck = rng.binomial(self.switches.astype(int), ndtr(-self._margin(x)))
+        return replace(self, stuck=stuck.astype(float))
 
     def _margin(self, x: Array) -> Array:
         """Release in standard deviations above sticking."""
         release = self.release(x)
         volts = self.release
-        return release / np.sqrt(
-            (self.discrepancy * release) ** 2 + volts.shared_V**2 + volts.each_V**2 + 1e-6
-        )
+        variance = (self.discrepancy * release) ** 2 + volts.shared_V**2 + volts.each_V**2
+        return release / np.sqrt(variance + 1e-6)

@@ -22,11 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.beam import Beam, assembled, lumped_beam
-from mesoscale.switch.beam_kernels import NM
-from mesoscale.switch.beam_switch import BeamStates, solve_beam, solve_bent
+from mesoscale.switch.beam import Beam, assembled, beam_of, lumped_beam
+from mesoscale.switch.beam_switch import BeamStates, BeamSwitch
+from mesoscale.units import NM
 
 Array = NDArray[np.float64]
 
@@ -78,11 +78,9 @@ def lumps_of(settings: DeviceSettings, count: int) -> Lumps:
     ------
     InputError : see `lumped_beam`.
     """
-    beam = lumped_beam(settings.model_copy(update={"tilt_nm": 0.0}), count)
-    area, heights_m = (
-        2.0 * beam.width_m * beam.weights_m[:count, 0],
-        beam.rest_nodal[1 : count + 1, 0],
-    )
+    beam = lumped_beam(settings.level, count)
+    area = 2.0 * beam.width_m * beam.weights_m[:count, 0]
+    heights_m = beam.rest_nodal[1 : count + 1, 0]
     stiffness, drawn = _paired_stiffness(beam)
     mass = 1e3 * settings.density_g_cm3 * 1e-6 * settings.thickness_um
     at_rest = stiffness + beam.stretching_N_m * np.outer(drawn @ heights_m, drawn @ heights_m)
@@ -95,7 +93,7 @@ def lumps_of(settings: DeviceSettings, count: int) -> Lumps:
         heights_m / NM,
         beam.stretching_N_m,
         settings.width_um * 1e-6,
-        settings.dielectric_nm / settings.permittivity,
+        settings.dielectric_gap_nm,
         mass,
         1e3 * settings.gas_kPa,
         1e6 / (CIRCUIT.quality * float(np.sqrt(slowest))),
@@ -138,19 +136,20 @@ class LumpErrors:
     reference: float
 
 
-def choose_lumps(settings: DeviceSettings, law: PadLaw) -> LumpErrors:
+def choose_lumps(settings: DeviceSettings, pad: PadCurves) -> LumpErrors:
     """The fewest lumps of a bending electrode within the allowed errors, else the most.
 
     Raises
     ------
-    NotComputed, InputError : see `solve_beam`.
+    NotComputed, InputError : see `BeamSwitch.states_on`.
     """
     elements = CIRCUIT.reference_elements
-    half, exact = (solve_beam(settings, law, number) for number in (elements // 2, elements))
-    symmetric = settings.model_copy(update={"tilt_nm": 0.0})
+    half = BeamSwitch(settings, beam_of(settings, elements // 2)).states_on(pad)
+    exact = BeamSwitch(settings, beam_of(settings, elements)).states_on(pad)
     count, errors = 0, (1.0, 1.0, 1.0)
     for count in CIRCUIT.lump_counts:
-        errors = _errors(solve_bent(lumped_beam(symmetric, count), symmetric, law), exact)
+        lumped = BeamSwitch(settings.level, lumped_beam(settings.level, count))
+        errors = _errors(lumped.states_on(pad), exact)
         if max(errors[:2]) <= CIRCUIT.release_error and errors[2] <= CIRCUIT.capacitance_error:
             break
     return LumpErrors(

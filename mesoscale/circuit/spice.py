@@ -15,9 +15,9 @@ import numpy as np
 from mesoscale.circuit.lumps import LumpErrors, Lumps
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.tables import Piece, note, tables_of
-from mesoscale.pad.memory import PadLaw
-from mesoscale.switch.beam_kernels import NM, least_gap_nm
-from mesoscale.switch.plate import VACUUM_PERMITTIVITY
+from mesoscale.pad.curves import PadCurves
+from mesoscale.switch.beam_kernels import least_gap_nm
+from mesoscale.units import NM, VACUUM_PERMITTIVITY
 
 LUMP = "top bottom moved drawn charge"
 """Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge
@@ -25,7 +25,7 @@ LUMP = "top bottom moved drawn charge"
 
 
 def spice_switch(
-    lumps: Lumps, errors: LumpErrors, law: PadLaw, cells: int, pull_in_V: float
+    lumps: Lumps, errors: LumpErrors, pad: PadCurves, cells: int, pull_in_V: float
 ) -> str:
     """SPICE netlist (ngspice) of the subcircuits `rough_switch`, `rough_lump` and `rough_pad`."""
     force, slope = CIRCUIT.force_A, CIRCUIT.slope_per_V
@@ -102,18 +102,18 @@ Bdrawn 0 drawn I = {0.5 * VACUUM_PERMITTIVITY} * V(top,bottom)^2 * (1 + {{fringe
 +   / {electric}^2 - V(push) - {{gas}} * V(excess)
 .ends rough_lump
 
-{spice_pad(law, cells)}"""
+{spice_pad(pad, cells)}"""
 
 
-def spice_pad(law: PadLaw, cells: int) -> str:
+def spice_pad(pad: PadCurves, cells: int) -> str:
     """SPICE subcircuit `rough_pad` (ngspice): node s 1 V = 1 nm, node force 1 V = 1 nN, positive =
     pushed away.
     """
-    tables = tables_of(law, cubic=False)
+    tables = tables_of(pad, cubic=False)
     depths = tables.depth_nm
     # closing counts from a little farther out than the pad repels: a lump that begins to count is a
     # corner for ngspice
-    repels = law.separation_nm[law.closing[0] > 0.0]
+    repels = pad.separation_nm[pad.closing[0] > 0.0]
     start = CIRCUIT.begins * float(repels.max(initial=depths[-1] + CIRCUIT.fade_nm))
     deepest, far = f"{start:g} - V(near)", [piece.y[-1] for piece in tables.closing]
     push, pull = (Piece(piece.x, piece.y - piece.y[-1]) for piece in tables.closing)
@@ -141,7 +141,7 @@ def spice_pad(law: PadLaw, cells: int) -> str:
 *           (.options method=gear maxord=1), because what overshoots is remembered
 * Nodes are 0 for a pad that is far away, where simulators begin.
 .subckt rough_pad s force params: area=1e+12 follow={CIRCUIT.follow_s:g}
-+   hamaker={law.flats.hamaker:.12g} offset_nm={law.flats.offset_nm:.12g} rest=0
++   hamaker={pad.flats.hamaker:.12g} offset_nm={pad.flats.offset_nm:.12g} rest=0
 Cclosed closed 0 {CIRCUIT.memory_F:g}
 Rleak closed 0 {{follow/{CIRCUIT.memory_F * CIRCUIT.leak:g}}}
 Rdeeper deeper 0 1

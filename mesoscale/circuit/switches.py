@@ -7,25 +7,26 @@ switches of all points."""
 
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
-from mesoscale.answer.points import PadModel, Point, point_of, press_pad, values_at
+from mesoscale.answer.points import Point, point_of, values_at
+from mesoscale.answer.release import SOLVED_SHARE
+from mesoscale.answer.switches import PadModel, press_pad
 from mesoscale.circuit.lumps import LumpErrors, choose_lumps
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.memory import PadLaw
-from mesoscale.pad.numerics import PAD
+from mesoscale.pad.cells import FIRST_SEED
+from mesoscale.pad.curves import PadCurves, on_deep_enough
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.settings.device import SPREAD
 from mesoscale.switch.beam import beam_of, lumped_beam
-from mesoscale.switch.beam_switch import loop_fF, solve_bent
-from mesoscale.switch.electrode import with_pad
-from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.beam_switch import BeamSwitch
 
 Array = NDArray[np.float64]
 
@@ -44,28 +45,28 @@ class CircuitSwitch:
     Attributes
     ----------
     row : its name, inputs, D0 and properties, pull-in and release, for circuit/circuit.csv.
-    settings, law : its properties, without tilt, and its pad.
+    settings, pad : its properties, without tilt, and its pad.
     """
 
     row: dict[str, Any]
     settings: DeviceSettings
-    law: PadLaw
+    pad: PadCurves
 
 
-def central_switch(settings: DeviceSettings, law: PadLaw) -> tuple[CircuitSwitch, LumpErrors]:
+def central_switch(settings: DeviceSettings, pad: PadCurves) -> tuple[CircuitSwitch, LumpErrors]:
     """The central switch on its pad, and the lumps that it needs.
 
     Raises
     ------
-    InputError : a plate on a spring, which has no corners; see `solve_beam`.
+    InputError : a plate on a spring, which has no corners; see `choose_lumps`.
     """
-    if not settings.bends:
+    if settings.kind == "plate":
         raise InputError(
             "device.spring_N_per_m: circuits are made of bending electrodes; set it to null"
         )
-    errors, law = with_pad(lambda pad: choose_lumps(settings, pad), law)
+    errors, continued = on_deep_enough(pad, partial(choose_lumps, settings))
     row = {"switch": "central", "pull_in_V": errors.pull_in_V, "release_V": errors.release_V}
-    return CircuitSwitch(row, settings.model_copy(update={"tilt_nm": 0.0}), law), errors
+    return CircuitSwitch(row, settings.level, continued), errors
 
 
 def spread_switches(
@@ -82,7 +83,7 @@ def spread_switches(
     InputError : too many points, or a corner, cannot be solved.
     """
     solved, design, settings = model.solved, model.design, model.central.point.device
-    if len(solved) < max(SWITCH.solved * len(model.points), 2):
+    if len(solved) < max(SOLVED_SHARE * len(model.points), 2):
         raise InputError(
             f"device: only {len(solved)} of {len(model.points)} points of the switch can be solved"
         )
@@ -95,34 +96,38 @@ def spread_switches(
             values = values_at(ndtr(deviations * out)[None], table, settings, cutoffs_nm)[0]
             point = point_of(values, table.names, settings)
             with suppress(InputError):
-                law = press_pad(point, contact, CIRCUIT.corner_cells, PAD.first_seed + number).law
-                corners.append(_by_lumps(name, point, law, lumps, deviations))
+                pad = press_pad(point, contact, CIRCUIT.corner_cells, FIRST_SEED + number)
+                corners.append(_by_lumps(name, point, pad.curves, lumps, deviations))
                 break
         else:
             raise InputError(f"device: the corner {name} of the switch cannot be solved")
     drawn = []
-    for k in solved:
-        if (pad := model.points[k].pad) and len(drawn) < CIRCUIT.draws:
+    for place in solved:
+        switch = model.points[place]
+        if switch.pad and len(drawn) < CIRCUIT.draws:
+            name = f"draw_{place + 1:02d}"
             with suppress(InputError):
-                drawn.append(_by_lumps(f"draw_{k + 1:02d}", model.points[k].point, pad.law, lumps))
+                drawn.append(_by_lumps(name, switch.point, switch.pad.curves, lumps))
     return [*corners, *drawn]
 
 
 def _by_lumps(
-    name: str, point: Point, pad: PadLaw, lumps: int, deviations: float = 0.0
+    name: str, point: Point, pad: PadCurves, lumps: int, deviations: float = 0.0
 ) -> CircuitSwitch:
     """The switch of a point by so many lumps.
 
     Raises
     ------
-    InputError : see `solve_bent`.
+    InputError : see `BeamSwitch.states_on`.
     """
-    device = point.device.model_copy(update={"tilt_nm": 0.0})
-    states, law = with_pad(lambda law: solve_bent(lumped_beam(device, lumps), device, law), pad)
+    device = point.device.level
+    switch = BeamSwitch(device, lumped_beam(device, lumps))
+    states, continued = on_deep_enough(pad, switch.states_on)
     properties = {name: getattr(device, name) for name in SPREAD if name != "tilt_nm"}
     inputs = {**point.values, "gap_cutoff_nm": point.gap_cutoff_nm, **properties}
     volts = {"pull_in_V": states.pull_in_V, "release_V": states.release_V}
-    return CircuitSwitch({"switch": name, "deviations": deviations, **inputs, **volts}, device, law)
+    row = {"switch": name, "deviations": deviations, **inputs, **volts}
+    return CircuitSwitch(row, device, continued)
 
 
 def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, float]]:
@@ -135,7 +140,7 @@ def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, 
     for switch in drawn:
         with suppress(InputError):  # a beam that finds no balance on any mesh
             curves.append(_loop_fF(switch, volts))
-    if len(curves) <= SWITCH.solved * len(drawn):
+    if len(curves) <= SOLVED_SHARE * len(drawn):
         raise InputError(
             f"device: the slow loop can be solved for only {len(curves) - 1} of {len(drawn)} draws"
         )
@@ -158,14 +163,12 @@ def _loop_fF(switch: CircuitSwitch, volts: Array) -> Array:
     balances.
     """
     for elements in CIRCUIT.loop_elements:
-        beam = beam_of(switch.settings, elements)
+        beam = BeamSwitch(switch.settings, beam_of(switch.settings, elements))
         try:
-            solved = with_pad(
-                lambda law, of=beam: loop_fF(of, switch.settings, law, volts), switch.law
-            )[0]
+            loop, _ = on_deep_enough(switch.pad, partial(beam.loop_fF, volts=volts))
         except InputError:  # between straight pieces of the pad's curves, steps may cycle
             if elements == CIRCUIT.loop_elements[-1]:
                 raise
         else:
-            return np.stack(solved)
+            return np.stack(loop)
     raise AssertionError("unreachable: the last mesh returns or raises")

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.pad.memory import FLOOR, PadLaw, rows_at
+from mesoscale.pad.curves import FLOOR, PadCurves, rows_at
 
 Array = NDArray[np.float64]
 
@@ -52,26 +52,26 @@ class Tables:
     of_net: float
 
 
-def tables_of(law: PadLaw, cubic: bool, looser: float = 1.0) -> Tables:
+def tables_of(pad: PadCurves, cubic: bool, looser: float = 1.0) -> Tables:
     """Tables of the curves of a pad, of cubic or straight pieces.
 
     Parameters
     ----------
     looser : so many times the usual errors are allowed beside the curves.
     """
-    wells = np.array([-min(np.nanmin(opened.sum(axis=0)), 0.0) for opened in law.opening])
-    floor = law.floor_GPa
+    wells = np.array([-min(np.nanmin(opened.sum(axis=0)), 0.0) for opened in pad.opening])
+    floor = pad.floor_GPa
     faint = max(CIRCUIT.faint * float(wells.min()), 1e2 * floor)
-    s = law.separation_nm
+    s = pad.separation_nm
 
     def logarithms(pressures: Array, at_nm: Array) -> Array:
-        pull = (floor - pressures[1]) / (floor + law.flats.pull_GPa(at_nm))
+        pull = (floor - pressures[1]) / (floor + pad.flats.pull_GPa(at_nm))
         return np.log(np.stack([pressures[0] + faint, np.maximum(pull, FLOOR)]))
 
     def fitted(
         x: Array, values: Array, at_nm: Array, start: Array, well: float, nodes: Sequence[int] = ()
     ) -> tuple[tuple[Piece, Piece], float, float]:
-        flats = law.flats.pull_GPa(at_nm) + floor
+        flats = pad.flats.pull_GPa(at_nm) + floor
         push, pull = np.exp(values[0]) - faint, flats * np.exp(values[1])
         net = push - pull
 
@@ -95,12 +95,12 @@ def tables_of(law: PadLaw, cubic: bool, looser: float = 1.0) -> Tables:
             float(of_net.max(initial=0.0, where=~near)),
         )
 
-    at_depths = [int(abs(s - depth).argmin()) for depth in law.depth_nm]
+    at_depths = [int(abs(s - depth).argmin()) for depth in pad.depth_nm]
     closing, _, of_closing = fitted(
-        s, logarithms(law.closing, s), s, np.zeros(2), float(wells.min()) or faint, at_depths
+        s, logarithms(pad.closing, s), s, np.zeros(2), float(wells.min()) or faint, at_depths
     )
     opening, errors = [], []
-    for depth, opened, well in zip(law.depth_nm, law.opening, wells, strict=True):
+    for depth, opened, well in zip(pad.depth_nm, pad.opening, wells, strict=True):
         known = np.isfinite(opened[0])
         values = logarithms(opened[:, known], s[known])
         pieces, *missed = fitted(s[known] - depth, values, s[known], values[:, 0], well or faint)
@@ -108,7 +108,7 @@ def tables_of(law: PadLaw, cubic: bool, looser: float = 1.0) -> Tables:
         errors.append(missed)
     of_well, of_net = np.max(errors, axis=0)
     return Tables(
-        closing, law.depth_nm, opening, faint, floor, float(of_well), max(float(of_net), of_closing)
+        closing, pad.depth_nm, opening, faint, floor, float(of_well), max(float(of_net), of_closing)
     )
 
 
@@ -133,7 +133,7 @@ def _nodes(
         chosen.add(int(missed.argmax()))
 
 
-def law_of_tables(tables: Tables, law: PadLaw, cubic: bool) -> PadLaw:
+def curves_of_tables(tables: Tables, pad: PadCurves, cubic: bool) -> PadCurves:
     """The pad as its tables have it, at the separations of its curves."""
 
     def curves(pieces: tuple[Piece, Piece], at_nm: Array) -> Array:
@@ -143,21 +143,21 @@ def law_of_tables(tables: Tables, law: PadLaw, cubic: bool) -> PadLaw:
         return np.stack([np.interp(at_nm, *pair) for pair in pairs])
 
     def pressures(logarithms: Array, at_nm: Array) -> Array:
-        pull = (law.flats.pull_GPa(at_nm) + tables.floor_GPa) * np.exp(
+        pull = (pad.flats.pull_GPa(at_nm) + tables.floor_GPa) * np.exp(
             logarithms[1]
         ) - tables.floor_GPa
         return np.stack(
             [np.maximum(np.exp(logarithms[0]) - tables.faint_GPa, 0.0), -np.maximum(pull, 0.0)]
         )
 
-    s = law.separation_nm
+    s = pad.separation_nm
     closing = pressures(curves(tables.closing, s), s)
-    opening = np.full_like(law.opening, np.nan)
+    opening = np.full_like(pad.opening, np.nan)
     for number, (depth, pieces) in enumerate(zip(tables.depth_nm, tables.opening, strict=True)):
-        way = np.isfinite(law.opening[number, 0])
+        way = np.isfinite(pad.opening[number, 0])
         start = curves(tables.closing, np.array([depth]))
         opening[number][:, way] = pressures(start + curves(pieces, s[way] - depth), s[way])
-    return PadLaw(s, closing, law.depth_nm, opening, law.flats)
+    return PadCurves(s, closing, pad.depth_nm, opening, pad.flats)
 
 
 def note(tables: Tables, cells: int) -> str:

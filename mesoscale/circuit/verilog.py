@@ -7,14 +7,14 @@ from mesoscale.circuit.lumps import Lumps
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import LUMP
 from mesoscale.circuit.tables import Piece, Tables, note, tables_of
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.curves import PadCurves
 from mesoscale.switch.beam_kernels import least_gap_nm
-from mesoscale.switch.plate import VACUUM_PERMITTIVITY
+from mesoscale.units import VACUUM_PERMITTIVITY
 
 
-def verilog_pad(law: PadLaw, cells: int) -> str:
+def verilog_pad(pad: PadCurves, cells: int) -> str:
     """Verilog-A module `rough_pad` on a kinematic node."""
-    tables = tables_of(law, cubic=True)
+    tables = tables_of(pad, cubic=True)
     return f"""// Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
 // {note(tables, cells)}
 // s: mean separation (position in m) of the moving electrode above ref; the branch carries the force in N.
@@ -30,8 +30,8 @@ module rough_pad(s, ref);
 
     parameter real area_nm2 = 1e+12 from (0:inf);
     parameter real follow = {CIRCUIT.follow_s:g} from (0:inf);
-    parameter real hamaker = {law.flats.hamaker:.12g} from [0:inf);
-    parameter real offset_nm = {law.flats.offset_nm:.12g} from [0:inf);
+    parameter real hamaker = {pad.flats.hamaker:.12g} from [0:inf);
+    parameter real offset_nm = {pad.flats.offset_nm:.12g} from [0:inf);
 
     real separation, further, deepest;
 {verilog_pressure(tables)}
@@ -122,9 +122,9 @@ def _function(name: str, piece: Piece) -> str:
 """
 
 
-def verilog_lump(lumps: Lumps, law: PadLaw, cells: int) -> str:
+def verilog_lump(lumps: Lumps, pad: PadCurves, cells: int) -> str:
     """Verilog-A module `rough_lump`."""
-    tables, width = tables_of(law, cubic=True), f"{lumps.width_m:.9g}"
+    tables, width = tables_of(pad, cubic=True), f"{lumps.width_m:.9g}"
     names = LUMP.replace(" ", ", ")
     return f"""// A pair of lumps of an electrostatic switch on a rough contact (Asperity, docs/circuit.md).
 // {note(tables, cells)}
@@ -142,8 +142,8 @@ module rough_lump({names});
     parameter real gas = {lumps.gas_Pa:.9g} from (0:inf);
     parameter real viscosity = {CIRCUIT.viscosity_Pa_s:g} from (0:inf);
     parameter real follow = {CIRCUIT.follow_s:g} from (0:inf);
-    parameter real hamaker = {law.flats.hamaker:.12g} from [0:inf);
-    parameter real offset_nm = {law.flats.offset_nm:.12g} from [0:inf);
+    parameter real hamaker = {pad.flats.hamaker:.12g} from [0:inf);
+    parameter real offset_nm = {pad.flats.offset_nm:.12g} from [0:inf);
 
     real volts, s, electric, deepest, film, excess, dense, thinner;
 {verilog_pressure(tables)}

@@ -1,6 +1,4 @@
-"""Contact of a rough surface with a flat: asperities, plastic flow, attraction
-(docs/contact.md).
-"""
+"""Contact of a rough surface with a flat: asperities, flow, attraction (docs/contact.md)."""
 
 from mesoscale.contact.cycle import Branch, Cycle, run_cycle
 from mesoscale.inputs.contact import ContactInputs

@@ -1,5 +1,4 @@
-"""Van der Waals attraction of a rough surface and a plane (section 2.1, eq. 1), and that of liquid
-in the gap.
+"""Van der Waals attraction of a rough surface and a plane (eq. 1), and that of liquid.
 
 Sum over the sites of 1/s^3. The distance s of the walls is g + D0 (offset) or max(g, D0) (clamped,
 the paper's), with the gap g = h + separation. Sites far from contact are summed through a histogram
@@ -32,12 +31,16 @@ EXCESS = (math.pi - 1.0 + math.log(2.0)) / 24.0
 
 def retardation_rate(wavelength_nm: float | None) -> float:
     """The c of retardation, 1/nm; 0 without it."""
-    return GREGORY / wavelength_nm if wavelength_nm else 0.0
+    if not wavelength_nm:
+        return 0.0
+    return GREGORY / wavelength_nm
 
 
 def wall_offset_nm(settings: ContactSettings) -> float:
     """Distance of the walls less the gap, nm, where the gap is wide."""
-    return settings.gap_cutoff_nm if settings.attraction == "offset" else 0.0
+    if settings.attraction != "offset":
+        return 0.0
+    return settings.gap_cutoff_nm
 
 
 class Attraction:
@@ -75,9 +78,8 @@ class Attraction:
         self.site_area = site_area
         self.strength = hamaker * site_area / (6.0 * np.pi)
         self.lowest = float(heights.min())
-        self.bin_width = (
-            max(float(heights.max()) - self.lowest, 1e-6 * self.cutoff) / numerics.gap_bins
-        )
+        height_range = float(heights.max()) - self.lowest
+        self.bin_width = max(height_range, 1e-6 * self.cutoff) / numerics.gap_bins
         self.near_nm = max(NEAR_BINS * self.bin_width, 2.0 * self.cutoff)
         self.moments = np.zeros((numerics.gap_bins, MOMENTS))
         self.taken_out = 0  # of the changed sites
@@ -100,7 +102,9 @@ class Attraction:
     @property
     def reach_nm(self) -> float:
         """Gap below which there is liquid in equilibrium, nm."""
-        return self.menisci.reach_nm if self.menisci else 0.0
+        if self.menisci is None:
+            return 0.0
+        return self.menisci.reach_nm
 
     def adopt(self, changes: Changes, heights: np.ndarray) -> None:
         """Have the histogram hold the changed sites, too, at their present heights (nm)."""
@@ -112,21 +116,19 @@ class Attraction:
         """Share of the sites in the bins before one."""
         if self.before is None:
             self.before = np.cumsum(self.moments[:, 0])
-        return float(self.before[far - 1] / self.before[-1]) if far else 0.0
+        if far == 0:
+            return 0.0
+        return float(self.before[far - 1] / self.before[-1])
 
     def far_edge(self, near: float, separation: float) -> tuple[int, float]:
-        """First bin all of whose sites are at least a gap (nm) away, and the height (nm) at which
-        it begins.
-        """
+        """First bin all of whose sites are at least a gap (nm) away, and its lower edge (nm)."""
         far = first_far_bin(near, separation, self.lowest, self.bin_width, len(self.moments))
         return far, self.lowest + far * self.bin_width
 
     def deformed(
         self, gap: np.ndarray, weight: np.ndarray, separation: float = 0.0, far: int | None = None
     ) -> float:
-        """Force (nN, negative) on sites with given gaps (nm) and weights, and on those in the bins
-        from `far` on.
-        """
+        """Force (nN, negative) on sites with gaps (nm), weights, and the bins from `far` on."""
         total = inverse_cubes_of(gap, weight, self.least, self.offset, self.rate)
         if far is not None:
             total += far_inverse_cubes(
@@ -140,7 +142,8 @@ class Attraction:
         """What liquid adds to the force (nN); see `deformed` for the sites."""
         if self.menisci is None:
             return 0.0
-        far = len(self.moments) if far is None else far
+        if far is None:
+            far = len(self.moments)
         walls = (self.least, self.offset, self.rate)
         bins = (separation, far, self.lowest, self.bin_width, self.moments)
         if self.kept is None:
@@ -162,9 +165,7 @@ class Attraction:
         place: np.ndarray,
         pressure: np.ndarray,
     ) -> float:
-        """Force (nN, negative) on all sites with their displacements (nm), (N^2,), around those
-        under pressure.
-        """
+        """Force (nN, negative) on all sites with displacements (nm), (N^2,)."""
         walls = (self.least, self.offset, self.rate)
         touching = self.touching
         force = -self.strength * inverse_cubes_around(
@@ -184,9 +185,7 @@ class Attraction:
         changes: Changes,
         changed: np.ndarray,
     ) -> float:
-        """Force (nN, negative) on a surface that nothing deforms; see `inverse_cubes` for the order
-        of its sites.
-        """
+        """Force (nN, negative) on a surface that nothing deforms; see `inverse_cubes`."""
         walls = (self.least, self.offset, self.touching)
         bins = (self.lowest, self.bin_width, self.moments)
         flowed = (changed, changes.sites, changes.used[0])
@@ -206,8 +205,8 @@ def attracting(sites, place, pressure, pixels, touching):
     if touching:
         return weight
     for k in range(sites.size):
-        here = place[sites[k]]
-        if here >= 0 and pressure[here] > 0.0:
+        entry = place[sites[k]]
+        if entry >= 0 and pressure[entry] > 0.0:
             weight[k] = 0.0
             continue
         for beside in _beside(sites[k], pixels):
@@ -223,10 +222,18 @@ def _beside(site, pixels):
     col = site % pixels
     size = pixels * pixels
     up = site - pixels
+    if up < 0:
+        up += size
     down = site + pixels
-    left = site - 1 if col else site + pixels - 1
-    right = site + 1 if col < pixels - 1 else site - pixels + 1
-    return up if up >= 0 else up + size, down if down < size else down - size, left, right
+    if down >= size:
+        down -= size
+    left = site - 1
+    if col == 0:
+        left += pixels
+    right = site + 1
+    if col == pixels - 1:
+        right -= pixels
+    return up, down, left, right
 
 
 @njit(cache=True)
@@ -289,62 +296,52 @@ def take_out(originals, start, stop, lowest, width, moments):
 @njit(cache=True)
 def first_far_bin(gap, separation, lowest, width, bins):
     """First of the bins all of whose sites are at least a gap away."""
-    return min(max(int(np.floor((gap - separation - lowest) / width)) + 1, 0), bins)
+    far = int(np.floor((gap - separation - lowest) / width)) + 1
+    return min(max(far, 0), bins)
 
 
 @njit(cache=True)
 def far_inverse_cubes(separation, far, lowest, width, moments, rate):
     """Sum over the sites of 1/s^3 in the bins from `far` on: (s + t)^-3 expanded in t / s."""
-    rest = 0.0
+    total = 0.0
     for b in range(far, moments.shape[0]):
         gap = lowest + (b + 0.5) * width + separation
         u = 1.0 / gap
-        rest += u**3 * (
-            moments[b, 0]
-            + u
-            * (
-                -3.0 * moments[b, 1]
-                + u * (6.0 * moments[b, 2] + u * (-10.0 * moments[b, 3] + u * 15.0 * moments[b, 4]))
-            )
-        )
+        # (s + t)^-3 = u^3 (1 - 3 u t + 6 (u t)^2 - ...), u = 1/s, from the last term on (Horner)
+        series = -10.0 * moments[b, 3] + u * 15.0 * moments[b, 4]
+        series = 6.0 * moments[b, 2] + u * series
+        series = -3.0 * moments[b, 1] + u * series
+        total += u**3 * (moments[b, 0] + u * series)
         if rate > 0.0:
-            near = _inverse_squares(u, moments[b])
-            beyond = _inverse_squares(1.0 / (gap + 1.0 / rate), moments[b])
-            rest -= 0.5 * rate * (near - beyond)
-    return rest
+            near_squares = _inverse_squares(u, moments[b])
+            far_squares = _inverse_squares(1.0 / (gap + 1.0 / rate), moments[b])
+            total -= 0.5 * rate * (near_squares - far_squares)
+    return total
 
 
 @njit(cache=True)
 def _inverse_squares(u, moments):
     """Sum over the sites of a bin of (1/u + t)^-2, expanded in t u."""
-    return (
-        u
-        * u
-        * (
-            moments[0]
-            + u
-            * (
-                -2.0 * moments[1]
-                + u * (3.0 * moments[2] + u * (-4.0 * moments[3] + u * 5.0 * moments[4]))
-            )
-        )
-    )
+    # from the last term on (Horner)
+    series = -4.0 * moments[3] + u * 5.0 * moments[4]
+    series = 3.0 * moments[2] + u * series
+    series = -2.0 * moments[1] + u * series
+    return u * u * (moments[0] + u * series)
 
 
 @njit(cache=True)
-def inverse_cubes_of(gap, weight, least, offset, rate):
-    """Sum of 1/s^3, s = max(g, least) + offset, over given gaps, each with its weight."""
+def inverse_cubes_of(gap, weight, narrowest, offset, rate):
+    """Sum of 1/s^3, s = max(g, narrowest) + offset, over given gaps, each with its weight."""
     total = 0.0
     for k in range(gap.size):
         if weight[k] > 0.0:
-            total += weight[k] * inverse_cube(max(gap[k], least) + offset, rate)
+            total += weight[k] * inverse_cube(max(gap[k], narrowest) + offset, rate)
     return total
 
 
 @njit(cache=True)
-def fill(gap, weight, separation, far, lowest, width, moments, reach, least, offset, rate):
-    """Sites with gaps below `reach`, those in the bins from `far` on too, their volume, and the sum
-    of their 1/s^3.
+def fill(gap, weight, separation, far, lowest, width, moments, reach, narrowest, offset, rate):
+    """Sites with gaps below `reach`, in the bins from `far` on too, their volume, sum of 1/s^3.
 
     The bin in which liquid ends is filled in part.
     """
@@ -353,7 +350,7 @@ def fill(gap, weight, separation, far, lowest, width, moments, reach, least, off
         if weight[k] > 0.0 and gap[k] < reach:
             sites += weight[k]
             volume += weight[k] * max(gap[k], 0.0)
-            cubes += weight[k] * inverse_cube(max(gap[k], least) + offset, rate)
+            cubes += weight[k] * inverse_cube(max(gap[k], narrowest) + offset, rate)
     for b in range(far, moments.shape[0]):
         edge = lowest + b * width + separation
         if edge >= reach:
@@ -363,14 +360,15 @@ def fill(gap, weight, separation, far, lowest, width, moments, reach, least, off
             mean = edge + 0.5 * width + moments[b, 1] / moments[b, 0]
             sites += share
             volume += share * max(mean, 0.0)
-            cubes += share * inverse_cube(max(mean, least) + offset, rate)
+            cubes += share * inverse_cube(max(mean, narrowest) + offset, rate)
     return sites, volume, cubes
 
 
 @njit(cache=True)
-def hold(gap, weight, separation, far, lowest, width, moments, volume, reach, least, offset, rate):
-    """The same of the sites that a volume of liquid fills from the narrowest gap on, with the gap
-    up to which.
+def hold(
+    gap, weight, separation, far, lowest, width, moments, volume, reach, narrowest, offset, rate
+):
+    """Sites that a volume of liquid fills from the narrowest gap on, its reach, sum of 1/s^3.
 
     Where it fills all sites, this gap is `reach`.
     """
@@ -383,49 +381,47 @@ def hold(gap, weight, separation, far, lowest, width, moments, volume, reach, le
         b = min(max(int((gap[k] - start) / width), 0), bins - 1)
         sums[b, 0] += weight[k]
         sums[b, 1] += weight[k] * max(gap[k], 0.0)
-        sums[b, 2] += weight[k] * inverse_cube(max(gap[k], least) + offset, rate)
-    sites = held = cubes = 0.0
+        sums[b, 2] += weight[k] * inverse_cube(max(gap[k], narrowest) + offset, rate)
+    sites = filled = cubes = 0.0
     for b in range(bins):
         if b >= far and moments[b, 0] > 0.0:
             mean = start + (b + 0.5) * width + moments[b, 1] / moments[b, 0]
             sums[b, 0] += moments[b, 0]
             sums[b, 1] += moments[b, 0] * max(mean, 0.0)
-            sums[b, 2] += moments[b, 0] * inverse_cube(max(mean, least) + offset, rate)
-        part = 1.0
-        if held + sums[b, 1] > volume:
-            part = (volume - held) / sums[b, 1]
-        sites += part * sums[b, 0]
-        held += part * sums[b, 1]
-        cubes += part * sums[b, 2]
-        if part < 1.0:
-            return sites, start + (b + part) * width, cubes
+            sums[b, 2] += moments[b, 0] * inverse_cube(max(mean, narrowest) + offset, rate)
+        share = 1.0
+        if filled + sums[b, 1] > volume:
+            share = (volume - filled) / sums[b, 1]
+        sites += share * sums[b, 0]
+        filled += share * sums[b, 1]
+        cubes += share * sums[b, 2]
+        if share < 1.0:
+            return sites, start + (b + share) * width, cubes
     return sites, reach, cubes
 
 
 @njit(cache=True, fastmath={"contract", "reassoc", "nsz"}, error_model="numpy")  # in parallel lanes
 def inverse_cubes_around(
-    heights, separation, displacement, sites, place, pressure, touching, least, offset, rate
+    heights, separation, displacement, sites, place, pressure, touching, narrowest, offset, rate
 ):
-    """Sum of 1/s^3 over all sites of a cell, with the weights of `attracting` around `sites`, which
-    have pressures.
-    """
+    """Sum of 1/s^3 over all sites of a cell, weighted by `attracting` around `sites`."""
     pixels = int(np.sqrt(heights.size) + 0.5)
     total = 0.0
     for k in range(heights.size):
-        total += inverse_cube(max(heights[k] + separation + displacement[k], least) + offset, rate)
+        gap = heights[k] + separation + displacement[k]
+        total += inverse_cube(max(gap, narrowest) + offset, rate)
     if touching:
         return total
     for k in range(sites.size):
         if not pressure[k] > 0.0:
             continue
         site = sites[k]
-        total -= inverse_cube(
-            max(heights[site] + separation + displacement[site], least) + offset, rate
-        )
+        gap = heights[site] + separation + displacement[site]
+        total -= inverse_cube(max(gap, narrowest) + offset, rate)
         for beside in _beside(site, pixels):
             if place[beside] < 0 or not pressure[place[beside]] > 0.0:
                 gap = heights[beside] + separation + displacement[beside]
-                total += EXCESS * inverse_cube(max(gap, least) + offset, rate)
+                total += EXCESS * inverse_cube(max(gap, narrowest) + offset, rate)
     return total
 
 
@@ -433,7 +429,7 @@ def inverse_cubes_around(
 def inverse_cubes(
     heights,
     separation,
-    least,
+    narrowest,
     offset,
     touching,
     order,
@@ -446,26 +442,25 @@ def inverse_cubes(
     moments,
     rate,
 ):
-    """Sum over the sites of 1/s^3, s = max(g, least) + offset; ``touching``: whether sites with g <
-    0 count.
+    """Sum over the sites of 1/s^3, s = max(g, narrowest) + offset; g < 0 counts if ``touching``.
 
     ``order`` holds at least all sites of the near bins, by rising original height.
     """
     bins = moments.shape[0]
-    far = first_far_bin(
-        max(NEAR_BINS * width, 2.0 * (least + offset)), separation, lowest, width, bins
-    )
+    near_nm = max(NEAR_BINS * width, 2.0 * (narrowest + offset))
+    far = first_far_bin(near_nm, separation, lowest, width, bins)
     near = 0.0
     for place in range(order.size):
-        if min(int((order_heights[place] - lowest) / width), bins - 1) >= far:
+        bin_of_site = int((order_heights[place] - lowest) / width)
+        if min(bin_of_site, bins - 1) >= far:
             break
         if changed[order[place]] == 0:
             gap = order_heights[place] + separation
             if gap >= 0.0 or touching:
-                near += inverse_cube(max(gap, least) + offset, rate)
+                near += inverse_cube(max(gap, narrowest) + offset, rate)
     moved = 0.0
     for place in range(changed_count):
         gap = heights[changed_sites[place]] + separation
         if gap >= 0.0 or touching:
-            moved += inverse_cube(max(gap, least) + offset, rate)
+            moved += inverse_cube(max(gap, narrowest) + offset, rate)
     return near + moved + far_inverse_cubes(separation + offset, far, lowest, width, moments, rate)

@@ -31,15 +31,14 @@ class Changes(NamedTuple):
 
 def no_changes(sites: int) -> Changes:
     """An untouched surface; the memory is touched only as flow spreads."""
-    return Changes(
-        np.zeros(sites, np.uint8),
-        np.empty(sites, np.int32),
-        np.empty(sites),
-        np.empty(sites, np.int32),
-        np.empty(sites),
-        np.zeros(sites, np.int32),
-        np.zeros(4, np.int64),
-    )
+    changed = np.zeros(sites, np.uint8)
+    site = np.empty(sites, np.int32)
+    original = np.empty(sites)
+    journal = np.empty(sites, np.int32)
+    before = np.empty(sites)
+    stamp = np.zeros(sites, np.int32)
+    used = np.zeros(4, np.int64)
+    return Changes(changed, site, original, journal, before, stamp, used)
 
 
 @njit(cache=True)

@@ -21,8 +21,7 @@ SMALLEST_FORCE_NN, LARGEST_FORCE_NN = 1e-9, 1e12
 
 @dataclass(frozen=True, repr=False)
 class Branch:
-    """One branch of a force-separation curve; arrays of one length, in the order they were
-    traversed.
+    """One branch of a force-separation curve; arrays of one length, in the order of traversal.
 
     Attributes
     ----------
@@ -92,12 +91,15 @@ class Cycle:
     heights: np.ndarray | None = None
 
     def __repr__(self) -> str:
-        why = ": full contact" if self.flags.get("full_contact") else ""
-        return (
+        text = (
             f"Cycle up to {self.closing.repulsive_nN[-1]:.4g} nN: first touches at"
-            f" {self.first_contact_nm:.4g} nm, last at {self.last_contact_nm:.4g}"
-            f" nm{'' if self.converged else f'; NOT CONVERGED{why}'}"
+            f" {self.first_contact_nm:.4g} nm, last at {self.last_contact_nm:.4g} nm"
         )
+        if self.converged:
+            return text
+        if self.flags.get("full_contact"):
+            return f"{text}; NOT CONVERGED: full contact"
+        return f"{text}; NOT CONVERGED"
 
     def to_frame(self) -> Any:
         """Both branches as one pandas DataFrame; the column `branch` is closing or opening."""
@@ -181,7 +183,9 @@ def run_cycle(
     """
     plastic = settings.model == "plastic"
     check_seed(seed)
-    force = settings.max_force_nN if max_force_nN is None else max_force_nN
+    force = max_force_nN
+    if force is None:
+        force = settings.max_force_nN
     check_number("max_force_nN", force, SMALLEST_FORCE_NN, LARGEST_FORCE_NN, "nN")
     surface, settings = given_surface(heights, length_nm, contact_at, settings)
     check_memory(settings.pixels**2, settings.mechanics)
@@ -204,15 +208,16 @@ def run_cycle(
     remarks = contact.remarks()
     if contact.adhesion and contact.adhesion.menisci:
         remarks["filled_share"] = contact.filled_share(last.separation)
-    repeated, unconverged = closing.repeated, closing.unconverged
+    repeated = closing.repeated
+    unconverged = closing.unconverged
     if not contact.REVERSIBLE:
         path = reopen(contact, numerics.force_steps, last)
         opening = path.rows
         repeated = repeated + path.repeated
         unconverged = unconverged + path.unconverged
-        departure = [
-            row for gap in _gaps(contact) for row in contact.way(path.rows[-1].separation + gap)
-        ]
+        departure = []
+        for gap in _gaps(contact):
+            departure += contact.way(path.rows[-1].separation + gap)
         unconverged += contact.unsettled
         remarks["jump_loss_aJ"] = float(contact.lost)
     elif (changed > 0 or contact.keeps_liquid) and last.force > 0:
@@ -227,24 +232,27 @@ def run_cycle(
     else:  # nothing flowed: the way back is the way there
         departure = approach[::-1]
         opening = [row._replace(sweeps=0) for row in closing.rows[::-1]]
+    last_contact = first_contact
+    if last.force > 0:
+        last_contact = opening[-1].separation
+    flags = {
+        "force_reached": reached,
+        "force_miss": abs(last.force - force) / force,
+        "unconverged_steps": unconverged,
+        "largest_load": closing.load,
+        "full_contact": closing.full or (settings.model == "elastic" and force > capacity),
+        "radius_bound_events": closing.bounds,
+        "repeated_steps": repeated,
+        "changed_sites": changed,
+        "repulsion_drop": _largest_drop([row.force for row in closing.rows]),
+        **remarks,
+    }
     return Cycle(
         closing=_branch(contact, [*approach, *closing.rows]),
         opening=_branch(contact, [*opening, *departure]),
         first_contact_nm=first_contact + contact.offset,
-        last_contact_nm=(opening[-1].separation if last.force > 0 else first_contact)
-        + contact.offset,
-        flags={
-            "force_reached": reached,
-            "force_miss": abs(last.force - force) / force,
-            "unconverged_steps": unconverged,
-            "largest_load": closing.load,
-            "full_contact": closing.full or (settings.model == "elastic" and force > capacity),
-            "radius_bound_events": closing.bounds,
-            "repeated_steps": repeated,
-            "changed_sites": changed,
-            "repulsion_drop": _largest_drop([row.force for row in closing.rows]),
-            **remarks,
-        },
+        last_contact_nm=last_contact + contact.offset,
+        flags=flags,
         converged=reached and miss <= MAX_FORCE_MISS and unconverged == 0,
         inputs=inputs,
         length_nm=settings.length_nm,
@@ -258,9 +266,7 @@ def contact_on(
     settings: ContactSettings,
     numerics: Numerics = NUMERICS,
 ) -> Contact:
-    """Contact on (N, N) heights in nm by the engine of `settings.mechanics`; the others are not
-    even compiled.
-    """
+    """Contact on (N, N) heights in nm by the engine of `settings.mechanics`, compiled alone."""
     if settings.mechanics == "adhesive":
         from mesoscale.contact.coupled.adhesive import AdhesiveContact
 
@@ -277,26 +283,22 @@ def contact_on(
 def _largest_drop(forces: list[float]) -> float:
     """Largest fall of a force below an earlier value, as a share of its largest value."""
     highest = np.maximum.accumulate(forces)
-    return float((highest - forces).max() / highest[-1]) if highest[-1] > 0 else 0.0
+    if highest[-1] <= 0:
+        return 0.0
+    return float((highest - forces).max() / highest[-1])
 
 
 def _gaps(contact: Contact) -> np.ndarray:
-    """Distances from contact (nm), rising, at which the attraction of what does not touch is
-    computed.
-    """
+    """Distances from contact (nm), rising, of the attraction without touch."""
     reach = contact.adhesion.reach_nm if contact.adhesion else 0.0
-    return np.geomspace(
-        max(4.0 * contact.rms, 10.0, 1.5 * reach), max(0.01 * contact.rms, 0.01), 20
-    )[::-1]
+    furthest = max(4.0 * contact.rms, 10.0, 1.5 * reach)
+    nearest = max(0.01 * contact.rms, 0.01)
+    return np.geomspace(furthest, nearest, 20)[::-1]
 
 
 def _branch(contact: Contact, rows: list[Row]) -> Branch:
     separation, force, attraction, sites, asperities, sweeps = zip(*rows, strict=True)
-    return Branch(
-        np.array(separation) + contact.offset,
-        np.array(force),
-        np.array(attraction),
-        np.array(sites) * contact.site_area,
-        np.array(asperities),
-        np.array(sweeps),
-    )
+    separation = np.array(separation) + contact.offset
+    area = np.array(sites) * contact.site_area
+    forces = np.array(force), np.array(attraction)
+    return Branch(separation, *forces, area, np.array(asperities), np.array(sweeps))

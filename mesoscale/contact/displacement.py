@@ -43,8 +43,7 @@ class Displacement:
 
 
 class Closing:
-    """A rough surface that is brought to one separation after another, and may be opened in
-    between.
+    """A rough surface that is brought to one separation after another, and may be opened.
 
     An opening is elastic and changes nothing: closing goes on from the surface as flow has left it.
 
@@ -71,8 +70,7 @@ class Closing:
         self.settled = True
 
     def close_to(self, separation_nm: float, attraction: bool = True) -> float:
-        """Bring the flat down to a separation from the mean plane before contact; the repulsive
-        force (nN).
+        """Bring the flat down to a separation before contact; the repulsive force (nN).
 
         Parameters
         ----------
@@ -81,29 +79,28 @@ class Closing:
         flat = separation_nm - self._contact.offset
         repulsive = 0.0
         if flat < self._touching or not self._contact.REVERSIBLE:
-            moved = _bring_down(self._contact, self._flats[-1] if self._flats else flat, flat)
+            start = self._flats[-1] if self._flats else flat
+            moved = _bring_down(self._contact, start, flat)
             self.settled &= moved.settled and not moved.stuck
             repulsive = moved.force
         self._flats.append(flat)
-        self._forces.append((repulsive, self._contact.attraction(flat) if attraction else np.nan))
+        attractive = self._contact.attraction(flat) if attraction else np.nan
+        self._forces.append((repulsive, attractive))
         return repulsive
 
     @property
     def closing(self) -> Array:
-        """Repulsive and attractive force (nN, attraction negative) at all separations so far, shape
-        (2, n).
-        """
+        """Repulsive and attractive force (nN, attraction negative) so far, shape (2, n)."""
         return np.array(self._forces).T
 
     def opening(self) -> Array:
-        """The same on the way back from here to the first separation, in the order of closing,
-        shape (2, n).
-        """
+        """The same on the way back to the first separation, in the order of closing, (2, n)."""
         forces = self.closing
         self._has_flowed |= self._contact.changed_sites > 0 or not self._contact.REVERSIBLE
         self._has_flowed |= self._contact.keeps_liquid
         if self._has_flowed:  # else the way back is the way there
-            forces[:, :-1] = self._contact.opened(np.array(self._flats))[:, :-1]
+            opened = self._contact.opened(np.array(self._flats))
+            forces[:, :-1] = opened[:, :-1]
             self.settled &= self._contact.unsettled == 0
         return forces
 
@@ -150,8 +147,8 @@ def _bring_down(contact: Contact, start: float, target: float) -> State:
         contact.back()
         step *= 0.5
         flat = start - step
-        part = contact.move_to(flat, True)
-        if part.stuck:
+        nearer = contact.move_to(flat, True)
+        if nearer.stuck:
             contact.back()
             continue
         start = flat

@@ -1,6 +1,4 @@
-"""Numbers of a cycle: work of closing and opening, what is dissipated, pull-off and stiffness of
-the opening.
-"""
+"""Numbers of a cycle: work of closing and opening, dissipation, pull-off and stiffness."""
 
 import numpy as np
 
@@ -17,8 +15,11 @@ def work(branch: Branch, net: bool = False) -> tuple[float, float]:
     force = branch.net_nN if net else branch.repulsive_nN
     coarse = np.append(np.arange(0, len(h) - 1, 2), len(h) - 1)
     fine = float(np.trapezoid(force, h))
-    spent = fine if h[-1] > h[0] else -fine
-    return spent, abs(fine - float(np.trapezoid(force[coarse], h[coarse]))) / 3.0
+    coarsely = float(np.trapezoid(force[coarse], h[coarse]))
+    error = abs(fine - coarsely) / 3.0
+    if h[-1] > h[0]:
+        return fine, error
+    return -fine, error
 
 
 def dissipated_energy(cycle: Cycle) -> tuple[float, float]:

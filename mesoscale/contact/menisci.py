@@ -38,9 +38,7 @@ class Menisci(NamedTuple):
     keeps_volume: bool
 
     def pull_at(self, reach_nm: float) -> float:
-        """p_c (GPa) of liquid that reaches up to a gap; walls that come closer press liquid out, so
-        p_c is the most.
-        """
+        """p_c (GPa) of liquid that reaches up to a gap; closer walls press it out: the largest."""
         return self.tension / max(
             reach_nm - self.films_nm, self.tension / self.pull_GPa
         )  # radius times the cosines
@@ -62,9 +60,7 @@ class Liquid(NamedTuple):
 
 
 def menisci_of(air: AirSettings | None) -> Menisci | None:
-    """The menisci in air; None where nothing condenses, or liquid would be thinner than one of its
-    molecules.
-    """
+    """The menisci in air; None where nothing condenses, or liquid is thinner than a molecule."""
     if air is None or air.humidity == 0.0:
         return None
     tension = 1e-3 * surface_tension_mN_m(air)
@@ -86,13 +82,13 @@ def menisci_of(air: AirSettings | None) -> Menisci | None:
 def reach_nm(air: AirSettings | None) -> float:
     """Gap (nm) below which liquid condenses; 0 without any."""
     menisci = menisci_of(air)
-    return menisci.reach_nm if menisci else 0.0
+    if menisci is None:
+        return 0.0
+    return menisci.reach_nm
 
 
 def surface_tension_mN_m(air: AirSettings) -> float:
-    """Surface tension of the liquid; water's by IAPWS R1-76(2014), 0 beyond its critical
-    temperature.
-    """
+    """Surface tension of the liquid; water's by IAPWS R1-76(2014), 0 beyond its critical point."""
     if air.surface_tension_mN_m is not None:
         return air.surface_tension_mN_m
     tau = max(1.0 - (air.temperature_C + ZERO_C_K) / WATER_CRITICAL_K, 0.0)
@@ -100,9 +96,7 @@ def surface_tension_mN_m(air: AirSettings) -> float:
 
 
 def water_vapour_kPa(temperature_C: float) -> float:
-    """Pressure of saturated water vapour (Wagner and Pruss 2002, doi:10.1063/1.1461829, eq.
-    2.5).
-    """
+    """Pressure of saturated water vapour (Wagner, Pruss 2002, doi:10.1063/1.1461829, eq. 2.5)."""
     kelvin = min(temperature_C + ZERO_C_K, WATER_CRITICAL_K)
     tau = 1.0 - kelvin / WATER_CRITICAL_K
     factors = (-7.85951783, 1.84408259, -11.7866497, 22.6807411, -15.9618719, 1.80122502)

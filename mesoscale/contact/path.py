@@ -37,8 +37,7 @@ def trace(
     stop_separation: float = -np.inf,
     start: Row | None = None,
 ) -> Path:
-    """Bring the flat down from first contact, or from the row `start`, in steps that follow the
-    force.
+    """Bring the flat down from first contact, or from the row `start`, in steps of the force.
 
     Steps aim at force increments of a ``steps``-th of the final force, and at 30 % of the force
     reached so far in the foot of the curve; a step that misses by more than a factor of two is
@@ -48,8 +47,12 @@ def trace(
     roughness."""
     path = Path()
     final = stop_force
-    path.rows += contact.way(contact.touching_separation) if start is None else [start]
-    separation, force = path.rows[-1].separation, path.rows[-1].force
+    if start is None:
+        path.rows += contact.way(contact.touching_separation)
+    else:
+        path.rows.append(start)
+    separation = path.rows[-1].separation
+    force = path.rows[-1].force
     scale = max(contact.rms, 1e-3 * contact.spacing)
     smallest = contact.SMALLEST_STEP * scale
     step = scale / 300.0
@@ -57,7 +60,8 @@ def trace(
 
     def accept(target: float, moved: State) -> None:
         nonlocal separation, force
-        separation, force = target, moved.force
+        separation = target
+        force = moved.force
         path.rows.append(moved.row(target, contact.attraction(target)))
         path.bounds += moved.bounds
         path.unconverged += not moved.settled
@@ -85,25 +89,26 @@ def trace(
             )
             break
         rise = moved.force - force
-        wanted = min(final / steps, max(0.3 * force, 0.02 * final / steps))
-        if rise > 2.0 * wanted and step > smallest:
+        aim = min(final / steps, max(0.3 * force, 0.02 * final / steps))
+        if rise > 2.0 * aim and step > smallest:
             contact.back()
             path.repeated += 1
-            step *= max(0.25, wanted / rise)
+            step *= max(0.25, aim / rise)
             continue
         accept(target, moved)
-        wanted = min(final / steps, max(0.3 * force, 0.02 * final / steps))
+        aim = min(final / steps, max(0.3 * force, 0.02 * final / steps))
         # far below first contact, as on a flat surface, the roughness is no measure of a step
         largest = max(scale, 0.1 * (path.rows[0].separation - separation)) / 30.0
-        step = min(step * min(2.0, max(0.5, wanted / rise if rise > 0 else 2.0)), largest)
-        if contact.AIMS_AT_END and rise > 0 and force + wanted > final:
-            step = min(step, (path.rows[-2].separation - separation) * (final - force) / rise)
+        growth = aim / rise if rise > 0 else 2.0
+        step = min(step * min(2.0, max(0.5, growth)), largest)
+        if contact.AIMS_AT_END and rise > 0 and force + aim > final:
+            last_step = path.rows[-2].separation - separation
+            step = min(step, last_step * (final - force) / rise)
     return path
 
 
 def reopen(contact: Contact, steps: int, last: Row) -> Path:
-    """Lift the flat from the end of closing until nothing touches any more, in steps that follow
-    both forces.
+    """Lift the flat from the end of closing until nothing touches, in steps of both forces.
 
     For contacts that come back another way than they went. Where a force jumps, the step is as
     small as a path allows."""
@@ -118,39 +123,41 @@ def reopen(contact: Contact, steps: int, last: Row) -> Path:
         moved = contact.move_to(target, False)
         pull = contact.attraction(target)
         change = max(abs(moved.force - before.force), abs(pull - before.attraction))
-        wanted = min(usual, max(0.1 * (before.force - before.attraction), 0.02 * usual))
-        if change > 2.0 * wanted and step > smallest:
+        aim = min(usual, max(0.1 * (before.force - before.attraction), 0.02 * usual))
+        if change > 2.0 * aim and step > smallest:
             contact.back()
             path.repeated += 1
-            step = max(step * max(0.25, wanted / change), smallest)
+            step = max(step * max(0.25, aim / change), smallest)
             continue
         path.rows.append(moved.row(target, pull))
         path.unconverged += not moved.settled
         largest = max(scale, target - last.separation) / 30.0
-        step = min(step * min(2.0, max(0.5, wanted / change if change > 0.0 else 2.0)), largest)
+        growth = aim / change if change > 0.0 else 2.0
+        step = min(step * min(2.0, max(0.5, growth)), largest)
     return path
 
 
 def solve_force(
     contact: Contact,
     start: float,
-    beyond: float,
+    below: float,
     start_force: float,
-    beyond_force: float,
-    wanted: float,
+    below_force: float,
+    target: float,
     with_flow: bool,
     smallest: float,
     accept: Callable[[float, State], None],
 ) -> None:
-    """Bring the flat down to where the force is the wanted one.
+    """Bring the flat down to where the force is the target.
 
-    Regula falsi (Illinois) between ``start``, the last separation, and ``beyond``, where the force
-    is too large. Trials below the wanted force are steps of the path and handed to ``accept``;
-    those above it are undone. Where the force jumps over the wanted one, the closer side is taken,
+    Regula falsi (Illinois) between ``start``, the last separation, and ``below``, where the force
+    is too large. Trials below the target are steps of the path and handed to ``accept``;
+    those above it are undone. Where the force jumps over the target, the closer side is taken,
     unless flow is stuck there."""
-    high, low = start, beyond  # force below, above the wanted one
-    short = wanted - start_force
-    excess = beyond_force - wanted
+    high = start  # force below the target
+    low = below  # force above the target
+    short = target - start_force
+    excess = below_force - target
     weight_high = weight_low = 1.0
     last_side = 0
     for trial in range(60):
@@ -161,24 +168,27 @@ def solve_force(
             share = short * weight_high / (short * weight_high + excess * weight_low)
         middle = high + share * (low - high)
         moved = contact.move_to(middle, with_flow)
-        reached = (
-            abs(moved.force - wanted) <= 0.5 * contact.FORCE_TOLERANCE * wanted and not moved.stuck
-        )
-        if reached or (moved.force < wanted and not moved.stuck):
+        tolerance = 0.5 * contact.FORCE_TOLERANCE * target
+        reached = abs(moved.force - target) <= tolerance and not moved.stuck
+        if reached or (moved.force < target and not moved.stuck):
             accept(middle, moved)
             high = middle
-            short = wanted - moved.force
+            short = target - moved.force
             if reached:
                 return
             weight_high = 1.0
-            weight_low = weight_low * 0.5 if last_side == 1 else weight_low
+            if last_side == 1:
+                weight_low = weight_low * 0.5
             last_side = 1
         else:
             contact.back()
             low = middle
-            excess = math.inf if moved.stuck else moved.force - wanted
+            excess = moved.force - target
+            if moved.stuck:
+                excess = math.inf
             weight_low = 1.0
-            weight_high = weight_high * 0.5 if last_side == -1 else weight_high
+            if last_side == -1:
+                weight_high = weight_high * 0.5
             last_side = -1
     if excess < short:
         accept(low, contact.move_to(low, with_flow))

@@ -98,25 +98,30 @@ class Contact(ABC):
         self.offset = float(self.heights.mean())
         self.lowest = float(self.heights.min())
         self.highest = float(self.heights.max())
-        self.rms = math.sqrt(
-            max(float(self.heights @ self.heights) / self.heights.size - self.offset**2, 0.0)
-        )
+        square = float(self.heights @ self.heights) / self.heights.size
+        self.rms = math.sqrt(max(square - self.offset**2, 0.0))
         self.capped = settings.model == "nonlinear"
         self.flows = settings.model == "plastic"
         self.hardness = self.fresh_hardness = inputs.hardness
-        self.tolerance = numerics.flow_tolerance if numerics.flow == "return" else 0.0
+        self.tolerance = 0.0
+        if numerics.flow == "return":
+            self.tolerance = numerics.flow_tolerance
         # a surface that cannot flow needs no record of changes
-        self.changes = no_changes(self.heights.size if self.flows else 0)
-        self.changed = self.changes.changed if self.flows else np.zeros(self.n**2, np.uint8)
+        if self.flows:
+            self.changes = no_changes(self.heights.size)
+            self.changed = self.changes.changed
+        else:
+            self.changes = no_changes(0)
+            self.changed = np.zeros(self.n**2, np.uint8)
         self.order = np.empty(0, np.int32)
         self.order_heights = np.empty(0)
         self.sorted_to = -np.inf
         self.unsettled = 0
-        self.adhesion = (
-            Attraction(self.heights, self.site_area, inputs.hamaker, settings, numerics)
-            if inputs.hamaker > 0 or menisci_of(settings.air)
-            else None
-        )
+        self.adhesion: Attraction | None = None
+        if inputs.hamaker > 0 or menisci_of(settings.air):
+            self.adhesion = Attraction(
+                self.heights, self.site_area, inputs.hamaker, settings, numerics
+            )
 
     @abstractmethod
     def move_to(self, separation: float, with_flow: bool) -> State:
@@ -142,12 +147,12 @@ class Contact(ABC):
     def filled_share(self, separation: float) -> float:
         """Share of the cell that liquid fills at the current separation."""
         self.attraction(separation)
-        return self.adhesion.filled.sites / self.heights.size if self.adhesion else 0.0
+        if self.adhesion is None:
+            return 0.0
+        return self.adhesion.filled.sites / self.heights.size
 
     def hold_liquid(self, separation: float | None) -> None:
-        """Keep the liquid of the current separation from now on, where an opening does; None: no
-        longer.
-        """
+        """Keep the liquid of this separation from now on, as an opening does; None: no longer."""
         if self.adhesion and self.keeps_liquid:
             self.adhesion.kept = None
             if separation is not None:
@@ -168,8 +173,7 @@ class Contact(ABC):
         return [self.away(separation)]
 
     def opened(self, separations: np.ndarray) -> np.ndarray:
-        """Repulsion and attraction (nN) on the way back over separations of a closing, without
-        further flow.
+        """Repulsion and attraction (nN) back over separations of a closing, without flow.
 
         The last separation is the present one, at which the contact is afterwards, too. Shape (2,
         n)."""
@@ -191,11 +195,11 @@ class Contact(ABC):
 
     @property
     def capacity(self) -> float:
-        """Largest force (nN) for which a plastic contact still consists of asperities; see
-        `BEARING_SHARE`.
-        """
+        """Largest force (nN) at which a plastic contact is still asperities: `BEARING_SHARE`."""
         area = self.length**2
-        return self.BEARING_SHARE * self.hardness.pressure(area) * area if self.flows else math.inf
+        if not self.flows:
+            return math.inf
+        return self.BEARING_SHARE * self.hardness.pressure(area) * area
 
     @property
     def touching_separation(self) -> float:
@@ -221,9 +225,9 @@ class Contact(ABC):
         values = self.heights[sites]
         if self.adhesion is not None:
             self.adhesion.adopt(self.changes, values)
-        kept = self.changed[self.order] == 0
-        order = self.order[kept]
-        order_heights = self.order_heights[kept]
+        unchanged = self.changed[self.order] == 0
+        order = self.order[unchanged]
+        order_heights = self.order_heights[unchanged]
         low = np.flatnonzero(values < self.sorted_to)
         low = low[np.argsort(values[low])]
         places = np.searchsorted(order_heights, values[low])
@@ -246,9 +250,8 @@ class Contact(ABC):
             upper = max(height, max(start, self.lowest) + band)
             if upper >= self.highest:
                 upper = np.inf
-            sites = np.flatnonzero(
-                (self.heights >= self.sorted_to) & (self.heights < upper)
-            ).astype(np.int32)
+            inside = (self.heights >= self.sorted_to) & (self.heights < upper)
+            sites = np.flatnonzero(inside).astype(np.int32)
             sites = sites[self.changed[sites] == 0]
             values = self.heights[sites]
             rank = np.argsort(values)

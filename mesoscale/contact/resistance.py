@@ -62,10 +62,10 @@ def stiffness_of(branch: Branch) -> Stiffness:
     force = branch.repulsive_nN[up]
     approach = -branch.separation_nm[up]
     area = branch.contact_area_nm2[up]
-    kept = (force > 0) & (np.diff(approach, prepend=-np.inf) > 0)
-    force = force[kept]
-    approach = approach[kept]
-    area = area[kept]
+    pressed = (force > 0) & (np.diff(approach, prepend=-np.inf) > 0)
+    force = force[pressed]
+    approach = approach[pressed]
+    area = area[pressed]
     slope = np.gradient(force, approach, edge_order=2)
     chords = np.diff(force) / np.diff(approach)
     same = np.diff(area) == 0
@@ -75,8 +75,7 @@ def stiffness_of(branch: Branch) -> Stiffness:
 
 
 def diffusive_share(knudsen: Array) -> Array:
-    """What is left of Holm's resistance of a spot of radius a where electrons fly `knudsen` = l /
-    a, Wexler's gamma.
+    """What Wexler's gamma leaves of Holm's resistance of a spot of radius a; `knudsen` = l / a.
 
     As Nikolic and Allen (Phys. Rev. B 60 (1999) 3963) fit it to Boltzmann's equation. Electrons
     followed one by one give a resistance that is up to 4 % higher

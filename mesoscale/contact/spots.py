@@ -1,6 +1,4 @@
-"""Where a flat that comes down meets a surface: which sites it has reached at each of a few
-separations.
-"""
+"""Where a flat that comes down meets a surface: sites reached at each of a few separations."""
 
 from dataclasses import dataclass
 
@@ -41,8 +39,7 @@ class Spots:
 
 
 def spots_under(inputs: ContactInputs, settings: ContactSettings, cycle: Cycle) -> Spots:
-    """Sites of the nominal surface, as it was before contact, that the flat reaches on the closing
-    of `cycle`.
+    """Sites of the nominal surface that the flat reaches on the closing of `cycle`.
 
     The surface is cut as it was: flow and elastic displacement, which the force does hold, do not
     change the picture."""
@@ -51,19 +48,17 @@ def spots_under(inputs: ContactInputs, settings: ContactSettings, cycle: Cycle) 
     closing = cycle.closing
     touching = np.flatnonzero(closing.repulsive_nN > 0)
     down = closing.separation_nm[touching]
-    wanted = np.linspace(down[0], down[-1], STEPS)
-    chosen = touching[np.unique(np.abs(down - wanted[:, None]).argmin(axis=1))]
+    separations = np.linspace(down[0], down[-1], STEPS)
+    nearest = np.abs(down - separations[:, None]).argmin(axis=1)
+    chosen = touching[np.unique(nearest)]
     separation = closing.separation_nm[chosen]
     pool = max(1, -(-surface.shape[0] // MOST_PIXELS))
     side = surface.shape[0] // pool
-    kept = height[: side * pool, : side * pool]
-    highest = kept.reshape(side, pool, side, pool).max(axis=(1, 3))
+    inside = height[: side * pool, : side * pool]
+    highest = inside.reshape(side, pool, side, pool).max(axis=(1, 3))
     reached = highest[..., None] >= separation
-    return Spots(
-        kept[::pool, ::pool],
-        separation,
-        closing.repulsive_nN[chosen],
-        closing.asperities[chosen],
-        (height[..., None] >= separation).mean(axis=(0, 1)),
-        np.where(reached.any(axis=-1), reached.argmax(axis=-1), -1),
-    )
+    share = (height[..., None] >= separation).mean(axis=(0, 1))
+    first = np.where(reached.any(axis=-1), reached.argmax(axis=-1), -1)
+    force = closing.repulsive_nN[chosen]
+    asperities = closing.asperities[chosen]
+    return Spots(inside[::pool, ::pool], separation, force, asperities, share, first)

@@ -1,6 +1,4 @@
-"""Hardness at the slope that a contact's own tops have: steep asperities are harder than blunt
-ones.
-"""
+"""Hardness at the slope of a contact's own tops: steep asperities are harder than blunt ones."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -34,9 +32,10 @@ def at_slope(
     ------
     InputError : a slope that no run had.
     """
-    steep = {
-        row.name: entries[row.name]["steepness"] for row in table.rows if _is_steep(row, entries)
-    }
+    steep = {}
+    for row in table.rows:
+        if _is_steep(row, entries):
+            steep[row.name] = entries[row.name]["steepness"]
     if not steep:
         return table
     inputs, settings = contact_of(table.medians(), contact)

@@ -31,42 +31,31 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
     """
     from mesoscale.topography.synthesis import synthesize, synthesize_spectrum
 
-    pixels, length, q1, wanted = (
-        settings.pixels,
-        settings.length_nm,
-        settings.q1_per_nm,
-        settings.surface,
-    )
+    pixels = settings.pixels
+    length = settings.length_nm
+    q1 = settings.q1_per_nm
+    shape = settings.surface
     if q1 is not None:
         check_number(
             "q1", q1, 0.0, settings.nyquist_per_nm * (1.0 + 1e-9), "1/nm (what the grid resolves)"
         )
-    if wanted.heights:
+    if shape.heights:
         from mesoscale.topography.height_synthesis import synthesize_heights
 
         psd = surface_spectrum(inputs, settings)
-        return -synthesize_heights(pixels, length, psd, wanted.heights, inputs.rms, seed, q1)
-    if wanted.spectrum is None:
+        return -synthesize_heights(pixels, length, psd, shape.heights, inputs.rms, seed, q1)
+    if shape.spectrum is None:
         _check_roll_off(inputs.q0, settings)
-        return synthesize(
-            pixels,
-            length,
-            inputs.q0,
-            inputs.hurst,
-            inputs.rms,
-            seed,
-            settings.reading.convention,
-            q1,
-        )
+        convention = settings.reading.convention
+        q0, hurst = inputs.q0, inputs.hurst
+        return synthesize(pixels, length, q0, hurst, inputs.rms, seed, convention, q1)
     return synthesize_spectrum(
         pixels, length, surface_spectrum(inputs, settings), inputs.rms, seed, q1
     )
 
 
 def _check_roll_off(q0: float, settings: ContactSettings) -> None:
-    """Refuse a roll-off far beyond the waves of the cell, on which it does not act: it is in
-    another unit.
-    """
+    """Refuse a roll-off far beyond the waves of the cell, where it does not act: another unit."""
     longest = 2.0 * math.pi / settings.length_nm
     shortest = settings.nyquist_per_nm
     if not longest / CUT_OUT <= q0 <= shortest * (1.0 + 1e-9):
@@ -80,28 +69,25 @@ def _check_roll_off(q0: float, settings: ContactSettings) -> None:
 def surface_spectrum(
     inputs: ContactInputs, settings: ContactSettings
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Two-dimensional spectrum, nm^4 of wave vectors in 1/nm, from which `random_surface` draws its
-    surfaces.
-    """
+    """Two-dimensional spectrum, nm^4 at 1/nm, from which `random_surface` draws."""
     from mesoscale.topography.roughness_spectrum import (
         RoughSpectrum,
         SpectrumTable,
         slope_from_hurst,
     )
 
-    wanted = settings.surface
+    shape = settings.surface
     cutoff = shortest_wave(settings)
     convention = settings.reading.convention
     slope = slope_from_hurst(inputs.hurst, convention)
-    if wanted.spectrum is None:
+    if shape.spectrum is None:
         return RoughSpectrum.from_rms(inputs.rms, inputs.q0, slope, cutoff).psd
-    table = SpectrumTable(wanted.spectrum.q, wanted.spectrum.psd)
-    if wanted.spectrum.q0 is not None and wanted.spectrum.hurst is not None:
-        there = _form(
-            table.q, wanted.spectrum.q0, slope_from_hurst(wanted.spectrum.hurst, convention)
-        )
-        here = _form(table.q, inputs.q0, slope)
-        table = SpectrumTable(table.q, table.values * here / there)
+    table = SpectrumTable(shape.spectrum.q, shape.spectrum.psd)
+    if shape.spectrum.q0 is not None and shape.spectrum.hurst is not None:
+        pivot_slope = slope_from_hurst(shape.spectrum.hurst, convention)
+        pivot_form = _form(table.q, shape.spectrum.q0, pivot_slope)
+        own_form = _form(table.q, inputs.q0, slope)
+        table = SpectrumTable(table.q, table.values * own_form / pivot_form)
     return table.scaled(inputs.rms, cutoff).psd
 
 
@@ -116,8 +102,7 @@ def shortest_wave(settings: ContactSettings) -> float:
 
 
 def shared_wave(settings: ContactSettings) -> float:
-    """Largest wave vector that finer grids show alike, 1/nm: as `shortest_wave`, but for waves of
-    just two pixels.
+    """Largest wave vector that finer grids show alike, 1/nm: without waves of just two pixels.
 
     Of these a grid holds no phase, so that they are others on a finer grid.
     """
@@ -130,8 +115,7 @@ def given_surface(
     contact_at: ContactAt | None,
     settings: ContactSettings,
 ) -> tuple[np.ndarray | None, ContactSettings]:
-    """The heights that a caller gives, checked, contact at the lowest, and the settings with their
-    grid and side.
+    """The heights that a caller gives, checked, lowest in contact, and settings of their grid.
 
     Raises
     ------
@@ -145,7 +129,8 @@ def given_surface(
                 "length_nm is the side of heights; give both, or settings.length_nm alone"
             )
         return None, settings
-    surface = checked_heights(heights, settings.length_nm if length_nm is None else length_nm)
+    side_nm = settings.length_nm if length_nm is None else length_nm
+    surface = checked_heights(heights, side_nm)
     check_periodic(surface)
     if contact_at not in get_args(ContactAt):
         raise InputError(

@@ -18,12 +18,9 @@ from scipy.special import ndtr
 from mesoscale.answer.points import Point, kinds, point_of, values_at
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.memory import PadLaw, attracting, deepened
+from mesoscale.pad.curves import DOUBLINGS, PadCurves, deepened
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.beam_switch import closed_beam
-from mesoscale.switch.numerics import SWITCH
-from mesoscale.switch.plate import plate_from_settings, solve_on_pad
-from mesoscale.switch.pressing import held_V
+from mesoscale.switch import switch_of
 
 Array = NDArray[np.float64]
 
@@ -32,9 +29,9 @@ class Pressed(Protocol):
     """A pad that was pressed: its mean curves, and those of two halves of its cells."""
 
     @property
-    def law(self) -> PadLaw: ...
+    def curves(self) -> PadCurves: ...
     @property
-    def halves(self) -> tuple[PadLaw, PadLaw]: ...
+    def halves(self) -> tuple[PadCurves, PadCurves]: ...
 
 
 Press = Callable[[Point, int, int], Pressed]
@@ -102,13 +99,18 @@ class Attracted:
     Parameters
     ----------
     release_V : a switch that is still closed at this voltage has failed.
-    elements : of its beam.
+    coarse : see `switch_of`.
     """
 
-    def __init__(self, settings: DeviceSettings, law: PadLaw, release_V: float, elements: int):
-        self.settings, self.release_V, self.elements = settings, release_V, elements
-        self.laws = [law]
-        self.closed: Callable[[float, float], bool] | None = None
+    def __init__(
+        self, settings: DeviceSettings, pad: PadCurves, release_V: float, coarse: bool = False
+    ) -> None:
+        self.settings = settings
+        self.pad = pad
+        self.release_V = release_V
+        self.coarse = coarse
+        self._doublings = 0
+        self._still_closed: Callable[[float, float], bool] | None = None
 
     def fails(self, times: float) -> bool:
         """Whether the switch fails with `times` its attraction.
@@ -119,21 +121,16 @@ class Attracted:
             solved."""
         while True:
             try:
-                if not self.settings.bends:
-                    law = attracting(self.laws[-1], times)
-                    plate = solve_on_pad(
-                        plate_from_settings(self.settings), law, self.settings.hold_voltage_V
-                    )
-                    return plate.release_V == 0.0 or plate.release_V < self.release_V
-                self.closed = self.closed or closed_beam(
-                    self.settings, self.laws[-1], self.elements
-                )
-                return self.closed(self.release_V, times)
+                if self._still_closed is None:
+                    switch = switch_of(self.settings, self.coarse)
+                    self._still_closed = switch.closed_on(self.pad)
+                return self._still_closed(self.release_V, times)
             except NotComputed:
-                if len(self.laws) > SWITCH.deepened_by:
+                if self._doublings == DOUBLINGS:
                     raise
-                self.laws.append(deepened(self.laws[-1]))
-                self.closed = None
+                self._doublings += 1
+                self.pad = deepened(self.pad)
+                self._still_closed = None
 
     def reserve(self, step: float = FAILURE.step) -> float:
         """Logarithm of the factor on the attraction with which the switch just fails, known to half
@@ -188,12 +185,12 @@ class Population:
     @property
     def spring(self) -> str:
         """The setting of the device that is its spring."""
-        return "thickness_um" if self.settings.bends else "spring_N_per_m"
+        return self.settings.designed[0]
 
     @property
     def hold_V(self) -> float:
         """Hold voltage of the scene; where it has none, that of the pull-in without contact."""
-        return held_V(self.settings)
+        return switch_of(self.settings).hold_V
 
     @cached_property
     def positive(self) -> NDArray[np.bool_]:
@@ -225,9 +222,8 @@ class Population:
         for k, point in enumerate(self.points(z, hold_V)):
             with suppress(InputError):
                 pad = self.press(point, 1, _surface(z[k])) if pads is None else pads[k]
-                reserves[k] = Attracted(
-                    point.device, pad.law, self.release_V, SWITCH.coarse_elements
-                ).reserve()
+                switch = Attracted(point.device, pad.curves, self.release_V, coarse=True)
+                reserves[k] = switch.reserve()
         return reserves
 
     def failed(self, z: Array, hold_V: float, times: float) -> NDArray[np.bool_]:
@@ -238,14 +234,15 @@ class Population:
         )
 
     def _fails(self, point: Point, surface: int, times: float) -> bool:
-        def fails(law: PadLaw, elements: int) -> bool:
-            return Attracted(point.device, law, self.release_V, elements).fails(times)
+        def fails(pad: PadCurves, coarse: bool = False) -> bool:
+            return Attracted(point.device, pad, self.release_V, coarse).fails(times)
 
         try:
             pad = self.press(point, 1, surface)
-            failed = fails(pad.law, SWITCH.elements)
-            if any(fails(half, SWITCH.coarse_elements) != failed for half in pad.halves):
-                failed = fails(self.press(point, FAILURE.surer_cells, surface).law, SWITCH.elements)
+            failed = fails(pad.curves)
+            if any(fails(half, coarse=True) != failed for half in pad.halves):
+                surer = self.press(point, FAILURE.surer_cells, surface)
+                failed = fails(surer.curves)
         except InputError:
             return True
         return failed

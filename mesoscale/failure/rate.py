@@ -19,7 +19,7 @@ from mesoscale.answer.points import values_at
 from mesoscale.answer.release import WORKS
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE, Population
-from mesoscale.switch.pressing import pull_in_V
+from mesoscale.switch import switch_of
 from mesoscale.uncertainty.rare_events import (
     LEAST,
     REPEATS,
@@ -104,7 +104,9 @@ def voltages(population: Population) -> Array:
     """
     hold_V = population.hold_V
     return np.linspace(
-        min(hold_V, pull_in_V(population.settings)), FAILURE.span * hold_V, FAILURE.voltages
+        min(hold_V, switch_of(population.settings).pull_in_V),
+        FAILURE.span * hold_V,
+        FAILURE.voltages,
     )
 
 

@@ -1,5 +1,4 @@
-"""Many cycles of one surface, each held at its largest force: shakedown and creep
-(docs/history.md).
+"""Many cycles of one surface, each held at its largest force: shakedown, creep (docs/history.md).
 
 An asperity at its hardness H whose indentation is kept relaxes by Norton's law, dp/dt = -(H/t0)
 (p/H)^(m + 1), so that p = H (1 + m t/t0)^(-1/m). Every asperity is held to this envelope, or to the
@@ -54,8 +53,7 @@ def follow(
     settings: HistorySettings,
     seed: int,
 ) -> Iterator[HeldCycle]:
-    """Close and open one surface again and again; each cycle starts from the surface that the last
-    one left.
+    """Close and open one surface repeatedly; each cycle starts from the surface of the last.
 
     Raises
     ------
@@ -94,8 +92,7 @@ def check(contact: ContactSettings, settings: HistorySettings) -> None:
 
 @dataclass
 class Hold:
-    """Keeps the force of a contact while its hardness falls; what `run_cycle` calls between the
-    branches.
+    """Keeps the force of a contact while its hardness falls; `run_cycle` calls it at the turn.
 
     Attributes
     ----------
@@ -150,15 +147,15 @@ class Hold:
             step *= 2.0
         separation, moved = path[-1]
         self.missed += abs(moved.force - force) > 1e-3 * force
-        whole = moved._replace(sweeps=sum(passed.sweeps for _, passed in path))
-        return whole.row(separation, contact.attraction(separation))
+        held = moved._replace(sweeps=sum(passed.sweeps for _, passed in path))
+        return held.row(separation, contact.attraction(separation))
 
 
 def _times(settings: HistorySettings, start_s: float) -> np.ndarray:
     """Times of one hold, evenly in ln(1 + t/t0), the start included."""
     end_s = start_s + settings.dwell_s
-    ends = np.log1p(np.array([start_s, end_s]) / CREEP_TIME_S)
-    inner = np.linspace(ends[0], ends[1], DWELL_STEPS + 1)[1:-1]
+    log_times = np.log1p(np.array([start_s, end_s]) / CREEP_TIME_S)
+    inner = np.linspace(log_times[0], log_times[1], DWELL_STEPS + 1)[1:-1]
     return np.array([start_s, *CREEP_TIME_S * np.expm1(inner), end_s])
 
 

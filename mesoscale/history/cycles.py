@@ -37,7 +37,7 @@ def cycle_row(seed: int, held: HeldCycle) -> dict[str, Any]:
     """Row of history/cycles.csv: the cycle, and the law of its opening."""
     cycle = held.cycle
     opening = fit_cycle(cycle).opening
-    return {
+    row: dict[str, Any] = {
         "seed": seed,
         "cycle": held.number,
         "held_s": float(held.held_s[-1]) if len(held.held_s) else 0.0,
@@ -47,13 +47,13 @@ def cycle_row(seed: int, held: HeldCycle) -> dict[str, Any]:
         "contact_area_nm2": float(cycle.closing.contact_area_nm2[-1]),
         "dissipated_nN_nm": dissipated_energy(cycle)[0],
         "pull_off_nN": -float(cycle.opening.net_nN.min()),
-        **{
-            f"opening_{name}": value if np.isfinite(value := float(getattr(opening, name))) else ""
-            for name in PARAMETERS
-        },
-        "opening_status": opening.status,
-        "converged": bool(cycle.converged and held.missed == 0),
     }
+    for name in PARAMETERS:
+        value = float(getattr(opening, name))
+        row[f"opening_{name}"] = value if np.isfinite(value) else ""
+    row["opening_status"] = opening.status
+    row["converged"] = bool(cycle.converged and held.missed == 0)
+    return row
 
 
 def dwell_rows(
@@ -62,15 +62,17 @@ def dwell_rows(
     """Rows of history/dwell.csv: the contact at each time of the hold."""
     site = (contact.length_nm / contact.pixels) ** 2
     factors = hardness_factor(held.held_s, settings)
-    return [
-        {
-            "seed": seed,
-            "cycle": held.number,
-            "held_s": float(time),
-            "hardness_factor": float(factor),
-            "separation_nm": row.separation,
-            "contact_area_nm2": row.sites * site,
-            "asperities": row.asperities,
-        }
-        for time, factor, row in zip(held.held_s, factors, held.hold, strict=True)
-    ]
+    rows = []
+    for time, factor, row in zip(held.held_s, factors, held.hold, strict=True):
+        rows.append(
+            {
+                "seed": seed,
+                "cycle": held.number,
+                "held_s": float(time),
+                "hardness_factor": float(factor),
+                "separation_nm": row.separation,
+                "contact_area_nm2": row.sites * site,
+                "asperities": row.asperities,
+            }
+        )
+    return rows

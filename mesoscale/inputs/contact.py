@@ -1,6 +1,4 @@
-"""What the contact model takes: the inputs of Table 1, those of a film, and how uncertain inputs
-enter it.
-"""
+"""What the contact model takes: Table 1, a film, and how uncertain inputs enter it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -15,8 +13,7 @@ from mesoscale.settings.definitions import BY_NAME, RMS_SCATTER, definition
 
 @dataclass(frozen=True)
 class ContactInputs:
-    """The seven inputs of Table 1, and a film; their accepted ranges stand in
-    `mesoscale.settings.definitions`.
+    """The inputs of Table 1, and a film; ranges stand in `mesoscale.settings.definitions`.
 
     Attributes
     ----------
@@ -51,7 +48,8 @@ class ContactInputs:
     def __post_init__(self):
         for field in fields(self):
             row = BY_NAME[field.name]
-            check_number(row.name, getattr(self, row.name), row.low, row.high, row.unit, row.zero)
+            value = getattr(self, row.name)
+            check_number(row.name, value, row.low, row.high, row.unit, row.zero)
         film = {name: getattr(self, name) for name in ("h_film", "k_film", "m_film")}
         if self.t_film == 0 and any(film.values()):
             stated = ", ".join(f"{name} = {value:g}" for name, value in film.items() if value)
@@ -65,9 +63,8 @@ class ContactInputs:
                 " base softens the film; give both, or without t_film the film's hardness as"
                 " h_macro"
             )
-        if (
-            self.t_film > 0 and self.h_film < self.h_macro
-        ):  # contacts that harden as they grow have no one pressure
+        # contacts that harden as they grow have no one pressure
+        if self.t_film > 0 and self.h_film < self.h_macro:
             raise InputError(
                 f"h_film = {self.h_film:.4g} GPa on h_macro = {self.h_macro:.4g} GPa: accepted are"
                 " films at least as hard as their base"
@@ -94,8 +91,7 @@ class FilmInputs(ContactInputs):
 def contact_of(
     values: Mapping[str, float], settings: ContactSettings
 ) -> tuple[ContactInputs, ContactSettings]:
-    """Contact inputs from values by name, and the settings with those inputs put in that replace
-    one of them.
+    """Contact inputs from values by name, and the settings with the inputs that replace one.
 
     Raises
     ------
@@ -109,6 +105,8 @@ def contact_of(
         elif field:
             replaced[field] = value
     kind = FilmInputs if RMS_SCATTER.name in values else ContactInputs
-    given = {name: value for name, value in values.items() if not definition(name).setting}
-    inputs = kind(**{"h_prime": 0.0, **given})  # laws without it: `inputs.hardness`
-    return inputs, ContactSettings(**(dict(settings) | replaced)) if replaced else settings
+    contact_values = {name: value for name, value in values.items() if not definition(name).setting}
+    inputs = kind(**{"h_prime": 0.0, **contact_values})  # laws without it: `inputs.hardness`
+    if not replaced:
+        return inputs, settings
+    return inputs, ContactSettings(**(dict(settings) | replaced))

@@ -1,6 +1,4 @@
-"""Distributions of the uncertain inputs: quantile function, support, and joint samples with
-correlation.
-"""
+"""Distributions of the uncertain inputs: quantiles, support, joint samples with correlation."""
 
 from dataclasses import dataclass, field
 
@@ -51,7 +49,8 @@ class Distribution:
             return np.full_like(p, self.a)
         below = ndtr((self.low - self.a) / self.b)
         above = ndtr((self.high - self.a) / self.b)
-        return np.clip(self.a + self.b * ndtri(below + p * (above - below)), self.low, self.high)
+        values = self.a + self.b * ndtri(below + p * (above - below))
+        return np.clip(values, self.low, self.high)
 
     def scaled(self, factor: float) -> "Distribution":
         """The distribution of `factor` times the value."""
@@ -65,7 +64,9 @@ class Distribution:
 
         All of a bounded distribution; the central share of an unbounded one.
         """
-        share = central_share if self.kind == "normal" else 1.0
+        share = 1.0
+        if self.kind == "normal":
+            share = central_share
         low, high = self.quantile(np.array([(1 - share) / 2, (1 + share) / 2]))
         return float(low), float(high)
 
@@ -114,9 +115,7 @@ class InputTable:
         return [row.name for row in self.rows]
 
     def medians(self) -> dict[str, float]:
-        """Central values by name, in the inputs' units (the means, where a distribution is
-        symmetric).
-        """
+        """Central values by name, in the inputs' units (means of symmetric distributions)."""
         return {row.name: float(row.distribution.quantile(0.5)) for row in self.rows}
 
     def ranges(self) -> Array:
@@ -124,9 +123,7 @@ class InputTable:
         return np.array([row.distribution.span() for row in self.rows])
 
     def transform(self, unit_points: Array) -> Array:
-        """Points of the unit cube (m, n) to values of the inputs with their correlation (Gaussian
-        copula).
-        """
+        """Points of the unit cube (m, n) to correlated values of the inputs (Gaussian copula)."""
         if not np.array_equal(self.correlation, np.eye(len(self.rows))):
             from scipy.special import ndtr, ndtri
 
@@ -158,12 +155,10 @@ def correlation_matrix(names: list[str], pairs: dict[tuple[str, str], float]) ->
         i = names.index(first)
         j = names.index(second)
         matrix[i, j] = matrix[j, i] = rank
-    if (
-        np.linalg.eigvalsh(
-            2 * np.sin(np.pi / 6 * matrix) * (1 - np.eye(len(names))) + np.eye(len(names))
-        )[0]
-        <= 0
-    ):
+    # correlation of the normal variables behind the ranks (Pearson 1907)
+    identity = np.eye(len(names))
+    normal = 2 * np.sin(np.pi / 6 * matrix) * (1 - identity) + identity
+    if np.linalg.eigvalsh(normal)[0] <= 0:
         raise InputError(
             f"inputs.correlations: {', '.join(f'{a}-{b} {r:g}' for (a, b), r in pairs.items())}"
             " contradict one another (not positive definite); make them weaker"

@@ -7,8 +7,7 @@ import numpy as np
 
 
 class HardnessLaw(NamedTuple):
-    """H = H_b + (H_film - H_b) / (1 + k (L/t)^m) of a film on a base, L the root of the contact's
-    area.
+    """H = H_b + (H_film - H_b) / (1 + k (L/t)^m), a film on a base; L: root of the contact's area.
 
     The base has H_b(A) = H_macro + H' A^-1/4 (eq. 4). Without a film (t = 0) H is that of the base.
 
@@ -39,9 +38,8 @@ class HardnessLaw(NamedTuple):
         base = self.h_macro + self.h_prime / np.sqrt(length)
         if not np.any(self.t_film):
             return base
-        return base + (self.h_film - base) / (
-            1.0 + self.k_film * (length / self.t_film) ** self.m_film
-        )
+        crossover = self.k_film * (length / self.t_film) ** self.m_film
+        return base + (self.h_film - base) / (1.0 + crossover)
 
     def scaled(self, factor: float) -> "HardnessLaw":
         """The law of a material with this share of the hardness."""

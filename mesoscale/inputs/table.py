@@ -1,6 +1,4 @@
-"""The table of uncertain inputs in use (the paper's Table 1): each row from literature or from a
-stage.
-"""
+"""The table of uncertain inputs in use (Table 1): each row from literature or a stage."""
 
 import json
 import os
@@ -54,7 +52,7 @@ def collect(
         pairs.setdefault(names, rank)
     for name, row in settings.rows(law).items():
         if row.origin == "literature":
-            given = stated_distribution(name, row)
+            distribution = stated_distribution(name, row)
             source = row.source or "scene"
             where = f"inputs.{name}"
         else:
@@ -62,7 +60,7 @@ def collect(
             accepted = row.origin in settings.accepted_gates
             entry = _from_stage(name, row.origin, stages[row.origin], source, accepted)
             where = f"{source}: inputs.{name}"
-            given = distribution_of(entry, where)
+            distribution = distribution_of(entry, where)
             for other, rank in entry.get("correlation", {}).items():
                 partner = settings.rows(law).get(other)
                 if (
@@ -73,8 +71,10 @@ def collect(
                         pairs[name, other] = float(rank)
                 elif partner is not None and partner.varies == row.varies:
                     pairs.setdefault((name, other), float(rank))
-        _check_range(name, given, where)
-        rows.append(UncertainInput(name, BY_NAME[name].unit, given, row.origin, source, row.varies))
+        _check_range(name, distribution, where)
+        rows.append(
+            UncertainInput(name, BY_NAME[name].unit, distribution, row.origin, source, row.varies)
+        )
     names = [row.name for row in rows]
     return InputTable(tuple(rows), correlation_matrix(names, pairs))
 
@@ -95,24 +95,20 @@ def film_table(
     ------
     InputError : a range crosses a physical bound.
     """
-    rows = [
-        (
-            replace(
-                row, distribution=distribution_of(film[row.name], f"{row.source}: film.{row.name}")
-            )
-            if row.origin == "topography" and row.name in film
-            else row
-        )
-        for row in table.rows
-    ]
+    rows = []
+    for row in table.rows:
+        if row.origin == "topography" and row.name in film:
+            where = f"{row.source}: film.{row.name}"
+            row = replace(row, distribution=distribution_of(film[row.name], where))
+        rows.append(row)
     rms = rows[table.names.index("rms")]
     name = RMS_SCATTER.name
     if scatter is not None:
         stated = Distribution("uniform", a=scatter[0], b=scatter[1])
         rows.append(UncertainInput(name, "1", stated, "literature", "pad.rms_scatter"))
     elif rms.origin == "topography":
-        given = distribution_of(film[name], f"{rms.source}: film.{name}")
-        rows.append(UncertainInput(name, "1", given, rms.origin, rms.source))
+        distribution = distribution_of(film[name], f"{rms.source}: film.{name}")
+        rows.append(UncertainInput(name, "1", distribution, rms.origin, rms.source))
     for row in rows:
         _check_range(row.name, row.distribution, f"{row.source}: film.{row.name}")
     correlation = np.eye(len(rows))
@@ -121,8 +117,7 @@ def film_table(
 
 
 def check_literature(settings: InputsSettings) -> dict[str, tuple[float, float]]:
-    """Check what needs no stage: the literature rows, priors among them, and the correlations that
-    the settings give.
+    """Check what needs no stage: literature rows, priors among them, and stated correlations.
 
     Returns
     -------
@@ -181,17 +176,14 @@ def input_table(topography: Mapping[str, Any] | None = None, **rows: InputRow) -
     ------
     InputError : unknown name, a range that crosses a physical bound, or roughness that the scans do
         not determine."""
-    measured = (
-        {}
-        if topography is None
-        else {name: InputRow(origin="topography") for name in ("q0", "hurst", "rms", "q1")}
-    )
-    paper = {
-        **PAPER_ROWS,
-        "h_prime": PAPER_ROWS["h_prime"] if rows.get("hardness", "paper") == "paper" else None,
-    }
-    settings = InputsSettings(**{**paper, **measured, **rows})
-    stages = {} if topography is None else {"topography": topography}
+    paper: dict[str, InputRow | None] = dict(PAPER_ROWS)
+    stages = {}
+    if rows.get("hardness", "paper") != "paper":
+        paper["h_prime"] = None
+    if topography is not None:
+        paper |= {name: InputRow(origin="topography") for name in ("q0", "hurst", "rms", "q1")}
+        stages["topography"] = topography
+    settings = InputsSettings(**(paper | rows))
     return collect(settings, stages, {"topography": "measured roughness"})
 
 
@@ -210,8 +202,7 @@ def stated_distribution(name: str, row: DistributionRow, section: str = "inputs"
 
 
 def joint_samples(rows: Mapping[str, InputRow]) -> dict[tuple[str, str], float]:
-    """Rank correlations of inputs whose samples stand in the same file, a row of it one joint
-    sample.
+    """Rank correlations of inputs whose samples stand in one file, a joint sample a row.
 
     Raises
     ------
@@ -257,14 +248,10 @@ def distribution_of(entry: Mapping[str, Any], where: str) -> Distribution:
     """
     if entry.get("distribution") == "samples":  # of the calibration
         return Distribution("samples", values=np.sort(np.asarray(entry["values"], float)))
-    numbers: dict[str, Any] = {
-        key: float(entry[key]) for key in NUMBERS if entry.get(key) is not None
-    }
-    if (
-        entry.get("distribution")
-        not in ("uniform", "log_uniform", "normal", "truncated_normal", "fixed")
-        or "a" not in numbers
-    ):
+    stated = [key for key in NUMBERS if entry.get(key) is not None]
+    numbers: dict[str, Any] = {key: float(entry[key]) for key in stated}
+    kinds = ("uniform", "log_uniform", "normal", "truncated_normal", "fixed")
+    if entry.get("distribution") not in kinds or "a" not in numbers:
         raise InputError(
             f"{where}: distribution {entry.get('distribution')} with {numbers} is not usable;"
             " accepted: uniform, log_uniform, normal (a, b), truncated_normal (a, b, low, high),"
@@ -306,8 +293,8 @@ def _read_samples(name: str, file: str, key: str) -> np.ndarray:
     return values
 
 
-def _check_range(name: str, given: Distribution, where: str) -> tuple[float, float]:
-    low, high = given.span()
+def _check_range(name: str, distribution: Distribution, where: str) -> tuple[float, float]:
+    low, high = distribution.span()
     row = BY_NAME[name]
     if not (row.accepts(low) and row.accepts(high) and low <= high):
         raise InputError(
@@ -321,23 +308,22 @@ def to_rows(table: InputTable) -> list[dict[str, Any]]:
     """The table as rows of inputs.csv."""
     rows = []
     for k, row in enumerate(table.rows):
-        given = row.distribution
-        partners = {
-            table.names[j]: table.correlation[k, j] for j in range(k) if table.correlation[k, j]
-        }
-        finite = {key: value for key in NUMBERS if np.isfinite(value := getattr(given, key))}
+        distribution = row.distribution
+        partners = {}
+        for j in range(k):
+            if table.correlation[k, j]:
+                partners[table.names[j]] = table.correlation[k, j]
+        numbers = {key: getattr(distribution, key) for key in NUMBERS}
         # samples travel inside the table, so that inputs.csv alone defines the inputs in use
-        kind = (
-            given.kind
-            if given.kind != "samples"
-            else "samples " + json.dumps(given.values.tolist())
-        )
+        kind = distribution.kind
+        if kind == "samples":
+            kind = "samples " + json.dumps(distribution.values.tolist())
         rows.append(
             {
                 "parameter": row.name,
                 "unit": row.unit,
                 "distribution": kind,
-                **finite,
+                **{key: value for key, value in numbers.items() if np.isfinite(value)},
                 "correlation": json.dumps(partners) if partners else "",
                 "origin": row.origin,
                 "varies": row.varies,
@@ -355,14 +341,11 @@ def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
         kind, _, samples = row["distribution"].partition(" ")
         numbers: dict[str, Any] = {key: float(row[key]) for key in NUMBERS if row.get(key)}
         values = np.array(json.loads(samples)) if samples else np.empty(0)
+        distribution = Distribution(kind, **numbers, values=values)
+        name = row["parameter"]
         inputs.append(
             UncertainInput(
-                row["parameter"],
-                row["unit"],
-                Distribution(kind, **numbers, values=values),
-                row["origin"],
-                row["file"],
-                row["varies"],
+                name, row["unit"], distribution, row["origin"], row["file"], row["varies"]
             )
         )
         for other, rank in json.loads(row.get("correlation") or "{}").items():
@@ -371,7 +354,5 @@ def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
 
 
 def medians(rows: Iterable[Mapping[str, str]]) -> dict[str, float]:
-    """Central inputs by name (the means, where a distribution is symmetric) from the rows of
-    inputs.csv.
-    """
+    """Central inputs by name (means of symmetric distributions) from the rows of inputs.csv."""
     return from_rows(rows).medians()

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact import Cycle
+from mesoscale.contact.cycle import Branch
 from mesoscale.errors import InputError
 from mesoscale.law.compact import Law
 from mesoscale.law.fit import LawFit, fit_branch, row_of
@@ -35,21 +36,17 @@ NO_FIT = LawFit(np.nan, np.nan, np.nan, np.nan, status="no_curve")
 
 def fit_cycle(cycle: Cycle) -> Outcome:
     """The law fitted to both branches of a cycle."""
-    fits = [
-        fit_branch(
-            branch.separation_nm,
-            branch.repulsive_nN,
-            branch.attractive_nN,
-            cycle.cell_area_nm2,
-            cycle.inputs.hamaker,
-            touch,
-        )
-        for branch, touch in (
-            (cycle.closing, cycle.first_contact_nm),
-            (cycle.opening, cycle.last_contact_nm),
-        )
-    ]
-    return Outcome(fits[0], fits[1], "ok" if cycle.converged else "unconverged")
+    area = cycle.cell_area_nm2
+    hamaker = cycle.inputs.hamaker
+    closing = _fit(cycle.closing, area, hamaker, cycle.first_contact_nm)
+    opening = _fit(cycle.opening, area, hamaker, cycle.last_contact_nm)
+    return Outcome(closing, opening, "ok" if cycle.converged else "unconverged")
+
+
+def _fit(branch: Branch, area_nm2: float, hamaker: float, touch_nm: float) -> LawFit:
+    separation_nm = branch.separation_nm
+    forces = branch.repulsive_nN, branch.attractive_nN
+    return fit_branch(separation_nm, *forces, area_nm2, hamaker, touch_nm)
 
 
 def laws_of(cycle: Cycle) -> tuple[Law, Law]:
@@ -63,13 +60,11 @@ def laws_of(cycle: Cycle) -> tuple[Law, Law]:
     for branch, fit in (("closing", outcome.closing), ("opening", outcome.opening)):
         if not np.isfinite(fit.parameters).all():
             raise InputError(f"law of {branch}: {fit.status}; choose a larger force")
-    closing, opening = (
-        Law(
-            **dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True)),
-            hamaker=cycle.inputs.hamaker,
-        )
-        for fit in (outcome.closing, outcome.opening)
-    )
+    laws = []
+    for fit in (outcome.closing, outcome.opening):
+        parameters = dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True))
+        laws.append(Law(**parameters, hamaker=cycle.inputs.hamaker))
+    closing, opening = laws
     return closing, opening
 
 

@@ -56,16 +56,13 @@ def pressure(separation_nm: ArrayLike, law: Law) -> tuple[Array, Array]:
     d_c = np.asarray(law.d_c_nm, float)
     attractive = shielded_hamaker(h0, law.hamaker, law.shield_nm)
     attractive = attractive - np.asarray(law.C_a_GPa_nm) * np.maximum(d_c + law.rho_a_nm - h0, 0.0)
-    repulsive = np.asarray(law.C_r_GPa) * np.expm1(
-        np.maximum(d_c - h0, 0.0) / np.asarray(law.rho_r_nm)
-    )
+    approach = np.maximum(d_c - h0, 0.0)
+    repulsive = np.asarray(law.C_r_GPa) * np.expm1(approach / np.asarray(law.rho_r_nm))
     return attractive, repulsive
 
 
 def force(separation_nm: ArrayLike, law: Law, cell_area_nm2: float) -> tuple[Array, Array]:
-    """Attractive (negative) and repulsive force in nN on a cell of `cell_area_nm2` (1 GPa nm^2 = 1
-    nN).
-    """
+    """Attractive (negative) and repulsive force in nN on `cell_area_nm2` (1 GPa nm^2 = 1 nN)."""
     attractive, repulsive = pressure(separation_nm, law)
     return attractive * cell_area_nm2, repulsive * cell_area_nm2
 

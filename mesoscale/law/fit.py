@@ -20,30 +20,12 @@ from mesoscale.law.parameters import PARAMETERS
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class FitNumerics:
-    """Choices of the fit; no scene sets them.
-
-    Attributes
-    ----------
-    points : even points in separation that a branch is resampled to.
-    fewest_points : of the curve in contact: two parameters and an error.
-    shallowest, deepest : window over rho_r: a shallower one shows a straight line, a deeper one a
-        step.
-    largest_error : relative error of C_r and rho_r from which on they are not identified.
-    largest_residual : misfit over the largest repulsion from which on a fit is called poor.
-    """
-
-    points: int = 200
-    fewest_points: int = 4
-    shallowest: float = 0.2
-    deepest: float = 200.0
-    largest_error: float = 1.0
-    largest_residual: float = 0.15
-
-
-FIT = FitNumerics()
-"""What every fit uses."""
+POINTS = 200  # even in separation, to which a branch is resampled
+FEWEST_POINTS = 4  # of the curve in contact: two parameters and an error
+SHALLOWEST = 0.2  # depth over rho_r; below, a curve shows a straight line
+DEEPEST = 200.0  # above, it shows a step
+LARGEST_ERROR = 1.0  # relative, of C_r and rho_r; from there on they are not identified
+LARGEST_RESIDUAL = 0.15  # misfit over the largest repulsion; from there on a fit is poor
 
 
 @dataclass(frozen=True)
@@ -76,8 +58,7 @@ class LawFit:
 def contact_separation(
     separation_nm: Array, repulsive_nN: Array, touch_nm: float | None = None
 ) -> float:
-    """The separation d_c where the first asperity touches (of an opening branch: the last one), NaN
-    without contact.
+    """Separation d_c of the first touch (opening: the last one); NaN without contact.
 
     It is an extreme value of the surface, which grows with the sample area.
 
@@ -132,14 +113,9 @@ def fit_branch(
     ------
     InputError : arrays of unequal length or not finite.
     """
-    named = (
-        ("separation_nm", separation_nm),
-        ("repulsive_nN", repulsive_nN),
-        ("attractive_nN", attractive_nN),
-    )
-    h, repulsive, attractive = (
-        checked_array(f"law fit: {name}", x, name.rpartition("_")[2]) for name, x in named
-    )
+    h = checked_array("law fit: separation_nm", separation_nm, "nm")
+    repulsive = checked_array("law fit: repulsive_nN", repulsive_nN, "nN")
+    attractive = checked_array("law fit: attractive_nN", attractive_nN, "nN")
     if not (h.ndim == 1 and h.shape == repulsive.shape == attractive.shape):
         raise InputError(
             f"law fit: separation and forces have shapes {h.shape}, {repulsive.shape}, "
@@ -154,37 +130,33 @@ def fit_branch(
     if not np.isfinite(d_c_nm) or repulsive.max(initial=0.0) <= 0:
         return LawFit(np.nan, np.nan, np.nan, np.nan, status="no_contact")
     inside = (h < d_c_nm) & (repulsive > 0)
-    if inside.sum() < FIT.fewest_points:
+    if inside.sum() < FEWEST_POINTS:
         return LawFit(d_c_nm, np.nan, np.nan, np.nan, status="few_points")
     scale = repulsive.max()
 
     C_a, C_a_var, misfit_a = _fit_attraction(h, attractive, d_c_nm, hamaker)
-    h_r = np.linspace(h.min(), d_c_nm, FIT.points, endpoint=False)
+    h_r = np.linspace(h.min(), d_c_nm, POINTS, endpoint=False)
     depth = d_c_nm - h_r
     f_r = np.interp(h_r, h, repulsive)
     rho, at_bound = _best_rho(depth, f_r)
     C_r = float(_prefactor(depth, f_r, np.array([rho]))[0][0])
-    covariance = _covariance(
-        depth, f_r, C_r, rho, C_a_var, points=min(int(inside.sum()), FIT.points)
-    )
-    residual = float(
-        np.sqrt(np.mean((f_r - C_r * np.expm1(depth / rho)) ** 2) + misfit_a**2) / scale
-    )
+    points = min(int(inside.sum()), POINTS)
+    covariance = _covariance(depth, f_r, C_r, rho, C_a_var, points=points)
+    misfit_r = np.mean((f_r - C_r * np.expm1(depth / rho)) ** 2)
+    residual = float(np.sqrt(misfit_r + misfit_a**2) / scale)
 
     fit = LawFit(float(d_c_nm), C_a, C_r, rho, covariance, residual)
     if at_bound:
-        why = (
-            "the curve is a straight line, only C_r/rho_r is determined"
-            if at_bound > 0
-            else "a step at the end"
-        )
+        why = "a step at the end"
+        if at_bound > 0:
+            why = "the curve is a straight line, only C_r/rho_r is determined"
         return _without_repulsion(fit, f"not_identifiable: {why}")
     relative_error = np.sqrt(np.diag(covariance)[1:]) / np.array([C_r, rho])
-    if not np.all(relative_error < FIT.largest_error):
+    if not np.all(relative_error < LARGEST_ERROR):
         return _without_repulsion(
             fit, "not_identifiable: relative error of C_r or rho_r above the gate"
         )
-    if residual > FIT.largest_residual:
+    if residual > LARGEST_RESIDUAL:
         return replace(fit, status="poor_fit")
     return fit
 
@@ -201,14 +173,15 @@ def _fit_attraction(
     top = min(kink, h.max())
     if top <= h.min():
         return np.nan, np.nan, 0.0
-    grid = np.linspace(h.min(), top, FIT.points)
+    grid = np.linspace(h.min(), top, POINTS)
     excess = shielded_hamaker(grid, hamaker, Law.shield_nm) - np.interp(grid, h, attractive)
     arm = np.maximum(kink - grid, 0.0)
     C_a = float(arm @ excess / (arm @ arm))
     misfit = excess - C_a * arm
-    points = max(2, min(FIT.points, int((h <= top).sum())))
-    variance = float(np.mean(misfit**2) * len(grid) / (points - 1) / (arm @ arm))
-    return C_a, variance, float(np.sqrt(np.mean(misfit**2)))
+    points = max(2, min(POINTS, int((h <= top).sum())))
+    square = np.mean(misfit**2)
+    variance = float(square * len(grid) / (points - 1) / (arm @ arm))
+    return C_a, variance, float(np.sqrt(square))
 
 
 def _prefactor(depth: Array, f: Array, rho: Array) -> tuple[Array, Array]:
@@ -223,17 +196,16 @@ def _prefactor(depth: Array, f: Array, rho: Array) -> tuple[Array, Array]:
 
 
 def _best_rho(depth: Array, f: Array) -> tuple[float, int]:
-    """rho_r of least misfit, and -1 or +1 if it lies at the lower or upper end of the accepted
-    range.
-    """
+    """rho_r of least misfit, and -1 or +1 if it lies at the lower or upper end of its range."""
     span = depth.max()
-    low = np.log(span / FIT.deepest)
-    high = np.log(span / FIT.shallowest)
+    low = np.log(span / DEEPEST)
+    high = np.log(span / SHALLOWEST)
     grid = np.linspace(low, high, 48)
     misfit = _prefactor(depth, f, np.exp(grid))[1]
     best = int(np.argmin(misfit))
     if best in (0, len(grid) - 1):
-        return float(np.exp(grid[best])), -1 if best == 0 else 1
+        side = -1 if best == 0 else 1
+        return float(np.exp(grid[best])), side
     left = grid[best - 1]
     right = grid[best + 1]
     for _ in range(9):  # each round shrinks the bracket 5-fold: 2e6 in all
@@ -247,9 +219,7 @@ def _best_rho(depth: Array, f: Array) -> tuple[float, int]:
 def _covariance(
     depth: Array, f: Array, C_r: float, rho: float, C_a_var: float, points: int
 ) -> Array:
-    """Covariance of (C_a, C_r, rho_r) from the misfit, as if `points` of the curve were
-    independent.
-    """
+    """Covariance of (C_a, C_r, rho_r) from the misfit, as if `points` were independent."""
     covariance = np.zeros((3, 3))
     covariance[0, 0] = C_a_var
     growth = np.expm1(depth / rho)
@@ -265,14 +235,16 @@ def _covariance(
     return covariance
 
 
+def _plain(value: float) -> float | None:
+    """Six digits of a number; None of none."""
+    return float(f"{value:.6g}") if np.isfinite(value) else None
+
+
 def row_of(fit: LawFit) -> dict[str, Any]:
     """One row of law/parameters.csv (without run, seed and branch); the covariance as JSON."""
-    values = [
-        [float(f"{x:.6g}") if np.isfinite(x) else None for x in line] for line in fit.covariance
-    ]
-    return {
-        **{name: value for name, value in zip(PARAMETERS, fit.parameters.tolist(), strict=True)},
-        "covariance": json.dumps(values),
-        "residual": fit.residual,
-        "status": fit.status,
-    }
+    covariance = [[_plain(value) for value in line] for line in fit.covariance]
+    row: dict[str, Any] = dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True))
+    row["covariance"] = json.dumps(covariance)
+    row["residual"] = fit.residual
+    row["status"] = fit.status
+    return row

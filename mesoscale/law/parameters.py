@@ -1,6 +1,4 @@
-"""The one table of the law's parameters, and of the outputs made of them.  Imports nothing
-heavy.
-"""
+"""The one table of the law's parameters, and of the outputs made of them. Light to import."""
 
 from dataclasses import dataclass, replace
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.curves import PadCurves
 
 Array = NDArray[np.float64]
 
@@ -31,24 +31,24 @@ class Adhesion:
     pull_off_kPa: float
 
 
-def adhesion_of(law: PadLaw) -> list[Adhesion]:
+def adhesion_of(pad: PadCurves) -> list[Adhesion]:
     """Adhesion of a pad from each depth that was computed, the deepest first."""
     rows = []
-    for depth, opened in zip(law.depth_nm.tolist(), law.opening, strict=True):
+    for depth, opened in zip(pad.depth_nm.tolist(), pad.opening, strict=True):
         way = np.isfinite(opened[0])
-        separation, net = law.separation_nm[way], opened[:, way].sum(axis=0)
+        separation, net = pad.separation_nm[way], opened[:, way].sum(axis=0)
         first = int(np.argmax(net < 0.0))
         if first > 0:
             zero = np.interp(0.0, -net[first - 1 : first + 1], separation[first - 1 : first + 1])
             separation, net = np.insert(separation[first:], 0, zero), np.insert(net[first:], 0, 0.0)
-        energy = law.flats.energy_J_m2(separation[-1]) - np.trapezoid(net, separation)
+        energy = pad.flats.energy_J_m2(separation[-1]) - np.trapezoid(net, separation)
         rows.append(
             Adhesion(
                 depth,
                 1e3 * float(opened[0, way][0]),
                 float(separation[0]),
                 1e6 * float(energy),
-                1e6 * float(law.flats.energy_J_m2(separation[0])),
+                1e6 * float(pad.flats.energy_J_m2(separation[0])),
                 -1e6 * float(net.min()),
             )
         )

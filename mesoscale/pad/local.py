@@ -6,14 +6,25 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mesoscale.pad.memory import PadLaw, attracting
-from mesoscale.pad.numerics import PAD
+from mesoscale.pad.curves import PadCurves, attracting
 
 Array = NDArray[np.float64]
 
 FADE_NM = 1.0
 """Rise over which a difference between the end of closing and the start of opening fades, where
 push and pull nearly cancel."""
+MEMORY_DEPTHS = 96
+"""Deepest closings of the table, between those that were computed: 8 nm in steps of 0.1 nm."""
+MEMORY_RISES = 1200
+"""Separations above them."""
+HIGHEST_RISE_NM = 60.0
+"""Beyond, closing and opening are the same attraction, but for coarse films."""
+COARSE_NM = 120.0
+"""Shallowest depth of a coarse film. Those of scene `paper` are 90 nm at most: its tables stay
+so."""
+SAME = 1e-7
+"""Difference of closing and opening, over the largest repulsion, below which they are the same:
+1 Pa of 10 MPa, the accuracy of a beam's balance."""
 
 
 class LocalPad:
@@ -21,27 +32,24 @@ class LocalPad:
     closed.
     """
 
-    def __init__(self, law: PadLaw):
-        self.law = law
+    def __init__(self, curves: PadCurves):
+        self.curves = curves
         # in a row in memory, whichever way the curves came: the loops are compiled once
-        self.at_nm = np.ascontiguousarray(law.separation_nm)
-        self.closing = law.closing.sum(axis=0)
-        self.depth_nm = np.linspace(law.depth_nm[0], law.depth_nm[-1], PAD.memory_depths)
-        shallow = law.depth_nm[-1]
-        highest = (
-            max(PAD.highest_rise_nm, _reach_nm(law))
-            if shallow > PAD.coarse_nm
-            else PAD.highest_rise_nm
-        )
-        self.rise_nm = np.linspace(
-            0.0, min(law.separation_nm[-1] - shallow, highest), PAD.memory_rises
-        )
-        self.opening = law.opened(self.rise_nm, self.depth_nm).sum(axis=1)
+        self.at_nm = np.ascontiguousarray(curves.separation_nm)
+        self.closing = curves.closing.sum(axis=0)
+        deepest_nm, shallowest_nm = curves.depth_nm[[0, -1]]
+        self.depth_nm = np.linspace(deepest_nm, shallowest_nm, MEMORY_DEPTHS)
+        highest_nm = HIGHEST_RISE_NM
+        if shallowest_nm > COARSE_NM:
+            highest_nm = max(HIGHEST_RISE_NM, _reach_nm(curves))
+        highest_nm = min(curves.separation_nm[-1] - shallowest_nm, highest_nm)
+        self.rise_nm = np.linspace(0.0, highest_nm, MEMORY_RISES)
+        self.opening = curves.opened(self.rise_nm, self.depth_nm).sum(axis=1)
 
     @property
     def tables(self) -> tuple[Array, Array, Array, Array, Array, float, float]:
         """What `pad_pressure` takes of the pad."""
-        flats = self.law.flats
+        flats = self.curves.flats
         return (
             self.at_nm,
             self.closing,
@@ -57,7 +65,7 @@ class LocalPad:
         it.
         """
         pad = copy(self)
-        pad.law = attracting(self.law, times)
+        pad.curves = attracting(self.curves, times)
         pad.closing = bare.closing + times * (self.closing - bare.closing)
         pad.opening = bare.opening + times * (self.opening - bare.opening)
         return pad
@@ -71,14 +79,16 @@ class LocalPad:
         return pressure, slope
 
 
-def _reach_nm(law: PadLaw) -> float:
+def _reach_nm(curves: PadCurves) -> float:
     """Largest rise above a computed depth at which opening and closing still differ."""
-    same_GPa = PAD.same * float(law.closing[0].max())
+    same_GPa = SAME * float(curves.closing[0].max())
     apart = (
-        np.abs(law.opening.sum(axis=1) - law.closing.sum(axis=0)) > same_GPa
+        np.abs(curves.opening.sum(axis=1) - curves.closing.sum(axis=0)) > same_GPa
     )  # not a number below the depth
     last = apart.shape[1] - 1 - apart[:, ::-1].argmax(axis=1)
-    return float(np.max(np.where(apart.any(axis=1), law.separation_nm[last] - law.depth_nm, 0.0)))
+    return float(
+        np.max(np.where(apart.any(axis=1), curves.separation_nm[last] - curves.depth_nm, 0.0))
+    )
 
 
 @njit(cache=True)

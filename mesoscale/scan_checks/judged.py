@@ -1,6 +1,4 @@
-"""The scan is the judge: surfaces made from a description are pressed beside the measured scans
-themselves.
-"""
+"""The scan is the judge: surfaces made from a description are pressed beside the scans."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -42,7 +40,7 @@ class Described:
     """
 
     topography: Topography
-    one: OneSpectrum | None
+    merged: OneSpectrum | None
     heights: tuple[tuple[float, ...], ...]
 
     def spectra(self, count: int) -> Iterator[Callable[[Array], Array]]:
@@ -53,11 +51,13 @@ class Described:
         # scatter
         golden = 0.5 * (5.0**0.5 - 1.0)  # its multiples (modulo 1) are spread evenly, however many
         places = ndtri((np.arange(count) + 0.5) * golden % 1.0)
-        if self.one is not None:
-            scatter = self.one.place_sd
-            for psd, place in zip(self.one.draws(places=False, count=count), places, strict=True):
+        if self.merged is not None:
+            scatter = self.merged.place_sd
+            for psd, place in zip(
+                self.merged.draws(places=False, count=count), places, strict=True
+            ):
                 # as the contact's own surfaces
-                yield SpectrumTable(*self.one.carried_on(psd * math.exp(scatter * place))).psd
+                yield SpectrumTable(*self.merged.carried_on(psd * math.exp(scatter * place))).psd
             return
         rng = np.random.default_rng(1)
         estimates, fitted = self.topography.estimates, self.topography.likelihood
@@ -100,21 +100,26 @@ def judge(
     spectra = [replace(item, tip_radius_nm=0.0) for item in spectra]
     for scan in cleaned.values():
         left_out = len(spectra) > 1
-        used = [item for item in spectra if item.name != scan.name] if left_out else list(spectra)
-        others = [item for item in cleaned.values() if item.name != scan.name] or [scan]
-        heights = tuple(height_maps(others)) if name == "measured_heights" else ()
+        used = list(spectra)
+        if left_out:
+            used = [item for item in spectra if item.name != scan.name]
+        other_scans = [item for item in cleaned.values() if item.name != scan.name] or [scan]
+        heights = ()
+        if name == "measured_heights":
+            heights = tuple(height_maps(other_scans))
         topography = analyse(used, settings)
         # without this scan eq. 9 may have nothing to say
-        one = merge(used) if name != "power_law" or "rms" not in topography.estimates else None
-        if one is None and "rms" not in topography.estimates:
+        merged = None
+        if name != "power_law" or "rms" not in topography.estimates:
+            merged = merge(used)
+        if merged is None and "rms" not in topography.estimates:
             continue
-        described = Described(topography, one, heights)
+        described = Described(topography, merged, heights)
         yield from _judged(scan, described, name, left_out, inputs, settings, contact, most_contact)
 
 
 def disagreeing(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """First contacts that are further from their description than the worst of so many scans is by
-    chance.
+    """First contacts further from their description than the worst of so many scans by chance.
 
     Parameters
     ----------
@@ -124,13 +129,16 @@ def disagreeing(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
 
     contacts = [row for row in rows if row["quantity"] == "first_contact"]
     # of films whose description is right, 5 % are named
-    most = float(ndtri(1 - 0.05 / (2 * max(len(contacts), 1)))) / REACH
+    share = 1 - 0.05 / (2 * max(len(contacts), 1))
+    largest = float(ndtri(share)) / REACH
 
     def away(row: Mapping[str, Any]) -> float:
-        low, pressed, high = (math.log(float(row[key])) for key in ("low", "pressed", "high"))
+        low = math.log(float(row["low"]))
+        pressed = math.log(float(row["pressed"]))
+        high = math.log(float(row["high"]))
         return abs(pressed - (low + high) / 2) / ((high - low) / 2)
 
-    return sorted((row for row in contacts if away(row) > most), key=away, reverse=True)
+    return sorted((row for row in contacts if away(row) > largest), key=away, reverse=True)
 
 
 def testable(rows: Sequence[Mapping[str, Any]]) -> bool:
@@ -139,21 +147,17 @@ def testable(rows: Sequence[Mapping[str, Any]]) -> bool:
 
 
 def height_maps(scans: Sequence[Scan], count: int = 10) -> Iterator[tuple[float, ...]]:
-    """Maps of heights that few grains allow: from blocks of the scans drawn anew (bootstrap over
-    places).
-    """
+    """Maps of heights that few grains allow: blocks of the scans drawn anew (bootstrap)."""
     blocks = []
     cuts = 4
     for scan in scans:
         standard = (scan.heights_nm - scan.heights_nm.mean()) / scan.rms_nm
-        blocks += [
-            part
-            for row in np.array_split(standard, cuts)
-            for part in np.array_split(row, cuts, axis=1)
-        ]
+        for row in np.array_split(standard, cuts):
+            blocks += np.array_split(row, cuts, axis=1)
     rng = np.random.default_rng(2)
     for _ in range(count):
-        drawn = [blocks[k].ravel() for k in rng.integers(len(blocks), size=len(blocks))]
+        picks = rng.integers(len(blocks), size=len(blocks))
+        drawn = [blocks[k].ravel() for k in picks]
         yield common_heights([height_quantiles(np.concatenate(drawn))])
 
 
@@ -168,9 +172,8 @@ def _judged(
     most_contact: float,
 ) -> Iterator[dict[str, Any]]:
     measured, side = contacting_heights(scan)
-    stride = -(
-        -len(measured) // 256
-    )  # at most so many sites a side; the surfaces beside it are thinned, too
+    # at most so many sites a side; the surfaces beside it are thinned, too
+    stride = -(-len(measured) // 256)
     measured = np.ascontiguousarray(measured[::stride, ::stride])
     sites = len(measured)
     chosen = contact.model_copy(update={"pixels": sites, "length_nm": side})
@@ -181,10 +184,8 @@ def _judged(
         if share.get(quantity, 0.0) <= most_contact
     }
     made: dict[str, list[float]] = {quantity: [] for quantity in truth}
-    touched, pressed = (
-        40,
-        20,
-    )  # surfaces that are brought to first contact, and of these the ones that are pressed
+    touched = 40  # surfaces that are brought to first contact
+    pressed = 20  # of these
     for number, psd in enumerate(described.spectra(touched)):
         height = _rms(psd, 2 * side, 2 * sites)
         seed = NOMINAL_SEED + number
@@ -193,9 +194,8 @@ def _judged(
             larger = synthesize_heights(2 * sites, 2 * side, psd, chart, height, seed)
         else:
             larger = synthesize_spectrum(2 * sites, 2 * side, psd, height, seed)
-        surface, _ = contacting_heights(
-            clean(Scan(larger[:sites, :sites], (side, side), scan.name), settings)
-        )
+        drawn = Scan(larger[:sites, :sites], (side, side), scan.name)
+        surface, _ = contacting_heights(clean(drawn, settings))
         if number < pressed:
             values, _ = _press(surface, inputs, chosen, contact.length_nm)
         else:
@@ -224,13 +224,13 @@ def _judged(
 def _press(
     surface: Array, inputs: ContactInputs, contact: ContactSettings, cell_nm: float
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """RMS, first contact, separation at both pressures and area at the larger; nm, nm^2. Contact is
-    at the minima.
+    """RMS, first contact, separation at both pressures, area at the larger; nm, nm^2; at minima.
 
     Besides, for what is read at a load, the share of the cell in contact there.
     """
     area = (contact.length_nm / cell_nm) ** 2
-    values = {"rms": float(np.std(surface)), "first_contact": float(surface.mean() - surface.min())}
+    first_contact = float(surface.mean() - surface.min())
+    values = {"rms": float(np.std(surface)), "first_contact": first_contact}
     force_nN = LOADS_NN[-1] * area
     cycle = run_cycle(
         replace(inputs, rms=values["rms"]),
@@ -246,9 +246,8 @@ def _press(
     for load in LOADS_NN:
         name = f"separation_{load / 1000:g}uN"
         values[name] = float(np.interp(load * area, force, closing.separation_nm))
-        share[name] = (
-            float(np.interp(load * area, force, closing.contact_area_nm2)) / contact.length_nm**2
-        )
+        area_nm2 = float(np.interp(load * area, force, closing.contact_area_nm2))
+        share[name] = area_nm2 / contact.length_nm**2
     name = f"area_{LOADS_NN[-1] / 1000:g}uN"
     values[name] = float(closing.contact_area_nm2[-1])
     share[name] = values[name] / contact.length_nm**2
@@ -272,7 +271,8 @@ def _predicted(values: Array, positive: bool) -> tuple[float, float, float]:
     if positive:
         logs = np.log(values)
         middle = float(np.mean(logs))
-        reach = student_reach(count - 1) * float(np.std(logs, ddof=1)) * math.sqrt(1 + 1 / count)
+        deviation = float(np.std(logs, ddof=1))
+        reach = student_reach(count - 1) * deviation * math.sqrt(1 + 1 / count)
         return math.exp(middle - reach), math.exp(middle), math.exp(middle + reach)
     ordered = np.sort(values)
     outside = max(int((count + 1) * (1 - CONFIDENCE) / 2 + 1e-9), 1)

@@ -18,8 +18,7 @@ def has_square_pixels(data: Scan | Profile) -> TypeGuard[Scan]:
 
 
 def contacting_heights(scan: Scan) -> tuple[np.ndarray, float]:
-    """The largest centred square of a cleaned scan as the contact model wants it: heights (n, n)
-    and side, nm.
+    """The largest centred square of a cleaned scan for the contact: heights (n, n), side in nm.
 
     The contact is at the minima of its heights and periodic, so the scan is turned upside down and
     made periodic.
@@ -42,8 +41,7 @@ def contacting_heights(scan: Scan) -> tuple[np.ndarray, float]:
 
 
 def periodic_part(heights: np.ndarray) -> np.ndarray:
-    """Heights less the smoothest surface that has their jumps across the edges
-    (doi:10.1007/s10851-010-0227-1).
+    """Heights less the smoothest surface with their jumps (doi:10.1007/s10851-010-0227-1).
 
     What is left meets itself across the edges without a jump, and is nearly unchanged away from
     them."""
@@ -53,11 +51,9 @@ def periodic_part(heights: np.ndarray) -> np.ndarray:
     jumps[-1] -= heights[-1] - heights[0]
     jumps[:, 0] += heights[:, -1] - heights[:, 0]
     jumps[:, -1] -= heights[:, -1] - heights[:, 0]
-    laplace = (
-        2 * np.cos(2 * np.pi * np.fft.fftfreq(nx))[:, None]
-        + 2 * np.cos(2 * np.pi * np.fft.rfftfreq(ny))
-        - 4
-    )
+    wave_x = 2 * np.cos(2 * np.pi * np.fft.fftfreq(nx))[:, None]
+    wave_y = 2 * np.cos(2 * np.pi * np.fft.rfftfreq(ny))
+    laplace = wave_x + wave_y - 4
     laplace[0, 0] = 1.0
     smooth = np.asarray(scipy.fft.rfft2(jumps)) / laplace
     smooth[0, 0] = 0.0

@@ -1,6 +1,4 @@
-"""Settings of the mesoscale stages, a module each: every key with its default, unit and accepted
-range.
-"""
+"""Settings of the mesoscale stages, a module each: keys with default, unit and range."""
 
 from asperity.guards.settings import Settings
 from mesoscale.settings.contact import ContactSettings, ReadingSettings, SceneContact

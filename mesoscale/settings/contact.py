@@ -28,10 +28,10 @@ NOMINAL_LOADS_NN = (1e3, 3e3, 7e3, 1e4, 2e4, 5e4)
 
 
 def advised_grid(pixels: int) -> str:
-    """Advice for a message to take so many sites a side, up to its comma; empty where no grid may
-    have them.
-    """
-    return f"contact.pixels >= {pixels}, " if pixels <= MOST_PIXELS else ""
+    """Advice for a message to take so many sites a side, up to its comma; empty beyond the most."""
+    if pixels > MOST_PIXELS:
+        return ""
+    return f"contact.pixels >= {pixels}, "
 
 
 class ReadingSettings(Settings):
@@ -77,7 +77,8 @@ Body = tuple[MaterialSettings, ...]
 
 def base_modulus(bodies: Sequence[Body]) -> float:
     """E* of the bases together, GPa: 1 / E* is the sum of (1 - nu^2) / E."""
-    return 1.0 / sum((1.0 - body[-1].poisson ** 2) / body[-1].young_GPa for body in bodies)
+    compliances = ((1.0 - body[-1].poisson ** 2) / body[-1].young_GPa for body in bodies)
+    return 1.0 / sum(compliances)
 
 
 class AirSettings(Settings):
@@ -178,9 +179,8 @@ class SceneContact(Settings):
         if any(material.thickness_nm == 0.0 for body in self.bodies for material in body):
             raise ValueError("bodies: a layer with thickness_nm = 0 is none; leave it out")
         for body in self.bodies:
-            if not body or [material.thickness_nm is None for material in body] != [False] * (
-                len(body) - 1
-            ) + [True]:
+            endless = [material.thickness_nm is None for material in body]
+            if not body or endless != [False] * (len(body) - 1) + [True]:
                 raise ValueError(
                     "bodies: each is a list of layers with thickness_nm, and at its end a base"
                     " without one"

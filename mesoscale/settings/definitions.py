@@ -1,6 +1,4 @@
-"""The one table of the uncertain inputs.  Imports nothing heavy: settings and the workflow read it
-to plan.
-"""
+"""The one table of the uncertain inputs. Light to import: settings and workflow plan by it."""
 
 from dataclasses import dataclass
 

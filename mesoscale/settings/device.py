@@ -70,8 +70,24 @@ class SpreadSettings(Settings):
 
 SPREAD = tuple(SpreadSettings.model_fields)
 """The properties of a device that can be uncertain."""
-OF_A_PLATE = ("gap_um", "dielectric_nm", "permittivity")
-"""What can vary of a plate on a spring."""
+Kind = Literal["beam", "plate"]
+UNCERTAIN: dict[Kind, tuple[str, ...]] = {
+    "beam": SPREAD,
+    "plate": ("gap_um", "dielectric_nm", "permittivity"),
+}
+"""Of these, the properties that act on each kind of switch."""
+DESIGNED: dict[Kind, tuple[str, ...]] = {
+    "beam": (
+        "thickness_um",
+        "length_um",
+        "gap_um",
+        "residual_stress_MPa",
+        "dielectric_nm",
+        "hold_voltage_V",
+    ),
+    "plate": ("spring_N_per_m", "width_um", "gap_um", "dielectric_nm", "hold_voltage_V"),
+}
+"""What a designer chooses of each kind, as the answer varies it; the first is the spring."""
 
 
 class DeviceSettings(Settings):
@@ -167,9 +183,19 @@ class DeviceSettings(Settings):
         return self
 
     @property
-    def bends(self) -> bool:
-        """Whether the electrode is a beam; else a plate on a spring."""
-        return self.spring_N_per_m is None
+    def kind(self) -> Kind:
+        """Which switch the settings describe: a bending beam, or a plate on a spring."""
+        return "beam" if self.spring_N_per_m is None else "plate"
+
+    @property
+    def level(self) -> "DeviceSettings":
+        """The same device without its tilt."""
+        return self.model_copy(update={"tilt_nm": 0.0})
+
+    @property
+    def dielectric_gap_nm(self) -> float:
+        """Thickness of vacuum with the field of the dielectric."""
+        return self.dielectric_nm / self.permittivity
 
     @property
     def area_um2(self) -> float:
@@ -179,9 +205,8 @@ class DeviceSettings(Settings):
     @property
     def pad_um2(self) -> float:
         """Area of the rough pad, um^2."""
-        if not self.bends:
-            return self.area_um2
-        return (self.contact[1] - self.contact[0]) * self.length_um * self.width_um
+        start, end = self.electrode if self.kind == "plate" else self.contact
+        return (end - start) * self.length_um * self.width_um
 
     @property
     def bending_GPa(self) -> float:
@@ -227,7 +252,7 @@ class DeviceSettings(Settings):
         height = 1e3 * self.gap_um + self.shape_at_rest_nm(shares)
         within = (self.contact[0] <= shares) & (shares <= self.contact[1])
         lowest_nm = float((height - np.where(within, self.dimple_nm, self.stopper_nm)).min())
-        if not self.bends or lowest_nm > 0.0:
+        if self.kind == "plate" or lowest_nm > 0.0:
             return ""
         return (
             f"device: at rest the electrode is {lowest_nm:.4g} nm above what it lands on at its"
@@ -235,9 +260,20 @@ class DeviceSettings(Settings):
         )
 
     @property
+    def designed(self) -> tuple[str, ...]:
+        """The properties that its designer chooses, its spring first."""
+        return DESIGNED[self.kind]
+
+    def has(self, name: str) -> bool:
+        """Whether this property acts on this kind of switch."""
+        if self.kind == "beam":
+            return name != "spring_N_per_m"
+        return name in {*DESIGNED["plate"], *UNCERTAIN["plate"]}
+
+    @property
     def varied(self) -> list[str]:
         """The properties that are not exactly known."""
-        names = SPREAD if self.bends else OF_A_PLATE
+        names = UNCERTAIN[self.kind]
         return [name for name in names if getattr(self.spread, name) is not None]
 
     @property

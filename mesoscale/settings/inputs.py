@@ -37,10 +37,10 @@ class DistributionRow(Settings):
 
     @field_validator("values", mode="before")
     @classmethod
-    def _numbers_or_path(cls, given: Any) -> Any:
-        if given is None or isinstance(given, str):
-            return given
-        numbers = given if isinstance(given, (list, tuple)) else [None]
+    def _numbers_or_path(cls, stated: Any) -> Any:
+        if stated is None or isinstance(stated, str):
+            return stated
+        numbers = stated if isinstance(stated, (list, tuple)) else [None]
         if not all(
             isinstance(item, (int, float)) and not isinstance(item, bool) for item in numbers
         ):
@@ -86,11 +86,11 @@ class DistributionRow(Settings):
 
     @property
     def reaches(self) -> float | None:
-        """The largest number that it states as an end, or its mean; None of samples and of a
-        stage's distribution.
-        """
+        """The largest number that it states as an end, or its mean; None of samples or a stage."""
         place = {"uniform": 1, "log_uniform": 1, "truncated_normal": 3}.get(self.distribution, 0)
-        return self.values[place] if isinstance(self.values, tuple) else None
+        if not isinstance(self.values, tuple):
+            return None
+        return self.values[place]
 
 
 class InputRow(DistributionRow):
@@ -183,15 +183,12 @@ class InputsSettings(
 
     @model_validator(mode="after")
     def _one_attraction(self) -> "InputsSettings":
-        fields = type(self).model_fields
-        given = [
-            name
-            for name in ("hamaker", "gap_cutoff")
-            if getattr(self, name) != fields[name].default
-        ]
-        if self.adhesion and given:
+        defaults = type(self).model_fields
+        names = ("hamaker", "gap_cutoff")
+        stated = [name for name in names if getattr(self, name) != defaults[name].default]
+        if self.adhesion and stated:
             raise ValueError(
-                f"adhesion and {' and '.join(given)} give the same attraction; leave one of"
+                f"adhesion and {' and '.join(stated)} give the same attraction; leave one of"
                 " them out"
             )
         return self
@@ -199,14 +196,14 @@ class InputsSettings(
     @model_validator(mode="after")
     def _inputs_of_the_hardness(self) -> "InputsSettings":
         for row in INPUTS:
-            given = getattr(self, row.name)
+            stated = getattr(self, row.name)
             default = type(self).model_fields[row.name].default
-            if row.hardness == self.hardness and given is None:
+            if row.hardness == self.hardness and stated is None:
                 raise ValueError(
                     f"hardness: {row.hardness} needs {row.name}, {row.label} ({row.unit}); give"
                     " its row"
                 )
-            if row.hardness not in ("", self.hardness) and given not in (None, default):
+            if row.hardness not in ("", self.hardness) and stated not in (None, default):
                 raise ValueError(
                     f"{row.name} belongs to hardness: {row.hardness}, but hardness is"
                     f" {self.hardness}; set {row.name} to null, or take that law"
@@ -253,19 +250,16 @@ class InputsSettings(
     @property
     def pairs(self) -> dict[tuple[str, str], float]:
         """The stated rank correlations (Spearman's) of two inputs."""
-        return {
-            (one, other): rank
-            for one, others in self.correlations.items()
-            for other, rank in others.items()
-        }
+        pairs = {}
+        for first, ranks in self.correlations.items():
+            for second, rank in ranks.items():
+                pairs[first, second] = rank
+        return pairs
 
     def rows(self, law: AttractionLaw = "offset") -> dict[str, InputRow]:
         """The inputs in use, by name; `law` of the attraction that `adhesion` states."""
-        named = {
-            row.name: getattr(self, row.name)
-            for row in INPUTS
-            if row.hardness in ("", self.hardness)
-        }
+        used = [row.name for row in INPUTS if row.hardness in ("", self.hardness)]
+        named = {name: getattr(self, name) for name in used}
         if self.adhesion:
             stated = {
                 "hamaker": self.adhesion.hamaker(law),
@@ -279,27 +273,22 @@ class InputsSettings(
 
     def prior_origins(self) -> dict[str, str]:
         """Where the distribution of each input comes from, before any calibration."""
-        return {
-            name: (
-                row.origin
-                if row.origin != "calibration"
-                else BY_NAME[name].stage
-                if row.values is None
-                else "literature"
-            )
-            for name, row in self.rows().items()
-        }
+        origins = {}
+        for name, row in self.rows().items():
+            origins[name] = row.origin
+            if row.origin == "calibration":
+                origins[name] = BY_NAME[name].stage if row.values is None else "literature"
+        return origins
 
     def origins(self) -> set[str]:
         """Where the inputs come from; cheap, so that a workflow can decide which stages to run."""
-        return {row.origin for row in self.rows().values()} | set(self.prior_origins().values())
+        used = {row.origin for row in self.rows().values()}
+        return used | set(self.prior_origins().values())
 
     def priors(self) -> "InputsSettings":
         """The inputs before any calibration."""
         origins = self.prior_origins()
-        return self.model_copy(
-            update={
-                name: row.model_copy(update={"origin": origins[name]})
-                for name, row in self.rows().items()
-            }
-        )
+        priors = {}
+        for name, row in self.rows().items():
+            priors[name] = row.model_copy(update={"origin": origins[name]})
+        return self.model_copy(update=priors)

@@ -35,7 +35,9 @@ class PadSettings(Settings):
 
     @field_validator("rms_scatter")
     @classmethod
-    def _a_range(cls, given: tuple[float, float] | None) -> tuple[float, float] | None:
-        if given and given[0] > given[1]:
-            raise ValueError(f"[{given[0]:g}, {given[1]:g}]: the first must not exceed the second")
-        return given
+    def _a_range(cls, stated: tuple[float, float] | None) -> tuple[float, float] | None:
+        if stated and stated[0] > stated[1]:
+            raise ValueError(
+                f"[{stated[0]:g}, {stated[1]:g}]: the first must not exceed the second"
+            )
+        return stated

@@ -14,9 +14,7 @@ counts.
 
 
 class SpectrumSettings(Settings):
-    """A spectrum by points instead of the form of eq. 9; only its shape counts, the RMS is that of
-    Table 1.
-    """
+    """A spectrum by points instead of eq. 9; only its shape counts, the RMS is that of Table 1."""
 
     q: tuple[Positive, ...] = key(
         ..., "wave vectors in rising order", "1/nm", min_length=2, max_length=10000
@@ -42,7 +40,8 @@ class SpectrumSettings(Settings):
                 f"psd has {len(self.psd)} values, q has {len(self.q)}; accepted are lists of one"
                 " length"
             )
-        if any(later <= earlier for earlier, later in zip(self.q, self.q[1:], strict=False)):
+        pairs = zip(self.q, self.q[1:], strict=False)
+        if any(later <= earlier for earlier, later in pairs):
             raise ValueError("q is not in rising order")
         if (self.q0 is None) != (self.hurst is None):
             raise ValueError("q0 and hurst go together; give both or neither")

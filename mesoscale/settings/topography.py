@@ -120,4 +120,6 @@ class TopographySettings(Settings):
     @property
     def tip_nm(self) -> float:
         """Radius of the tip, nm, where nothing else states it."""
-        return 5.0 if self.tip_radius_nm is None else self.tip_radius_nm
+        if self.tip_radius_nm is None:
+            return 5.0
+        return self.tip_radius_nm

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from mesoscale.answer.points import PadModel, Solved
+from mesoscale.answer.switches import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.studies.driver import (
     RELEASE,
@@ -19,14 +19,13 @@ from mesoscale.studies.driver import (
     StudyRow,
     rows_of,
 )
+from mesoscale.switch.beam import COARSE_ELEMENTS, ELEMENTS, beam_of
 from mesoscale.switch.beam_kernels import OPENING_NM
-from mesoscale.switch.beam_switch import solve_beam
-from mesoscale.switch.electrode import with_pad
-from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.beam_switch import RELEASE_TOLERANCE, BeamSwitch
 
 SWITCHES = 4
 """Switches that are solved with each choice."""
-ELEMENTS, STEPS, TOLERANCE = (
+BY_ELEMENTS, STEPS, TOLERANCE = (
     "elements of the beam",
     "steps of opening, nm",
     "relative error of a release",
@@ -38,11 +37,11 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
     """Rows of accuracy/answer.csv without the stage; none of a plate on a spring, which has no such
     choices.
     """
-    if not model.central.point.device.bends:
+    if model.central.point.device.kind != "beam":
         return
     switches = samples_of(model, SWITCHES)
     solve = partial(states, switches)
-    solve(SWITCH.coarse_elements)  # compiles, so that no value pays for it
+    solve(COARSE_ELEMENTS)  # compiles, so that no value pays for it
 
     def knob(
         name: str,
@@ -57,16 +56,16 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
             name, QUANTITIES, choices, shipped, f"{name}: {best:g}", partial(compute, best), samples
         )
 
-    elements = [round(factor * SWITCH.elements) for factor in (0.125, 0.25, 0.5, 1, 2)]
+    elements = [round(factor * ELEMENTS) for factor in (0.125, 0.25, 0.5, 1, 2)]
     steps = [factor * OPENING_NM for factor in (2, 1, 0.5)]
-    usual = SWITCH.release_tolerance
+    usual = RELEASE_TOLERANCE
     tolerances = [factor * usual for factor in (10, 1, 0.1)]
+    in_steps = partial(solve, ELEMENTS)
+    within = partial(solve, ELEMENTS, OPENING_NM)
     knobs = [
-        knob(ELEMENTS, SWITCH.elements, elements, 4 * SWITCH.elements, solve),
-        knob(STEPS, OPENING_NM, steps, OPENING_NM / 4, partial(solve, SWITCH.elements)),
-        knob(
-            TOLERANCE, usual, tolerances, 1e-3 * usual, partial(solve, SWITCH.elements, OPENING_NM)
-        ),
+        knob(BY_ELEMENTS, ELEMENTS, elements, 4 * ELEMENTS, solve),
+        knob(STEPS, OPENING_NM, steps, OPENING_NM / 4, in_steps),
+        knob(TOLERANCE, usual, tolerances, 1e-3 * usual, within),
     ]
     yield from rows_of(knobs, progress)
 
@@ -86,18 +85,16 @@ def states(
     switches: Sequence[Solved],
     elements: int,
     opening_nm: float = OPENING_NM,
-    tolerance: float = SWITCH.release_tolerance,
+    tolerance: float = RELEASE_TOLERANCE,
 ) -> Array:
     """Release and pull-in (V) of switches, shape (switches, 2); NaN where one has no answer."""
     voltages = np.full((len(switches), 2), np.nan)
     for row, switch in zip(voltages, switches, strict=True):
         device = switch.point.device
-        solve = partial(
-            solve_beam, device, elements=elements, opening_nm=opening_nm, tolerance=tolerance
-        )
         try:
-            beam, _ = with_pad(solve, switch.pressed.law)
+            beam = BeamSwitch(device, beam_of(device, elements), opening_nm, tolerance)
+            solved = beam.states(switch.pressed.curves)
         except InputError:
             continue
-        row[:] = beam.release_V, beam.pull_in_V
+        row[:] = solved.release_V, solved.pull_in_V
     return voltages

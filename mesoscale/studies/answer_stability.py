@@ -12,13 +12,12 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
-from mesoscale.pad.memory import Flats, PadLaw, attracting
+from mesoscale.pad.curves import Flats, PadCurves, attracting, on_deep_enough
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.driver import HardCase
-from mesoscale.switch.beam import euler_MPa
-from mesoscale.switch.beam_switch import solve_beam
-from mesoscale.switch.electrode import solve_deepened, with_pad
-from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch import switch_of
+from mesoscale.switch.beam import COARSE_ELEMENTS, ELEMENTS, beam_of, euler_MPa
+from mesoscale.switch.beam_switch import BeamStates, BeamSwitch
 
 Changes = dict[str, Any]
 
@@ -114,7 +113,7 @@ CHECK_OWN = "finite, released below the hold voltage; or refused in one line"
 DEPTHS_NM = (16.0, 18.0, 20.0, 22.0, 24.0, 26.0, 28.0, 30.0, 32.0)
 
 
-def made_up_law(adhesion_kPa=0.0):
+def made_up_pad(adhesion_kPa=0.0):
     """Closing 7 MPa at 24 nm, e-fold 2 nm; opening loses contact 4 nm above the depth, with a well
     1 nm wide there.
     """
@@ -128,19 +127,19 @@ def made_up_law(adhesion_kPa=0.0):
             7e-3 * np.exp((24.0 - depth) / 2.0) * np.maximum(1.0 - risen / 4.0, 0.0)
         )
         opening[k, 1, above] = -1e-12 - adhesion_kPa * 1e-6 * np.exp(-((risen - 5.0) ** 2) / 0.5)
-    return PadLaw(s, closing, np.array(DEPTHS_NM), opening, Flats(1e-6, 0.0))
+    return PadCurves(s, closing, np.array(DEPTHS_NM), opening, Flats(1e-6, 0.0))
 
 
-def lifted(law: PadLaw, by_nm: float) -> PadLaw:
+def lifted(pad: PadCurves, by_nm: float) -> PadCurves:
     """The pad with so much more height above its mean plane."""
-    return PadLaw(
-        law.separation_nm + by_nm, law.closing, law.depth_nm + by_nm, law.opening, law.flats
+    return PadCurves(
+        pad.separation_nm + by_nm, pad.closing, pad.depth_nm + by_nm, pad.opening, pad.flats
     )
 
 
-def hard_cases(device: DeviceSettings, law: PadLaw) -> list[HardCase]:
+def hard_cases(device: DeviceSettings, pad: PadCurves) -> list[HardCase]:
     """Hard beams, and the scene's device on its own pad at its extremes."""
-    return [*hard_beams(), *_own(device, law)]
+    return [*hard_beams(), *_own(device, pad)]
 
 
 def hard_beams() -> Iterator[HardCase]:
@@ -169,11 +168,16 @@ def _told(changes: Changes) -> str:
     return ", ".join(words) or "the default beam"
 
 
+def solved_beam(settings: DeviceSettings, pad: PadCurves, elements: int = ELEMENTS) -> BeamStates:
+    """What a beam of so many elements does on a pad that is continued as far as it presses."""
+    beam = BeamSwitch(settings, beam_of(settings, elements))
+    states, _ = on_deep_enough(pad, beam.states_on)
+    return states
+
+
 def _solved(settings: DeviceSettings) -> tuple[bool, str]:
-    fine, coarse = (
-        with_pad(lambda law, of=elements: solve_beam(settings, law, of), made_up_law(2.0))[0]
-        for elements in (SWITCH.elements, SWITCH.coarse_elements)
-    )
+    fine = solved_beam(settings, made_up_pad(2.0))
+    coarse = solved_beam(settings, made_up_pad(2.0), COARSE_ELEMENTS)
     broken = []
     for states in (fine, coarse):
         if not all(np.isfinite(value) for value in vars(states).values()):
@@ -185,11 +189,11 @@ def _solved(settings: DeviceSettings) -> tuple[bool, str]:
         if not states.pull_in_V <= states.hold_V * 1.002:
             broken.append(f"held below its pull-in of {states.pull_in_V:.4g} V")
     if not abs(coarse.pull_in_V - fine.pull_in_V) <= 5e-3 * fine.pull_in_V:
-        broken.append(f"pull-in at {coarse.pull_in_V:.4g} V with {SWITCH.coarse_elements} elements")
+        broken.append(f"pull-in at {coarse.pull_in_V:.4g} V with {COARSE_ELEMENTS} elements")
     # the mesh moves a release by some per cent of the hold voltage where the beam tears off in
     # jerks
     if not abs(coarse.release_V - fine.release_V) <= 0.02 * fine.hold_V:
-        broken.append(f"release at {coarse.release_V:.4g} V with {SWITCH.coarse_elements} elements")
+        broken.append(f"release at {coarse.release_V:.4g} V with {COARSE_ELEMENTS} elements")
     detail = (
         f"pull-in {fine.pull_in_V:.4g} V, release {fine.release_V:.4g} V, {fine.landed_share:.0%}"
         " landed"
@@ -199,7 +203,7 @@ def _solved(settings: DeviceSettings) -> tuple[bool, str]:
 
 def _refused(settings: DeviceSettings, words: str) -> tuple[bool, str]:
     try:
-        states, _ = with_pad(partial(solve_beam, settings), made_up_law())
+        states = solved_beam(settings, made_up_pad())
     except InputError as error:
         line = str(error)
         return words in line and "\n" not in line, line
@@ -207,9 +211,9 @@ def _refused(settings: DeviceSettings, words: str) -> tuple[bool, str]:
 
 
 def _higher(changes: Changes) -> tuple[bool, str]:
-    law = lifted(made_up_law(2.0), 6e3)
+    pad = lifted(made_up_pad(2.0), 6e3)
     try:
-        solve_beam(DeviceSettings(**changes), law)
+        BeamSwitch(DeviceSettings(**changes)).states_on(pad)
     except InputError as error:
         line = str(error)
     else:
@@ -218,47 +222,46 @@ def _higher(changes: Changes) -> tuple[bool, str]:
         return False, line
     gap_um = float(line.partition("gap_um to ")[2].partition(",")[0])
     wider = DeviceSettings(**changes, gap_um=gap_um)
-    states, _ = with_pad(lambda pad: solve_beam(wider, pad, SWITCH.coarse_elements), law)
+    states = solved_beam(wider, pad, COARSE_ELEMENTS)
     detail = (
         f"gap {gap_um:.4g} um, release {states.release_V:.4g} V, {states.landed_share:.0%} landed"
     )
     return states.landed_share > 0.0 and states.release_V > 0.0, detail
 
 
-def _own(device: DeviceSettings, law: PadLaw) -> Iterator[HardCase]:
+def _own(device: DeviceSettings, pad: PadCurves) -> Iterator[HardCase]:
     """The scene's device on its own pad, one property at an extreme at a time."""
     changes: dict[str, Changes] = {
         "half the gap": {"gap_um": 0.5 * device.gap_um},
         "twice the gap": {"gap_um": 2.0 * device.gap_um},
         "thin dielectric": {"dielectric_nm": 1.0},
         "permittivity of 1000": {"permittivity": 1000.0},
+        "half as thick": {"thickness_um": 0.5 * device.thickness_um},
+        "twice as thick": {"thickness_um": 2.0 * device.thickness_um},
+        "100 MPa of tension": {"residual_stress_MPa": 100.0},
+        "100 MPa of compression": {"residual_stress_MPa": -100.0},
+        "77 K": {"temperature_C": -196.0},
     }
-    if device.bends:
-        changes |= {
-            "half as thick": {"thickness_um": 0.5 * device.thickness_um},
-            "twice as thick": {"thickness_um": 2.0 * device.thickness_um},
-            "100 MPa of tension": {"residual_stress_MPa": 100.0},
-            "100 MPa of compression": {"residual_stress_MPa": -100.0},
-            "77 K": {"temperature_C": -196.0},
-        }
     for name, changed in changes.items():
+        if not all(map(device.has, changed)):
+            continue
         settings = device.model_copy(update=changed)
         yield HardCase(
-            f"own device, {name}", _told(changed), CHECK_OWN, partial(_finite, settings, law)
+            f"own device, {name}", _told(changed), CHECK_OWN, partial(_finite, settings, pad)
         )
     for times in (0.0, 30.0):
-        pad = attracting(law, times)
+        pulling = attracting(pad, times)
         words = f"{times:g} times the attraction of its pad"
-        yield HardCase(f"own device, {words}", words, CHECK_OWN, partial(_finite, device, pad))
+        yield HardCase(f"own device, {words}", words, CHECK_OWN, partial(_finite, device, pulling))
 
 
-def _finite(settings: DeviceSettings, law: PadLaw) -> tuple[bool, str]:
+def _finite(settings: DeviceSettings, pad: PadCurves) -> tuple[bool, str]:
     try:
-        states = solve_deepened(settings, law)
+        states = switch_of(settings).states(pad)
     except InputError as error:
         line = str(error)
         return "\n" not in line, f"refused: {line}"
-    held_V = settings.hold_voltage_V or states["pull_in_V"]
-    finite = all(np.isfinite(value) for value in states.values())
-    detail = f"pull-in {states['pull_in_V']:.4g} V, release {states['release_V']:.4g} V"
-    return finite and 0.0 <= states["release_V"] < held_V, detail
+    hold_V = settings.hold_voltage_V or states.pull_in_V
+    finite = all(np.isfinite(value) for value in states.numbers.values())
+    detail = f"pull-in {states.pull_in_V:.4g} V, release {states.release_V:.4g} V"
+    return finite and 0.0 <= states.release_V < hold_V, detail

@@ -7,12 +7,12 @@ from functools import partial
 
 import numpy as np
 
-from mesoscale.answer.points import PadModel, Solved
+from mesoscale.answer.switches import PadModel, Solved
 from mesoscale.circuit.lumps import choose_lumps
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.circuit.tables import law_of_tables, tables_of
+from mesoscale.circuit.tables import curves_of_tables, tables_of
 from mesoscale.errors import InputError
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.curves import PadCurves, on_deep_enough
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_accuracy import samples_of
 from mesoscale.studies.driver import (
@@ -25,10 +25,8 @@ from mesoscale.studies.driver import (
     StudyRow,
     rows_of,
 )
-from mesoscale.switch.beam import Beam, beam_of, lumped_beam
-from mesoscale.switch.beam_switch import solve_bent
-from mesoscale.switch.electrode import with_pad
-from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.beam import COARSE_ELEMENTS, Beam, beam_of, lumped_beam
+from mesoscale.switch.beam_switch import BeamStates, BeamSwitch
 
 SWITCHES = 3
 """Switches that are solved with each choice: the central one and others."""
@@ -41,7 +39,7 @@ LOOSER = (100.0, 10.0, 1.0)
 QUANTITIES = (RELEASE, Quantity("pull-in", "V"), Quantity("capacitance", "%"))
 
 BeamOf = Callable[[DeviceSettings], Beam]
-LawOf = Callable[[PadLaw], PadLaw]
+CurvesOf = Callable[[PadCurves], PadCurves]
 
 
 def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterator[StudyRow]:
@@ -52,11 +50,11 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
     InputError : the switch at central inputs cannot be solved.
     """
     device = model.central.point.device
-    if not device.bends or device.without_lumps:
+    if device.kind != "beam" or device.without_lumps:
         return
     switches = samples_of(model, SWITCHES)
     samples = f"{len(switches)} switches of the scene"
-    in_use, _ = with_pad(partial(choose_lumps, device), model.central.pressed.law)
+    in_use, _ = on_deep_enough(model.central.pressed.curves, partial(choose_lumps, device))
     counts = sorted({*CIRCUIT.lump_counts[::2], in_use.lumps})
     elements = CIRCUIT.reference_elements // 2
     by_lumps = [
@@ -69,7 +67,7 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
             LUMPS, QUANTITIES, by_lumps, in_use.lumps, f"{elements} finite elements", exact, samples
         )
     ]
-    usual = partial(beam_of, elements=SWITCH.coarse_elements)
+    usual = partial(beam_of, elements=COARSE_ELEMENTS)
     on_curves = partial(states, switches, usual)
     for name, cubic in ((STRAIGHT, False), (CUBIC, True)):
         choices = [
@@ -82,27 +80,29 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
     yield from rows_of(knobs, progress)
 
 
-def on_tables(cubic: bool, looser: float, law: PadLaw) -> PadLaw:
+def on_tables(cubic: bool, looser: float, pad: PadCurves) -> PadCurves:
     """The pad as its tables have it, with so many times the usual errors."""
-    return law_of_tables(tables_of(law, cubic, looser), law, cubic)
+    return curves_of_tables(tables_of(pad, cubic, looser), pad, cubic)
 
 
-def as_it_is(law: PadLaw) -> PadLaw:
+def as_it_is(pad: PadCurves) -> PadCurves:
     """The pad as its curves have it."""
-    return law
+    return pad
 
 
-def states(switches: Sequence[Solved], beam: BeamOf, made: LawOf = as_it_is) -> Array:
+def states(switches: Sequence[Solved], beam: BeamOf, made: CurvesOf = as_it_is) -> Array:
     """Release, pull-in (V) and held capacitance (fF) of switches without tilt, shape (switches, 3);
     NaN: no answer.
     """
     solutions = np.full((len(switches), 3), np.nan)
     for row, switch in zip(solutions, switches, strict=True):
-        settings = switch.point.device.model_copy(update={"tilt_nm": 0.0})
+        settings = switch.point.device.level
+
+        def states_on(pad: PadCurves, settings: DeviceSettings = settings) -> BeamStates:
+            return BeamSwitch(settings, beam(settings)).states_on(made(pad))
+
         try:
-            solved, _ = with_pad(
-                lambda law, of=settings: solve_bent(beam(of), of, made(law)), switch.pressed.law
-            )
+            solved, _ = on_deep_enough(switch.pressed.curves, states_on)
         except InputError:
             continue
         row[:] = solved.release_V, solved.pull_in_V, solved.capacitance_fF

@@ -8,23 +8,22 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.answer.points import Point, press_pad, surfaces_of
+from mesoscale.answer.points import Point
+from mesoscale.answer.switches import press_pad, surfaces_of
 from mesoscale.circuit.lumps import lumps_of
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.switches import central_switch
-from mesoscale.circuit.tables import law_of_tables, tables_of
+from mesoscale.circuit.tables import curves_of_tables, tables_of
 from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.errors import InputError
-from mesoscale.pad.memory import PadLaw, attracting, deepened
+from mesoscale.pad.curves import PadCurves, attracting, deepened, on_deep_enough
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.settings.definitions import RMS_SCATTER
-from mesoscale.studies.answer_stability import SOLVED, TIP, lifted, made_up_law
+from mesoscale.studies.answer_stability import SOLVED, TIP, lifted, made_up_pad
 from mesoscale.studies.driver import HardCase
-from mesoscale.switch.beam import beam_of, lumped_beam
-from mesoscale.switch.beam_switch import solve_bent
-from mesoscale.switch.electrode import with_pad
-from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.beam import COARSE_ELEMENTS, beam_of, lumped_beam
+from mesoscale.switch.beam_switch import BeamSwitch
 
 CELLS = 4
 """Cells of a pad that is pressed for a case."""
@@ -38,15 +37,15 @@ CHECK_TABLES = "no number missing, as near to the curves as allowed"
 CHECK_REFUSED = "refused in one line that says why"
 
 
-def hard_cases(point: Point, contact: ContactSettings, law: PadLaw) -> list[HardCase]:
+def hard_cases(point: Point, contact: ContactSettings, pad: PadCurves) -> list[HardCase]:
     """Hard beams as lumps, hard pads as tables, and switches that have no circuit.
 
     Parameters
     ----------
-    point, contact, law : of the scene: its central switch, the contact on the grid of its pads, and
+    point, contact, pad : of the scene: its central switch, the contact on the grid of its pads, and
         its own pad."""
     scattered = Point({**point.values, RMS_SCATTER.name: 0.6}, point.gap_cutoff_nm, point.device)
-    return [*hard_lumps(), *hard_tables(law), _pressed("unequal places", scattered, contact)]
+    return [*hard_lumps(), *hard_tables(pad), _pressed("unequal places", scattered, contact)]
 
 
 def hard_lumps() -> Iterator[HardCase]:
@@ -58,11 +57,10 @@ def hard_lumps() -> Iterator[HardCase]:
                 name,
                 "as a beam of the stage answer",
                 CHECK_LUMPS,
-                partial(_lumps, settings, made_up_law(2.0)),
+                partial(_lumps, settings, made_up_pad(2.0)),
             )
     for adhesion_kPa in (0.0, 30.0, 300.0, 1e4):
-        law = made_up_law(adhesion_kPa)
-        judge = partial(_lumps, DeviceSettings(), law)
+        judge = partial(_lumps, DeviceSettings(), made_up_pad(adhesion_kPa))
         yield HardCase(
             f"adhesion of {adhesion_kPa:g} kPa", "from none to sticking", CHECK_LUMPS, judge
         )
@@ -76,7 +74,7 @@ def hard_lumps() -> Iterator[HardCase]:
             "circuits are made of beams clamped at both ends",
         ),
         "plate on a spring": (
-            lambda: central_switch(DeviceSettings(spring_N_per_m=10.0), made_up_law()),
+            lambda: central_switch(DeviceSettings(spring_N_per_m=10.0), made_up_pad()),
             "circuits are made of bending electrodes",
         ),
     }
@@ -84,48 +82,49 @@ def hard_lumps() -> Iterator[HardCase]:
         yield HardCase(name, "no circuit", CHECK_REFUSED, partial(_refused, make, words))
 
 
-def hard_tables(law: PadLaw) -> Iterator[HardCase]:
+def hard_tables(pad: PadCurves) -> Iterator[HardCase]:
     """A pad with few depths, other attractions and a deeper closing, and made-up ones."""
-    pads: dict[str, tuple[str, Callable[[], PadLaw]]] = {
-        "own pad": ("as pressed", lambda: law),
-        "one depth": ("no depths to interpolate between", lambda: shallow(law, 1)),
-        "two depths": ("few depths to interpolate between", lambda: shallow(law, 2)),
+    pads: dict[str, tuple[str, Callable[[], PadCurves]]] = {
+        "own pad": ("as pressed", lambda: pad),
+        "one depth": ("no depths to interpolate between", lambda: shallow(pad, 1)),
+        "two depths": ("few depths to interpolate between", lambda: shallow(pad, 2)),
         "no attraction": (
             "pull is nothing, whose logarithm is not finite",
-            lambda: attracting(law, 0.0),
+            lambda: attracting(pad, 0.0),
         ),
         "one depth, no attraction": (
             "the same, opened once",
-            lambda: shallow(attracting(law, 0.0), 1),
+            lambda: shallow(attracting(pad, 0.0), 1),
         ),
-        "attraction x 30": ("deep wells", lambda: attracting(law, 30.0)),
-        "continued": ("closed beyond what was pressed", lambda: deepened(law)),
-        "adhesion of 1 GPa": ("wells far deeper than the push", lambda: made_up_law(1e6)),
+        "attraction x 30": ("deep wells", lambda: attracting(pad, 30.0)),
+        "continued": ("closed beyond what was pressed", lambda: deepened(pad)),
+        "adhesion of 1 GPa": ("wells far deeper than the push", lambda: made_up_pad(1e6)),
         "six micrometres up": (
             "logarithms far from those of near flats",
-            lambda: lifted(made_up_law(2.0), 6e3),
+            lambda: lifted(made_up_pad(2.0), 6e3),
         ),
     }
-    for name, (description, pad) in pads.items():
-        yield HardCase(f"tables, {name}", description, CHECK_TABLES, lambda of=pad: _tables(of()))
+    for name, (description, made) in pads.items():
+        judge = partial(_tables_of_made, made)
+        yield HardCase(f"tables, {name}", description, CHECK_TABLES, judge)
 
 
-def shallow(law: PadLaw, depths: int) -> PadLaw:
+def shallow(pad: PadCurves, depths: int) -> PadCurves:
     """The pad with its first depths alone."""
-    return PadLaw(
-        law.separation_nm, law.closing, law.depth_nm[:depths], law.opening[:depths], law.flats
+    return PadCurves(
+        pad.separation_nm, pad.closing, pad.depth_nm[:depths], pad.opening[:depths], pad.flats
     )
 
 
 def _pressed(name: str, point: Point, contact: ContactSettings) -> HardCase:
     def judge() -> tuple[bool, str]:
-        return _tables(press_pad(point, contact, CELLS, surfaces_of(0)).law)
+        return _tables(press_pad(point, contact, CELLS, surfaces_of(0)).curves)
 
     return HardCase(f"tables, {name}", "few rough places carry the pad", CHECK_TABLES, judge)
 
 
-def _lumps(settings: DeviceSettings, law: PadLaw) -> tuple[bool, str]:
-    symmetric = settings.model_copy(update={"tilt_nm": 0.0})
+def _lumps(settings: DeviceSettings, pad: PadCurves) -> tuple[bool, str]:
+    symmetric = settings.level
     lumps = lumps_of(settings, PAIRS)
     broken = []
     if not all(np.isfinite(value).all() for value in vars(lumps).values()):
@@ -137,9 +136,9 @@ def _lumps(settings: DeviceSettings, law: PadLaw) -> tuple[bool, str]:
     at_rest = lumps.stiffness_N_m + lumps.stretching_N_m * np.outer(pulled, pulled)
     if not np.linalg.eigvalsh(at_rest)[0] > 0.0:
         broken.append("not stable at rest")
-    made, exact = (
-        with_pad(lambda pad, of=beam: solve_bent(of, symmetric, pad), law)[0]
-        for beam in (lumped_beam(symmetric, PAIRS), beam_of(symmetric, SWITCH.coarse_elements))
+    made, _ = on_deep_enough(pad, BeamSwitch(symmetric, lumped_beam(symmetric, PAIRS)).states_on)
+    exact, _ = on_deep_enough(
+        pad, BeamSwitch(symmetric, beam_of(symmetric, COARSE_ELEMENTS)).states_on
     )
     if not abs(made.pull_in_V - exact.pull_in_V) <= CIRCUIT.release_error * exact.pull_in_V:
         broken.append(f"finite elements pull in at {exact.pull_in_V:.4g} V")
@@ -160,16 +159,20 @@ def _refused(make: Callable[[], Any], words: str) -> tuple[bool, str]:
     return False, "not refused"
 
 
-def _tables(law: PadLaw) -> tuple[bool, str]:
+def _tables_of_made(make: Callable[[], PadCurves]) -> tuple[bool, str]:
+    return _tables(make())
+
+
+def _tables(pad: PadCurves) -> tuple[bool, str]:
     broken = []
     errors = []
     for cubic in (True, False):
-        tables = tables_of(law, cubic)
-        made = law_of_tables(tables, law, cubic)
-        known = np.isfinite(law.opening)
+        tables = tables_of(pad, cubic)
+        made = curves_of_tables(tables, pad, cubic)
+        known = np.isfinite(pad.opening)
         if not np.isfinite(made.opening[known]).all() or not np.isfinite(made.closing).all():
             broken.append("a number missing")
-        for number, opened in enumerate(law.opening):
+        for number, opened in enumerate(pad.opening):
             way = np.isfinite(opened[0])
             net = opened[:, way].sum(axis=0)
             missed = np.abs(made.opening[number][:, way].sum(axis=0) - net)
@@ -177,7 +180,7 @@ def _tables(law: PadLaw) -> tuple[bool, str]:
             # closing at the depth and the rise above it may each err by as much
             allowed = 2.0 * (CIRCUIT.of_well * well + CIRCUIT.of_net * np.abs(net)) + 1e-9
             if (missed > allowed).any():
-                broken.append(f"opening from {law.depth_nm[number]:.4g} nm beside the curves")
+                broken.append(f"opening from {pad.depth_nm[number]:.4g} nm beside the curves")
             if well > 0.0:
                 errors.append(
                     float(
@@ -186,7 +189,7 @@ def _tables(law: PadLaw) -> tuple[bool, str]:
                         )
                     )
                 )
-    texts = verilog_pad(law, CELLS) + spice_pad(law, CELLS)
+    texts = verilog_pad(pad, CELLS) + spice_pad(pad, CELLS)
     if "nan" in texts:
         broken.append("a number missing in the text")
     return not broken, "; ".join([*broken, f"within {max(errors, default=0.0):.2%} of the well"])

@@ -11,17 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.answer.points import Pad, Point
+from mesoscale.answer.points import Point
 from mesoscale.contact.cycle import Cycle, run_cycle
 from mesoscale.contact.energy import dissipated_energy, pull_off
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.surface import shared_wave
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.fit import fit_branch
-from mesoscale.pad.cells import PadGrid, sample_cells
-from mesoscale.pad.curves import press_cells
-from mesoscale.pad.memory import flats_of
-from mesoscale.pad.numerics import PAD
+from mesoscale.pad.cells import FIRST_SEED, sample_cells
+from mesoscale.pad.closing import press_cells
+from mesoscale.pad.grid import PadGrid
+from mesoscale.pad.pressed import Pad, flats_of
 from mesoscale.settings import ContactSettings
 from mesoscale.studies.driver import (
     RELEASE,
@@ -33,7 +33,7 @@ from mesoscale.studies.driver import (
     StudyRow,
     rows_of,
 )
-from mesoscale.switch.electrode import release_or_nan_V
+from mesoscale.switch import release_or_nan_V
 
 SEEDS = (1, 2, 3, 4)
 TOUCH_SHARE = 0.03
@@ -108,11 +108,10 @@ def releases_on_pads(
     inputs, settings = point.contact_of(contact)
     releases = []
     for pad in SEEDS:
-        sampled = sample_cells(inputs, cells, PAD.first_seed + 10_000 * pad)
+        sampled = sample_cells(inputs, cells, FIRST_SEED + 10_000 * pad)
         pressed = press_cells(inputs, settings, grid, sampled, numerics=numerics)
-        releases.append(
-            release_or_nan_V(point.device, Pad(pressed, flats_of(inputs, settings)).law)
-        )
+        curves = Pad(pressed, flats_of(inputs, settings)).curves
+        releases.append(release_or_nan_V(point.device, curves))
     return np.array(releases)
 
 

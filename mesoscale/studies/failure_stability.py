@@ -13,12 +13,11 @@ from mesoscale.answer.points import Point
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE, Attracted, Population
 from mesoscale.failure.rate import furthest_allowed, learn
-from mesoscale.pad.memory import PadLaw, attracting
+from mesoscale.pad.curves import PadCurves, attracting
 from mesoscale.settings import DeviceSettings
-from mesoscale.studies.answer_stability import made_up_law
+from mesoscale.studies.answer_stability import made_up_pad
 from mesoscale.studies.driver import Array, HardCase
-from mesoscale.switch.beam_switch import solve_beam
-from mesoscale.switch.plate import plate_from_settings, solve_on_pad
+from mesoscale.switch import switch_of
 from mesoscale.uncertainty.rare_events import (
     LEAST,
     Moments,
@@ -219,15 +218,15 @@ def _limit(
 
 def reserves() -> Iterator[HardCase]:
     """Switches whose attraction is changed until they just fail."""
-    law = made_up_law(40.0)
+    pad = made_up_pad(40.0)
     for name, settings in (("beam", BEAM), ("plate", PLATE)):
         yield HardCase(
             f"reserve of a {name}",
             "bisection of a yes or no",
             CHECK_RESERVE,
-            partial(_reserve, settings, law),
+            partial(_reserve, settings, pad),
         )
-        slower = partial(_asks_for_more, settings, law)
+        slower = partial(_asks_for_more, settings, pad)
         yield HardCase(
             f"{name} let go in time", "a window", "no larger reserve than to let go at all", slower
         )
@@ -242,7 +241,7 @@ def reserves() -> Iterator[HardCase]:
         ),
     }
     for name, (adhesion_kPa, holds) in ends.items():
-        judge = partial(_at_the_end, made_up_law(adhesion_kPa), holds)
+        judge = partial(_at_the_end, made_up_pad(adhesion_kPa), holds)
         yield HardCase(
             name, "the reserve is beyond what is tried", "the end of what is tried", judge
         )
@@ -251,39 +250,35 @@ def reserves() -> Iterator[HardCase]:
         "gap of 20 nm",
         "rests in its own pad",
         "told, or refused in one line",
-        partial(_told, narrow, law),
+        partial(_told, narrow, pad),
     )
 
 
-def _reserve(settings: DeviceSettings, law: PadLaw) -> tuple[bool, str]:
-    reserve = Attracted(settings, law, 0.0, 128).reserve()
+def _reserve(settings: DeviceSettings, pad: PadCurves) -> tuple[bool, str]:
+    reserve = Attracted(settings, pad, 0.0).reserve()
+    switch = switch_of(settings)
 
     def sticks(logarithm: float) -> bool:
-        scaled = attracting(law, float(np.exp(logarithm)))
-        if settings.bends:
-            return solve_beam(settings, scaled).release_V == 0.0
-        return (
-            solve_on_pad(plate_from_settings(settings), scaled, settings.hold_voltage_V).release_V
-            == 0.0
-        )
+        scaled = attracting(pad, float(np.exp(logarithm)))
+        return switch.states_on(scaled).release_V == 0.0
 
     held = sticks(reserve + FAILURE.step) and not sticks(reserve - FAILURE.step)
     return held, f"just sticks with {np.exp(reserve):.3g} times the attraction"
 
 
-def _asks_for_more(settings: DeviceSettings, law: PadLaw) -> tuple[bool, str]:
-    in_time, at_all = (Attracted(settings, law, volts, 128).reserve() for volts in (2.0, 0.0))
+def _asks_for_more(settings: DeviceSettings, pad: PadCurves) -> tuple[bool, str]:
+    in_time, at_all = (Attracted(settings, pad, volts).reserve() for volts in (2.0, 0.0))
     return in_time <= at_all, f"{np.exp(in_time):.3g} and {np.exp(at_all):.3g} times the attraction"
 
 
-def _at_the_end(law: PadLaw, holds: Callable[[float], bool]) -> tuple[bool, str]:
-    reserve = Attracted(PLATE, law, 0.0, 64).reserve()
+def _at_the_end(pad: PadCurves, holds: Callable[[float], bool]) -> tuple[bool, str]:
+    reserve = Attracted(PLATE, pad, 0.0, coarse=True).reserve()
     return holds(reserve), f"{np.exp(reserve):.3g} times the attraction"
 
 
-def _told(settings: DeviceSettings, law: PadLaw) -> tuple[bool, str]:
+def _told(settings: DeviceSettings, pad: PadCurves) -> tuple[bool, str]:
     try:
-        return True, f"fails: {Attracted(settings, law, 0.0, 64).fails(1.0)}"
+        return True, f"fails: {Attracted(settings, pad, 0.0, coarse=True).fails(1.0)}"
     except InputError as error:
         return "\n" not in str(error), str(error)
 

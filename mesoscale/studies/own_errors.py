@@ -10,13 +10,15 @@ from functools import partial
 
 import numpy as np
 
-from mesoscale.answer.points import Point, press_pad, surfaces_of
+from mesoscale.answer.points import Point
+from mesoscale.answer.switches import press_pad, surfaces_of
 from mesoscale.contact.numerics import NUMERICS
 from mesoscale.contact.surface import shared_wave
+from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.pad.memory import PadLaw
-from mesoscale.pad.numerics import PAD
-from mesoscale.settings import ContactSettings
+from mesoscale.pad.curves import PadCurves
+from mesoscale.pad.grid import usual_step_nm
+from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.studies.contact_accuracy import (
     FORCE_STEPS,
     PIXELS,
@@ -25,10 +27,11 @@ from mesoscale.studies.contact_accuracy import (
     law_quantities,
 )
 from mesoscale.studies.driver import RELEASE, Array, Choice, Knob, StudyRow, rows_of
-from mesoscale.switch.electrode import release_or_nan_V
-from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch import release_or_nan_V
+from mesoscale.switch.beam import ELEMENTS, beam_of
+from mesoscale.switch.beam_switch import BeamSwitch
 
-STEPS, SITES, ELEMENTS = "steps of separation, nm", "sites a side", "elements of the beam"
+STEPS, SITES, BY_ELEMENTS = "steps of separation, nm", "sites a side", "elements of the beam"
 
 
 def of_contact(inputs: ContactInputs, settings: ContactSettings) -> Iterator[StudyRow]:
@@ -65,7 +68,7 @@ def of_contact(inputs: ContactInputs, settings: ContactSettings) -> Iterator[Stu
 
 
 def of_switch(
-    point: Point, contact: ContactSettings, cells: int, central: PadLaw
+    point: Point, contact: ContactSettings, cells: int, central: PadCurves
 ) -> Iterator[StudyRow]:
     """Rows of the switch at central inputs, by the grid and the steps of its pad and by the
     elements of its beam.
@@ -84,7 +87,7 @@ def of_switch(
         settings: ContactSettings = contact, step_nm: float | None = None, at: Point = point
     ) -> float:
         pad = press_pad(at, settings, cells, surfaces_of(0), step_nm=step_nm)
-        return release_or_nan_V(point.device, pad.law)
+        return release_or_nan_V(point.device, pad.curves)
 
     def knob(name: str, value: float, words: str, in_use: float, finer: float) -> Knob:
         return Knob(
@@ -105,17 +108,24 @@ def of_switch(
         values = {**point.values, "q1": min(point.values["q1"], shortest)}
         longer_waves = replace(point, values=values)
     half_V, all_V = (release(settings, at=longer_waves) for settings in (half, smooth))
-    usual_step = PAD.step_nm(point.values["rms"])
+    usual_step = usual_step_nm(point.values["rms"])
     knobs = [
         knob(SITES, contact.pixels, "half as many for waves twice as long", half_V, all_V),
         knob(STEPS, usual_step, "half as long", release(), release(step_nm=0.5 * usual_step)),
     ]
-    if point.device.bends:
-        in_use, finer = (
-            release_or_nan_V(point.device, central, factor * SWITCH.elements) for factor in (1, 2)
-        )
-        knobs.append(knob(ELEMENTS, SWITCH.elements, "twice as many", in_use, finer))
+    if point.device.kind == "beam":
+        in_use = release_or_nan_V(point.device, central)
+        finer = _finer_release_V(point.device, central)
+        knobs.append(knob(BY_ELEMENTS, ELEMENTS, "twice as many", in_use, finer))
     yield from rows_of(knobs)
+
+
+def _finer_release_V(device: DeviceSettings, pad: PadCurves) -> float:
+    """Release of a beam of twice the elements (V); NaN where it has no answer."""
+    try:
+        return BeamSwitch(device, beam_of(device, 2 * ELEMENTS)).states(pad).release_V
+    except InputError:
+        return np.nan
 
 
 def _sample(release_V: float) -> Array:

@@ -12,13 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.answer.known import ENDS
-from mesoscale.answer.points import PadModel, Point, solve_point, surfaces_of
+from mesoscale.answer.points import Point
+from mesoscale.answer.switches import PadModel, close_for, solve_point, surfaces_of
 from mesoscale.contact.surface import shared_wave, shortest_wave
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.pad.cells import Cell, PadGrid, plan_grid, sample_cells
-from mesoscale.pad.curves import press_cells
-from mesoscale.pad.memory import flats_of, law_of
-from mesoscale.pad.numerics import PAD
+from mesoscale.pad.cells import Cell, sample_cells
+from mesoscale.pad.closing import press_cells
+from mesoscale.pad.grid import DEPTHS, PadGrid, usual_step_nm
+from mesoscale.pad.pilots import Pilots
+from mesoscale.pad.pressed import Pad, flats_of
 from mesoscale.settings import ContactSettings
 from mesoscale.studies.driver import (
     RELEASE,
@@ -32,9 +34,7 @@ from mesoscale.studies.driver import (
     rows_of,
     timed,
 )
-from mesoscale.switch.electrode import presser, release_or_nan_V
-from mesoscale.switch.numerics import SWITCH
-from mesoscale.switch.pressing import pressing, pressure_to_compute
+from mesoscale.switch import release_or_nan_V, switch_of
 
 PADS = 4
 """Pads of different surfaces on which a choice is tried."""
@@ -43,7 +43,7 @@ CELL_PADS = 6
 FIRST_PAD = 200_000
 """Number of the first of these pads, beyond those of the points of an answer and of a failure rate.
 """
-STEPS, DEPTHS, SITES = "steps of separation, nm", "depths", "sites of the shortest wave"
+STEPS, BY_DEPTHS, SITES = "steps of separation, nm", "depths", "sites of the shortest wave"
 CELLS, POINTS = "cells of a point's pad", "points"
 RESAMPLES = 400
 GROUPS = 8
@@ -86,21 +86,18 @@ class SamplePad:
     settings: ContactSettings
     cells: Sequence[Cell]
 
-    def grid(self, depths: int = PAD.depths) -> PadGrid:
+    def grid(self, depths: int = DEPTHS) -> PadGrid:
         """Its separations, opened from so many depths."""
-        device = pressing(self.point.device)
-        wanted = pressure_to_compute(device)
-        return plan_grid(
-            self.inputs, self.settings, self.cells, wanted, presser(device), depths=depths
-        )
+        pilots = Pilots(self.inputs, self.settings, self.cells)
+        return close_for(switch_of(self.point.device.level), pilots).grid(depths)
 
     def release_V(self, grid: PadGrid, settings: ContactSettings | None = None) -> float:
         """Release of the point's switch on it (V); NaN where it has no answer."""
         settings = settings or self.settings
         pressed = press_cells(self.inputs, settings, grid, self.cells)
-        law = law_of(pressed, flats_of(self.inputs, settings))
+        pad = Pad(pressed, flats_of(self.inputs, settings))
         # elements of the beam are another choice: half as many cost half, and move all values alike
-        return release_or_nan_V(self.point.device, law, SWITCH.coarse_elements)
+        return release_or_nan_V(self.point.device, pad.curves, coarse=True)
 
 
 def _pads(point: Point, contact: ContactSettings, cells: int, count: int) -> list[SamplePad]:
@@ -138,8 +135,8 @@ def _cells(model: PadModel, contact: ContactSettings, cells: int) -> Knob:
     def best() -> Array:
         if many > known:
             return releases(many, 1)
-        law = model.central.pressed.law
-        return np.array([[release_or_nan_V(point.device, law, SWITCH.coarse_elements)]])
+        curves = model.central.pressed.curves
+        return np.array([[release_or_nan_V(point.device, curves, coarse=True)]])
 
     choices = [Choice(count, partial(releases, count, CELL_PADS)) for count in counts]
     return Knob(
@@ -151,7 +148,7 @@ def _steps(pads: Sequence[SamplePad], rms_nm: float) -> Knob:
     """Longer steps, beside half of that in use, at separations from which the pads are opened in
     any case.
     """
-    step = PAD.step_nm(rms_nm)
+    step = usual_step_nm(rms_nm)
     grids = [pad.grid() for pad in pads]
 
     def releases(merged: int) -> Array:
@@ -184,18 +181,17 @@ def halved(grid: PadGrid) -> PadGrid:
 
 def _depths(pads: Sequence[SamplePad]) -> Knob:
     """Fewer or more depths from which the pads are opened, at loads in even ratios."""
-    most = (
-        4 * (PAD.depths - 1) + 1
-    )  # holds the depths in use, those between them, and those between these
+    # the depths in use, those between them, and those between these
+    most = 4 * (DEPTHS - 1) + 1
     grids = [pad.grid(most) for pad in pads]
 
     def releases(count: int) -> Array:
         return _releases(pads, [opened_from(grid, count) for grid in grids])
 
-    counts = (2, PAD.depths // 2, PAD.depths, 2 * PAD.depths - 1)
+    counts = (2, DEPTHS // 2, DEPTHS, 2 * DEPTHS - 1)
     choices = [Choice(count, partial(releases, count)) for count in counts]
     best = partial(releases, most)
-    return Knob(DEPTHS, [RELEASE], choices, PAD.depths, f"{most} depths", best, f"{PADS} pads")
+    return Knob(BY_DEPTHS, [RELEASE], choices, DEPTHS, f"{most} depths", best, f"{PADS} pads")
 
 
 def opened_from(grid: PadGrid, count: int) -> PadGrid:

@@ -2,7 +2,7 @@
 `stability`).
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -12,10 +12,12 @@ import numpy as np
 from mesoscale.contact.displacement import Displacement, close_by_separation
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
-from mesoscale.pad.cells import Cell, PadGrid, close_cells, plan_grid, sample_cells, surface_of
-from mesoscale.pad.curves import PadCells, assemble, press_cells
-from mesoscale.pad.memory import PadLaw, flats_of, law_of
-from mesoscale.pad.numerics import PAD
+from mesoscale.pad.cells import FIRST_SEED, Cell, sample_cells, surface_of
+from mesoscale.pad.closing import PadCells, assemble, close_cells, press_cells
+from mesoscale.pad.curves import PadCurves
+from mesoscale.pad.grid import PadGrid
+from mesoscale.pad.pilots import plan_grid
+from mesoscale.pad.pressed import curves_of, flats_of
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.definitions import definition
 from mesoscale.studies.driver import Array, HardCase
@@ -31,7 +33,7 @@ MOST_STEPS = 4000
 """No more of these are taken, however far a pad closes."""
 CARRIED_GPa = 5e-3
 """Pressure of a usual switch on its pad."""
-CELL = Cell(PAD.first_seed, 0.0, 0.0, 1.0)
+CELL = Cell(FIRST_SEED, 0.0, 0.0, 1.0)
 CHECK_CYCLE = (
     "in contact; plastic: energy lost, elastic: all given back; two flats beyond the curves"
 )
@@ -140,7 +142,7 @@ def _planned() -> Iterator[HardCase]:
         "merging asperities", words, "refused in one line that names coupled mechanics", refused
     )
     coupled = ContactSettings(mechanics="coupled", pixels=64)
-    pressed = partial(_carries, SMOOTH, coupled, 4, PAD.first_seed, 0.2)
+    pressed = partial(_carries, SMOOTH, coupled, 4, FIRST_SEED, 0.2)
     yield HardCase("merging asperities, coupled", words, "carries what is asked for", pressed)
     soft = partial(_carries, SOFT, SOFT_CONTACT, 64, 5_000_017_001_000, 0.04)
     yield HardCase(
@@ -181,40 +183,36 @@ def _cycle(inputs: ContactInputs, contact: ContactSettings) -> tuple[bool, str]:
         broken.append("elastic, but not all of its work came back")
     if contact.model != "elastic" and not returned < spent:
         broken.append("plastic, but no work was lost")
-    broken += _flats(inputs, contact, _law(inputs, contact, grid, cell))
+    broken += _flats(inputs, contact, _curves(inputs, contact, grid, cell))
     return not broken, "; ".join(
         [*broken, f"spent {1e3 * spent:.4g} mJ/m^2, returned {1e3 * returned:.4g} mJ/m^2"]
     )
 
 
-def _law(
+def _curves(
     inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cell: Displacement
-) -> PadLaw:
-    return law_of(assemble(inputs, contact, grid, [CELL], [cell]), flats_of(inputs, contact))
+) -> PadCurves:
+    return curves_of(assemble(inputs, contact, grid, [CELL], [cell]), flats_of(inputs, contact))
 
 
-def _flats(inputs: ContactInputs, contact: ContactSettings, law: PadLaw) -> list[str]:
+def _flats(inputs: ContactInputs, contact: ContactSettings, pad: PadCurves) -> list[str]:
     """Whether a pad goes over into two flats where its curves end."""
-    ends = float(law.separation_nm[-1])
-    inside, beyond = law.closing_GPa(np.array([ends, ends * (1.0 + 1e-9)])).tolist()
+    ends = float(pad.separation_nm[-1])
+    inside, beyond = pad.closing_GPa(np.array([ends, ends * (1.0 + 1e-9)])).tolist()
     broken = []
     # 1 + 6 (rms / separation)^2 is 4e-4
     if not abs(inside - beyond) <= 1e-3 * abs(beyond):
         broken.append("the curves do not end as two flats")
-    flats = -inputs.hamaker / (6.0 * np.pi * (ends + law.flats.offset_nm) ** 3)
+    flats = -inputs.hamaker / (6.0 * np.pi * (ends + pad.flats.offset_nm) ** 3)
     if not abs(beyond - flats) <= 1e-6 * abs(flats):
         broken.append("beyond the curves it is not two flats")
     return broken
 
 
-def _constant(pressure_GPa: float) -> Callable[[Array], Array]:
-    return lambda separation_nm: np.full_like(separation_nm, pressure_GPa)
-
-
 def _pad(inputs: ContactInputs, contact: ContactSettings) -> tuple[bool, str]:
     cells = sample_cells(inputs, CELLS)
     try:
-        grid = plan_grid(inputs, contact, cells, _constant(CARRIED_GPa))
+        grid = plan_grid(inputs, contact, cells, CARRIED_GPa)
     except InputError as error:
         line = str(error)
         return "\n" not in line, f"refused: {line}"
@@ -283,7 +281,7 @@ def gains_energy(
 
 def _refused(inputs: ContactInputs, contact: ContactSettings) -> tuple[bool, str]:
     try:
-        plan_grid(inputs, contact, sample_cells(inputs, 4), _constant(0.2))
+        plan_grid(inputs, contact, sample_cells(inputs, 4), 0.2)
     except InputError as error:
         line = str(error)
         return (
@@ -303,7 +301,7 @@ def _carries(
     pressure_GPa: float,
 ) -> tuple[bool, str]:
     cells = sample_cells(inputs, count, first_seed, 6e4)
-    deep_nm = plan_grid(inputs, contact, cells, _constant(pressure_GPa)).depth_nm
+    deep_nm = plan_grid(inputs, contact, cells, pressure_GPa).depth_nm
     return (
         deep_nm.size > 0,
         f"opened from {deep_nm.size} depths, {deep_nm[-1]:.4g} .. {deep_nm[0]:.4g} nm",

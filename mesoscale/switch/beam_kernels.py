@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from mesoscale.pad.local import pad_pressure
-from mesoscale.switch.plate import GPA, NM
+from mesoscale.units import GPA, NM
 
 CLOSING_NM, OPENING_NM = 1.0, 0.25
 """Largest step of a place in contact. Where a pad of few cells tears off, longer steps overshoot:

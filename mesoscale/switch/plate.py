@@ -1,5 +1,4 @@
-"""A switch as a plate on a spring above a dielectric: its numbers, and what it does on the curves
-of a pad.
+"""A switch as a plate on a spring above a dielectric.
 
 The plate at mean separation s from the dielectric is in balance when
 
@@ -11,23 +10,21 @@ turns are pull-in and release. Nothing is extrapolated: a held state beyond the 
 an opening from a depth that was not computed, is refused."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
 
 from mesoscale.errors import InputError, NotComputed
+from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.numerics import SWITCH
-
-if TYPE_CHECKING:  # rules read this module: it imports nothing heavy
-    from mesoscale.pad.memory import PadLaw
+from mesoscale.switch.switch import States, Switch
+from mesoscale.units import GPA, NM, VACUUM_PERMITTIVITY
 
 Array = NDArray[np.float64]
 
-VACUUM_PERMITTIVITY = 8.8541878128e-12  # F/m, CODATA 2018
-NM = 1e-9
-GPA = 1e9
+FOLD_POINTS = 400
+"""Separations between the end of the pad's table and the gap at rest that bracket the folds."""
 
 
 @dataclass(frozen=True)
@@ -47,23 +44,20 @@ class Plate:
     area_m2: float
     dielectric_nm: float
 
-    def spring_force_N(self, separation_nm: np.ndarray) -> np.ndarray:
+    def spring_force_N(self, separation_nm: ArrayLike) -> Array:
         """Force of the spring, which opens the switch."""
-        return self.spring_N_per_m * (self.gap_nm - separation_nm) * NM
+        return self.spring_N_per_m * (self.gap_nm - np.asarray(separation_nm)) * NM
 
-    def balancing_V2(self, separation_nm: np.ndarray, opening_force_N: np.ndarray) -> np.ndarray:
+    def balancing_V2(self, separation_nm: ArrayLike, opening_force_N: Array) -> Array:
         """Square of the voltage (V^2) whose attraction balances a force that opens the switch."""
-        electric_gap = (separation_nm + self.dielectric_nm) * NM
+        electric_gap = (np.asarray(separation_nm) + self.dielectric_nm) * NM
         factor = 2 * electric_gap**2 / (VACUUM_PERMITTIVITY * self.area_m2)
         return factor * opening_force_N
 
-    def capacitance_F(self, separation_nm: np.ndarray) -> np.ndarray:
+    def capacitance_F(self, separation_nm: ArrayLike) -> Array:
         """Parallel-plate capacitance at a mean separation."""
-        return (
-            VACUUM_PERMITTIVITY
-            * self.area_m2
-            / ((np.asarray(separation_nm) + self.dielectric_nm) * NM)
-        )
+        electric_gap = (np.asarray(separation_nm) + self.dielectric_nm) * NM
+        return VACUUM_PERMITTIVITY * self.area_m2 / electric_gap
 
     @property
     def pull_in_V(self) -> float:
@@ -74,53 +68,53 @@ class Plate:
         )
 
 
-def beam_stiffness_N_per_m(settings: DeviceSettings) -> float:
-    """Stiffness of the beam at rest against a uniform pull of its electrode, where it comes down
-    farthest.
-
-    For a clamped beam that is pulled all along, 32 E b (t/L)^3 without tension, and with a tension
-    little enough 8 sigma (1 - nu) b t/L more (G. M. Rebeiz, RF MEMS, Wiley 2003, section 2.2).
-
-    Raises
-    ------
-    InputError : it touches the dielectric at rest.
-    """
-    from mesoscale.switch.beam import beam_of  # compiles: not where a scene is only planned
-
-    beam = beam_of(settings, 32)
-    at_rest = np.zeros((beam.elements + 1, 2))
-    change, _ = beam.step(at_rest, lambda s: (-beam.wired, np.zeros_like(s)))
-    return float((beam.width_m * beam.weights_m * beam.wired).sum() / -change[:, 0].min())
-
-
-def plate_from_settings(settings: DeviceSettings) -> Plate:
-    """The plate that the settings describe; a beam has the spring of `beam_stiffness_N_per_m`."""
-    return Plate(
-        spring_N_per_m=settings.spring_N_per_m or beam_stiffness_N_per_m(settings),
-        gap_nm=settings.gap_um * 1e3,
-        area_m2=settings.area_um2 * 1e-12,
-        dielectric_nm=settings.dielectric_nm / settings.permittivity,
-    )
-
-
 @dataclass(frozen=True)
-class PadStates:
-    """What the switch does on one pad.
+class PlateStates(States):
+    """What the plate does on one pad.
 
     Attributes
     ----------
-    pull_in_V : voltage at which the open switch snaps shut.
     hold_nm : separation while held closed (nm).
-    release_V : voltage at which the closed switch lets go; 0 where it sticks.
     """
 
-    pull_in_V: float
-    hold_nm: float
-    release_V: float
+    hold_nm: float = np.nan
 
 
-def solve_on_pad(plate: Plate, law: "PadLaw", hold_voltage_V: float | None) -> PadStates:
-    """Close the switch on a pad, hold it, and release it.
+class PlateSwitch(Switch):
+    """A plate on a spring, which comes down flat on its pad."""
+
+    def __init__(self, settings: DeviceSettings) -> None:
+        super().__init__(settings)
+        assert settings.spring_N_per_m is not None
+        self.plate = Plate(
+            spring_N_per_m=settings.spring_N_per_m,
+            gap_nm=settings.gap_um * 1e3,
+            area_m2=settings.area_um2 * 1e-12,
+            dielectric_nm=settings.dielectric_gap_nm,
+        )
+
+    @property
+    def pull_in_V(self) -> float:
+        """Pull-in without a pad."""
+        return self.plate.pull_in_V
+
+    def pressed_GPa(self, pad: PadCurves) -> float:
+        """Nothing on top of its voltage, which alone presses with more."""
+        return 0.0
+
+    def states_on(self, pad: PadCurves) -> PlateStates:
+        """Close the plate on a pad, hold it, and release it.
+
+        Raises
+        ------
+        NotComputed : the held state is not on the computed closing curve.
+        InputError : the hold voltage does not hold the plate.
+        """
+        return closed_on_pad(self.plate, pad, self.settings.hold_voltage_V)
+
+
+def closed_on_pad(plate: Plate, pad: PadCurves, hold_voltage_V: float | None) -> PlateStates:
+    """Close a plate on a pad, hold it, and release it.
 
     Parameters
     ----------
@@ -131,44 +125,66 @@ def solve_on_pad(plate: Plate, law: "PadLaw", hold_voltage_V: float | None) -> P
     NotComputed : the held state is not on the computed closing curve.
     InputError : the hold voltage does not hold the plate.
     """
-    from scipy.optimize import brentq
-
-    outside = np.geomspace(law.separation_nm[-1], plate.gap_nm, SWITCH.fold_points)[1:]
-    grid = np.concatenate([law.separation_nm, outside])
-    down = _voltage_squared(plate, grid, law.closing_GPa(grid))
-    near = grid <= law.separation_nm[-1]
-    # the fold of the way down lies far above the pad, where nothing but the spring acts
-    peak = int(np.argmax(np.where(near, -np.inf, down)))
-    around = np.linspace(grid[peak - 1], grid[min(peak + 1, grid.size - 1)], SWITCH.fold_points)
-    pull_in = float(_voltage_squared(plate, around, law.closing_GPa(around)).max())
-    hold = pull_in if hold_voltage_V is None else hold_voltage_V**2
-    holds = np.flatnonzero(near & (down >= hold))
+    outside = np.geomspace(pad.separation_nm[-1], plate.gap_nm, FOLD_POINTS)[1:]
+    grid = np.concatenate([pad.separation_nm, outside])
+    near = grid <= pad.separation_nm[-1]
+    down_V2 = _balancing_V2(plate, grid, pad.closing_GPa(grid))
+    pull_in_V2 = _pull_in_V2(plate, pad, grid, down_V2, near)
+    hold_V2 = pull_in_V2 if hold_voltage_V is None else hold_voltage_V**2
+    holds = np.flatnonzero(near & (down_V2 >= hold_V2))
     if holds.size == 0:
         raise NotComputed(
-            f"device.hold_voltage_V: {np.sqrt(hold):.4g} V presses the pad harder than the computed"
-            f" {law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa"
+            f"device.hold_voltage_V: {np.sqrt(hold_V2):.4g} V presses the pad harder than the"
+            f" computed {pad.closing_GPa(pad.separation_nm[0]) * 1e3:.3g} MPa"
         )
     inner = int(holds[-1])
     if inner + 1 == near.sum():
         raise InputError(
-            f"device.hold_voltage_V = {np.sqrt(hold):.4g}: too little to keep the switch on the pad"
-            f" (pull-in is at {np.sqrt(pull_in):.4g} V); raise it"
+            f"device.hold_voltage_V = {np.sqrt(hold_V2):.4g}: too little to keep the switch on the"
+            f" pad (pull-in is at {np.sqrt(pull_in_V2):.4g} V); raise it"
         )
-    held = brentq(
-        lambda s: _voltage_squared(plate, s, law.closing_GPa(s)) - hold,
-        grid[inner],
-        grid[inner + 1],
-    )
+
+    def missing_V2(separation_nm: float) -> Array:
+        return _balancing_V2(plate, separation_nm, pad.closing_GPa(separation_nm)) - hold_V2
+
+    held = brentq(missing_V2, grid[inner], grid[inner + 1])
     hold_nm = float(np.asarray(held))
-    way_up = np.concatenate([[hold_nm], grid[grid > hold_nm]])
-    up = _voltage_squared(plate, way_up, law.opening_GPa(way_up, hold_nm))
-    # release is the lowest point before the barrier, the fold that the way down met, too
-    barrier = int(np.argmax(np.where(way_up > law.separation_nm[-1], up, -np.inf)))
-    release = float(up[: barrier + 1].min())
-    # a pull-in of 0: the pad pulls it shut by itself
-    return PadStates(float(np.sqrt(max(pull_in, 0.0))), hold_nm, float(np.sqrt(max(release, 0.0))))
+    release_V2 = _release_V2(plate, pad, grid, hold_nm)
+    return PlateStates(
+        pull_in_V=_volts(pull_in_V2),
+        release_V=_volts(release_V2),
+        capacitance_fF=float(plate.capacitance_F(hold_nm)) * 1e15,
+        hold_nm=hold_nm,
+    )
 
 
-def _voltage_squared(plate: Plate, separation_nm: Array, pressure_GPa: Array) -> Array:
-    force = plate.spring_force_N(separation_nm) + plate.area_m2 * pressure_GPa * GPA
-    return plate.balancing_V2(separation_nm, force)
+def _pull_in_V2(
+    plate: Plate, pad: PadCurves, grid: Array, down_V2: Array, near: NDArray[np.bool_]
+) -> float:
+    """Square of the voltage at the fold of the way down.
+
+    It lies far above the pad, where nothing but the spring acts."""
+    fold = int(np.argmax(np.where(near, -np.inf, down_V2)))
+    around = np.linspace(grid[fold - 1], grid[min(fold + 1, grid.size - 1)], FOLD_POINTS)
+    return float(_balancing_V2(plate, around, pad.closing_GPa(around)).max())
+
+
+def _release_V2(plate: Plate, pad: PadCurves, grid: Array, hold_nm: float) -> float:
+    """Square of the voltage at the lowest point of the way up before its barrier, the fold that the
+    way down met, too.
+    """
+    rising = np.concatenate([[hold_nm], grid[grid > hold_nm]])
+    up_V2 = _balancing_V2(plate, rising, pad.opening_GPa(rising, hold_nm))
+    barrier = int(np.argmax(np.where(rising > pad.separation_nm[-1], up_V2, -np.inf)))
+    return float(up_V2[: barrier + 1].min())
+
+
+def _balancing_V2(plate: Plate, separation_nm: ArrayLike, pressure_GPa: Array) -> Array:
+    """Square of the voltage that balances spring and pad at separations."""
+    force_N = plate.spring_force_N(separation_nm) + plate.area_m2 * pressure_GPa * GPA
+    return plate.balancing_V2(separation_nm, force_N)
+
+
+def _volts(squared_V2: float) -> float:
+    """Voltage of a square; 0 where the pad pulls the plate shut by itself."""
+    return float(np.sqrt(max(squared_V2, 0.0)))

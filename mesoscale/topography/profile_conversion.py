@@ -13,6 +13,7 @@ held small."""
 
 import numpy as np
 
+from mesoscale.errors import InputError
 from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.spectrum import FLOOR, Spectrum
 
@@ -20,6 +21,8 @@ from mesoscale.topography.spectrum import FLOOR, Spectrum
 # independent modes per wave number, and spread each over a variance of (n + 1)(2 n + 1)/24 wave
 # numbers
 TAPERS = 3
+MOST_STEPS = 60  # of the fit of a spectrum; most take ten, some creep
+SETTLED = 1e-6  # of ln L: what the last step could gain; beyond, a fit has not settled
 COVER = 2 * TAPERS / (2 * TAPERS + 1)
 SPREAD = np.sqrt((TAPERS + 1) * (2 * TAPERS + 1) / 24)
 
@@ -60,7 +63,12 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     count = max(4, int(np.ceil(decades)) + 1)
     # C is continued for 1.5 decades beyond the data, because short waves lift C1 everywhere
     nodes = np.log(bins[0]) + distance * np.arange(count + 15)
-    heights, covariance = _solve(nodes, measured)
+    heights, covariance, settled = _solve(nodes, measured)
+    if not settled:
+        raise InputError(
+            f"{profile.name}: its two-dimensional spectrum does not settle in {MOST_STEPS} steps;"
+            " give a longer or finer profile, or leave it out"
+        )
     keep = (nodes >= np.log(low) - 1e-9) & (nodes <= np.log(high) + 1e-9)
     # errors of neighbouring nodes go together: sums have their error where each node has that of
     # its row's sum
@@ -119,8 +127,8 @@ def _binned(k: np.ndarray, c1: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
     return centre, np.maximum(count * COVER, 0.5), np.bincount(index, c1) / count
 
 
-def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarray]:
-    """ln C at the nodes (ln q) with its covariance, by damped Fisher scoring."""
+def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarray, bool]:
+    """ln C at the nodes (ln q), its covariance, and whether it settled; damped Fisher scoring."""
     k, c1, modes = measured.q, measured.psd, measured.modes
     last = float(np.exp(nodes[-1]))
     tables = [_points(waves, last) for waves in spread(k, measured.spacing)]
@@ -158,10 +166,12 @@ def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarra
     fall = np.polyfit(np.log(k), np.log(c1), 1)
     y = np.polyval(fall, nodes) - nodes - np.log(2)
     mean, slope = model(y)
-    for _ in range(60):
+    gain = np.inf
+    for _ in range(MOST_STEPS):
         gradient = slope.T @ (modes * (c1 / mean - 1)) - prior @ y + pull
         information = slope.T @ (modes[:, None] * slope) + prior
         move = np.linalg.solve(information + 1e-9 * np.eye(len(y)), gradient)
+        gain = float(gradient @ move)
         before = cost(y, mean)
         for size in 0.5 ** np.arange(14):
             trial = y + size * move
@@ -178,4 +188,4 @@ def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarra
     # what few modes allow is skewed: its mean is above the most likely value by 1 / 2n for n of
     # them
     skewed = slope.T @ (modes * np.einsum("ki,ij,kj->k", slope, covariance, slope))
-    return y + 0.5 * covariance @ skewed, covariance
+    return y + 0.5 * covariance @ skewed, covariance, gain <= SETTLED

@@ -68,7 +68,10 @@ def censored_chaos(
     linear = np.vstack([constant, np.eye(len(ranges), dtype=int)[varying]])
     filled = most_likely(basis_matrix(u, linear), y, below).values
     most_terms = 1 + 2 * varying.sum()
-    degree = 2 if (~below).sum() >= KNOWN_PER_TERM * most_terms else 1
+    # a degree that the known values determine
+    degree = 1
+    if (~below).sum() >= KNOWN_PER_TERM * most_terms:
+        degree = 2
     terms = sparse_chaos(x, filled, ranges, degree=degree).degrees
     fit = most_likely(basis_matrix(u, terms), y, below)
     return Surrogate(ranges, terms, fit.coefficients), fit.scatter
@@ -101,16 +104,13 @@ def most_likely(matrix: Array, y: Array, below: NDArray[np.bool_]) -> Censored:
 
 
 def _hazard(z: Array) -> Array:
-    """Normal density over distribution at z: how far below -z, in deviations, values below it are
-    on average.
-    """
-    return np.exp(-0.5 * z**2 - 0.5 * np.log(2 * np.pi) - log_ndtr(z))
+    """Normal density over distribution at z: deviations that values below -z lie below it."""
+    log_density = -0.5 * z**2 - 0.5 * np.log(2 * np.pi)
+    return np.exp(log_density - log_ndtr(z))
 
 
 def _maximum(known: Array, unknown: Array, values: Array) -> tuple[Array, float]:
-    """Most likely coefficients over the scatter, and one over the scatter, by the terms of known
-    and unknown values.
-    """
+    """Coefficients over the scatter, and one over the scatter, at the largest likelihood."""
     from scipy.optimize import minimize  # slow to import
 
     count = len(values)
@@ -137,7 +137,9 @@ def _maximum(known: Array, unknown: Array, values: Array) -> tuple[Array, float]
         mixed = -known.T @ values
         block = known.T @ known + (unknown.T * weight) @ unknown
         corner = values @ values + count / point[-1] ** 2 + count * LEAST_SCATTER**2
-        return np.block([[block, mixed[:, None]], [mixed[None, :], np.array([[corner]])]])
+        upper = [block, mixed[:, None]]
+        lower = [mixed[None, :], np.array([[corner]])]
+        return np.block([upper, lower])
 
     start = np.append(np.linalg.lstsq(known, values, rcond=None)[0], 1.0)
     # steps reach scatters down to the least one

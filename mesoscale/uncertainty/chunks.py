@@ -24,7 +24,7 @@ def chunk_bounds(runs: int, chunk_runs: int = CHUNK_RUNS) -> dict[str, tuple[int
 
 
 def full_chunks(runs: int) -> dict[str, tuple[int, int]]:
-    """As `chunk_bounds`, the last of several chunks filled up, so that more runs leave every chunk
-    as it is.
-    """
-    return chunk_bounds(runs if runs <= CHUNK_RUNS else -(-runs // CHUNK_RUNS) * CHUNK_RUNS)
+    """Chunks of runs, the last of several filled up, so that more runs leave each as it is."""
+    if runs > CHUNK_RUNS:
+        runs = -(-runs // CHUNK_RUNS) * CHUNK_RUNS
+    return chunk_bounds(runs)

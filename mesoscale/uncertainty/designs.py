@@ -38,15 +38,12 @@ def collocation_runs(table: InputTable, first: int, last: int) -> list[Run]:
     """Runs first .. last-1 of the collocation: all nodes of surface 0, then all of the next one."""
     grid = nodes(len(table.rows))
     values = to_values(grid, table.ranges())
-    return [
-        Run(
-            index,
-            index % len(grid),
-            index // len(grid),
-            dict(zip(table.names, values[index % len(grid)].tolist(), strict=True)),
-        )
-        for index in range(first, last)
-    ]
+    runs = []
+    for index in range(first, last):
+        surface, node = divmod(index, len(grid))
+        inputs = dict(zip(table.names, values[node].tolist(), strict=True))
+        runs.append(Run(index, node, surface, inputs))
+    return runs
 
 
 def random_runs(
@@ -57,12 +54,13 @@ def random_runs(
     first_surface: int = FIRST_RANDOM_SEED,
 ) -> list[Run]:
     """Direct runs first .. last-1: every run has its own inputs and its own surface."""
-    units = [
-        np.random.default_rng(np.random.SeedSequence([seed, index])).random(len(table.rows))
-        for index in range(first, last)
-    ]
+    units = []
+    for index in range(first, last):
+        rng = np.random.default_rng(np.random.SeedSequence([seed, index]))
+        units.append(rng.random(len(table.rows)))
     values = table.transform(np.array(units))
-    return [
-        Run(index, -1, first_surface + index, dict(zip(table.names, row.tolist(), strict=True)))
-        for index, row in zip(range(first, last), values, strict=True)
-    ]
+    runs = []
+    for index, row in zip(range(first, last), values, strict=True):
+        inputs = dict(zip(table.names, row.tolist(), strict=True))
+        runs.append(Run(index, -1, first_surface + index, inputs))
+    return runs

@@ -1,6 +1,4 @@
-"""Which outputs of the law are not to be trusted: those that responses explain too little, or
-against physics.
-"""
+"""Outputs of the law not to be trusted: explained too little by responses, or against physics."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -25,8 +23,7 @@ SHARES = np.array([0.1, 0.25, 0.5, 1.0])
 def explained(
     first: Array, second: Array, predicted: Array, rng: np.random.Generator
 ) -> dict[str, Any]:
-    """What a response explains of what the inputs can explain, by runs at equal inputs on two
-    surfaces each.
+    """What a response explains of what inputs can explain, by pairs of runs at equal inputs.
 
     The covariance of a pair about the mean is the variance that the inputs explain; about the
     prediction it is the mean square error of the response. Scatter between surfaces is in neither.
@@ -45,11 +42,11 @@ def explained(
     wrongs = wrong[picks].mean(axis=1)
     known = np.quantile(explicables, 0.05) > 0.0
     shares = 1.0 - wrongs / np.where(explicables > 0.0, explicables, np.nan)
-    row: dict[str, Any] = {
-        "surface_share": 1.0 - explicable.mean() / variance if variance > 0 else np.nan,
-        "doubt": "",
-    }
-    row["explained"] = 1.0 - wrong.mean() / explicable.mean() if known else np.nan
+    row: dict[str, Any] = {"surface_share": np.nan, "doubt": "", "explained": np.nan}
+    if variance > 0:
+        row["surface_share"] = 1.0 - explicable.mean() / variance
+    if known:
+        row["explained"] = 1.0 - wrong.mean() / explicable.mean()
     if not known:
         row["doubt"] = (
             f"nothing but scatter between surfaces is seen in {len(first)} pairs at equal inputs"
@@ -61,8 +58,12 @@ def explained(
     return row
 
 
+SYMBOLS = {"e_star": "E*", "h_macro": "H_macro", "h_prime": "H′", "h_film": "H_film"}
+"""Inputs with which a contact presses harder, and their symbols in messages."""
+
+
 def against_physics(
-    responses: Sequence[Response | None], table: InputTable, most_GPa: float
+    responses: Sequence[Response | None], table: InputTable, largest_GPa: float
 ) -> dict[str, str]:
     """Outputs whose response contradicts physics, by name, each with a line that says how.
 
@@ -71,20 +72,15 @@ def against_physics(
 
     Parameters
     ----------
-    most_GPa : largest pressure of the curves that the law was fitted to.
+    largest_GPa : largest pressure of the curves that the law was fitted to.
     """
     if any(response is None for response in responses):
         return {}
     base = table.sample(256, SAMPLE_SEED)
-    low, high = (table.ranges()[:, k] for k in (0, 1))
+    low, high = table.ranges().T
     base = np.clip(base, low, high)
     reasons = {}
-    for name, symbol in {
-        "e_star": "E*",
-        "h_macro": "H_macro",
-        "h_prime": "H′",
-        "h_film": "H_film",
-    }.items():
+    for name, symbol in SYMBOLS.items():
         if name not in table.names:
             continue
         k = table.names.index(name)
@@ -92,8 +88,9 @@ def against_physics(
             continue
         moved = [_moved(base, k, value) for value in np.linspace(low[k], high[k], 7)]
         laws = [evaluate(responses, x)[:, CLOSING] for x in moved]
-        at = _separations(laws[len(laws) // 2], most_GPa)
-        course = np.array([_repulsion(law, at).mean(axis=0) for law in laws]) / (SHARES * most_GPa)
+        separations = _separations(laws[len(laws) // 2], largest_GPa)
+        pressures = np.array([_repulsion(law, separations).mean(axis=0) for law in laws])
+        course = pressures / (SHARES * largest_GPa)
         fall = float((np.maximum.accumulate(course) - course).max())
         if fall > TOLERANCE:
             line = (
@@ -102,11 +99,9 @@ def against_physics(
             )
             reasons |= {"C_r_GPa": line, "rho_r_nm": line}
     if "hamaker" in table.names and high[k := table.names.index("hamaker")] > low[k]:
-        least, most = (
-            evaluate(responses, _moved(base, k, end[k]))[:, CLOSING][:, 1].mean()
-            for end in (low, high)
-        )
-        rise = most / least - 1.0
+        lowest = evaluate(responses, _moved(base, k, low[k]))[:, CLOSING][:, 1].mean()
+        highest = evaluate(responses, _moved(base, k, high[k]))[:, CLOSING][:, 1].mean()
+        rise = highest / lowest - 1.0
         due = high[k] / low[k] - 1.0
         if abs((1.0 + rise) / (1.0 + due) - 1.0) > TOLERANCE:
             reasons["C_a_GPa_nm"] = (
@@ -115,8 +110,9 @@ def against_physics(
     both = evaluate(responses, base)
     closing = both[:, CLOSING]
     opening = both[:, OPENING]
-    at = _separations(closing, most_GPa)
-    harder = (_repulsion(opening, at) > (1.0 + TOLERANCE) * SHARES * most_GPa).any(axis=1).mean()
+    separations = _separations(closing, largest_GPa)
+    limit = (1.0 + TOLERANCE) * SHARES * largest_GPa
+    harder = (_repulsion(opening, separations) > limit).any(axis=1).mean()
     if harder > TOLERANCE:
         line = (
             f"opening presses harder than closing at equal separation at {harder:.0%} of the inputs"
@@ -131,12 +127,10 @@ def _moved(base: Array, k: int, value: float) -> Array:
     return x
 
 
-def _separations(laws: Array, most_GPa: float) -> Array:
-    """Separations (nm) at which laws (m, 4) repel with shares of a pressure, shape (m,
-    len(SHARES)).
-    """
+def _separations(laws: Array, largest_GPa: float) -> Array:
+    """Separations (nm) at which laws (m, 4) repel with shares of a pressure, (m, len(SHARES))."""
     d_c, _, C_r, rho_r = laws.T[:, :, None]
-    return d_c - rho_r * np.log1p(SHARES * most_GPa / C_r)
+    return d_c - rho_r * np.log1p(SHARES * largest_GPa / C_r)
 
 
 def _repulsion(laws: Array, separation_nm: Array) -> Array:

@@ -17,15 +17,13 @@ EXCHANGED = {"C_a": "C_r", "C_r": "C_a"}
 def table2(
     rows: Iterable[Mapping[str, str]], exchanged: bool = False
 ) -> dict[str, tuple[float, float]]:
-    """Mean and deviation by output of config/paper/table2.csv; `exchanged` swaps delta_C_a and
-    delta_C_r.
-    """
+    """Mean and deviation by output of Table 2; `exchanged` swaps delta_C_a and delta_C_r."""
     values = {}
     for row in rows:
         scale = SCALE_TABLE_2.get(row["output"], 1.0)
         values[row["output"]] = (float(row["mean"]) * scale, float(row["dev"]) * scale)
     if exchanged:
-        values["delta_C_a"], values["delta_C_r"] = values["delta_C_r"], values["delta_C_a"]
+        values |= {"delta_C_a": values["delta_C_r"], "delta_C_r": values["delta_C_a"]}
     return values
 
 
@@ -44,7 +42,6 @@ def table3(
             if column == "parameter":
                 continue
             output = column if as_printed else EXCHANGED.get(column, column)
-            values.setdefault(output, {})[row["parameter"]] = float(text) * SCALE_TABLE_3.get(
-                column, 1.0
-            )
+            scale = SCALE_TABLE_3.get(column, 1.0)
+            values.setdefault(output, {})[row["parameter"]] = float(text) * scale
     return values

@@ -44,9 +44,7 @@ class NodeOutputs:
 
 
 def to_paper_outputs(parameters: Array) -> Array:
-    """Closing and opening parameters (..., len(FITTED)) to closing parameters and their change,
-    same shape.
-    """
+    """Closing and opening parameters (..., len(FITTED)) to closing ones and their change."""
     closing = parameters[..., CLOSING]
     opening = parameters[..., OPENING]
     return np.concatenate([closing, opening - closing], axis=-1)
@@ -87,23 +85,23 @@ def exported_responses(
         # at least 0.01 nm, so that there is a logarithm
         fell = np.maximum(y[:, first] - y[:, last], 0.01)
         drop = _regression(x, fell, ranges, any_sign=False)
-        responses[last] = Below(FITTED[first], above, drop) if drop else None
+        responses[last] = None
+        if drop is not None:
+            responses[last] = Below(FITTED[first], above, drop)
     return responses
 
 
 def output_responses(
     exported: Sequence[Response | None], direct: Direct, ranges: Array
 ) -> list[Response | None]:
-    """Responses of the outputs of Table 2, behind indices and elementary effects, from the exported
-    ones.
+    """Responses of the outputs of Table 2, behind indices and effects, from the exported ones.
 
     A change on opening has a response of its own: as a small difference of two large numbers it
     would inherit the errors of both."""
     changes = to_paper_outputs(direct[1])[:, OPENING]
-    return [
-        *exported[CLOSING],
-        *(_regression(direct[0], change, ranges, any_sign=True) for change in changes.T),
-    ]
+    inputs = direct[0]
+    on_change = [_regression(inputs, change, ranges, any_sign=True) for change in changes.T]
+    return [*exported[CLOSING], *on_change]
 
 
 def _regression(x: Array, y: Array, ranges: Array, any_sign: bool) -> Surrogate | None:
@@ -142,9 +140,7 @@ class Propagation:
 
     @property
     def seed_share(self) -> Array:
-        """Share of the variance of each output of Table 2 that is scatter between seeds, shape
-        (len(OUTPUTS),).
-        """
+        """Share of seeds' scatter in the variance of each output of Table 2, (len(OUTPUTS),)."""
         with np.errstate(invalid="ignore", divide="ignore"):
             return self.variances[1] / self.variances.sum(axis=0)
 
@@ -170,7 +166,8 @@ def propagate(
     used = np.isfinite(by_seed[:, 0]).sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = total / used
-        within = np.maximum(total_squares / used - mean**2, 0).mean(axis=0) * used / (used - 1)
+        variance = np.maximum(total_squares / used - mean**2, 0)
+        within = variance.mean(axis=0) * used / (used - 1)
         between = np.maximum(mean.var(axis=0) - within / used, 0)
         variances = np.where(used > 1, np.stack([between, within]), np.nan)
     responses = exported_responses(direct, ranges, settings)
@@ -178,16 +175,16 @@ def propagate(
 
 
 def linear_outputs(values: Array, ranges: Array, x: Array) -> Array:
-    """Closing and opening parameters at inputs x (m, n) by the paper's linear responses, shape (m,
-    len(FITTED)).
+    """Closing and opening parameters at x (m, n) by the paper's linear responses, (m, len(FITTED)).
 
     Parameters
     ----------
     values : the parameters at the nodes, shape (2n + 1, len(FITTED)); one that a node lacks is NaN
         everywhere."""
-    return evaluate(
-        [level1_response(y, ranges) if np.isfinite(y).all() else None for y in values.T], x
-    )
+    responses = []
+    for y in values.T:
+        responses.append(level1_response(y, ranges) if np.isfinite(y).all() else None)
+    return evaluate(responses, x)
 
 
 def output_rows(
@@ -197,8 +194,7 @@ def output_rows(
     paper: Mapping[str, tuple[float, float]],
     paper_exchanged: Mapping[str, tuple[float, float]],
 ) -> list[dict[str, Any]]:
-    """Rows of uncertainty/outputs.csv: Table 2 beside the paper's; differences in units of the
-    scatter of seeds.
+    """Rows of uncertainty/outputs.csv: Table 2 beside the paper's, in units of seeds' scatter.
 
     mean and dev are the paper's method; response_* are those of the exported responses, averaged
     over random surfaces; cell_* those of the direct runs, each a cell of its own."""
@@ -210,83 +206,86 @@ def output_rows(
         complete = np.isfinite(result.by_seed[:, 0, k])
         mean, dev = (_center_and_scatter(result.by_seed[complete, j, k]) for j in (0, 1))
         centre = _center_and_scatter(y[complete, 0, k])
-        row: dict[str, Any] = {
-            "output": output.name,
-            "unit": output.unit,
-            "response_mean": propagated[:, k].mean(),
-        }
+        row: dict[str, Any] = {"output": output.name, "unit": output.unit}
+        row["response_mean"] = propagated[:, k].mean()
         for name, (value, scatter) in {"mean": mean, "dev": dev, "centre": centre}.items():
             row |= {name: value, f"{name}_seed_sd": scatter}
         for label, tables in (("", paper), ("_exchanged", paper_exchanged)):
-            known = tables.get(output.short, (np.nan, np.nan))
-            for name, (value, scatter), theirs in zip(
-                ("mean", "dev"), (mean, dev), known, strict=True
-            ):
-                row[f"paper_{name}{label}"] = theirs
-                row[f"{name}_difference_in_seed_sd{label}"] = (
-                    (value - theirs) / scatter if scatter else np.nan
-                )
-        single = cells[np.isfinite(cells[:, k]), k]
-        for name, values in (
-            ("response", propagated[:, k]),
-            ("cell", single if single.size else np.array([np.nan])),
-        ):
-            row[f"{name}_dev"] = values.std()
-            quantiles = np.quantile(values, [0.05, 0.5, 0.95])
-            row |= {
-                f"{name}_{q}": value
-                for q, value in zip(("q05", "q50", "q95"), quantiles, strict=True)
-            }
-        row |= {
-            "seed_share": result.seed_share[k],
-            "seeds_used": int(complete.sum()),
-            "seeds": len(nodes.seeds),
-            "runs": y.shape[0] * y.shape[1],
-            "missing": int(np.isnan(y[:, :, k]).sum()),
-        }
+            paper_mean, paper_dev = tables.get(output.short, (np.nan, np.nan))
+            row |= _beside_the_paper("mean", label, mean, paper_mean)
+            row |= _beside_the_paper("dev", label, dev, paper_dev)
+        row |= _quantiles("response", propagated[:, k])
+        row |= _quantiles("cell", cells[np.isfinite(cells[:, k]), k])
+        row["seed_share"] = result.seed_share[k]
+        row["seeds_used"] = int(complete.sum())
+        row["seeds"] = len(nodes.seeds)
+        row["runs"] = y.shape[0] * y.shape[1]
+        row["missing"] = int(np.isnan(y[:, :, k]).sum())
         rows.append(row)
     return rows
+
+
+def _beside_the_paper(
+    name: str, label: str, ours: tuple[float, float], paper: float
+) -> dict[str, float]:
+    """The paper's value, and the difference of ours from it in units of its scatter over seeds."""
+    value, scatter = ours
+    difference = np.nan
+    if scatter:
+        difference = (value - paper) / scatter
+    return {f"paper_{name}{label}": paper, f"{name}_difference_in_seed_sd{label}": difference}
+
+
+def _quantiles(name: str, values: Array) -> dict[str, float]:
+    """Deviation and quantiles of values; NaN without any."""
+    if not values.size:
+        values = np.array([np.nan])
+    low, middle, high = np.quantile(values, [0.05, 0.5, 0.95])
+    deviation = values.std()
+    return {
+        f"{name}_dev": deviation,
+        f"{name}_q05": low,
+        f"{name}_q50": middle,
+        f"{name}_q95": high,
+    }
 
 
 def _center_and_scatter(values: Array) -> tuple[float, float]:
     """Mean over seeds and standard deviation of one seed."""
     if len(values) == 0:
         return np.nan, np.nan
-    return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else np.nan
+    scatter = np.nan
+    if len(values) > 1:
+        scatter = values.std(ddof=1)
+    return float(values.mean()), float(scatter)
 
 
 def surrogate_json(
     result: Propagation, table: InputTable, law: Mapping[str, float]
 ) -> dict[str, Any]:
     """Content of uncertainty/surrogate.json: usable without this code (docs/uncertainty.md)."""
-    inputs = [
-        {
-            "name": row.name,
-            "unit": row.unit,
-            "distribution": row.distribution.kind,
-            "a": row.distribution.a,
-            "b": row.distribution.b,
-            "low": low,
-            "high": high,
-        }
-        for row, (low, high) in zip(table.rows, table.ranges().tolist(), strict=True)
-    ]
-    outputs = [
-        {"name": name, "unit": parameter.unit, **to_json(response)}
-        for name, parameter, response in zip(FITTED, (*LAW, *LAW), result.responses, strict=True)
-        if response is not None
-    ]
-    return {
-        "about": (
-            "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x -"
-            " low) / (high - low) - 1; valid for low <= x <= high; the mean over random surfaces"
-            + (
-                "; with `below`: the output of that name less this"
-                if any("below" in output for output in outputs)
-                else ""
-            )
-        ),
-        "inputs": inputs,
-        "law": dict(law),
-        "outputs": outputs,
-    }
+    inputs = []
+    for row, (low, high) in zip(table.rows, table.ranges().tolist(), strict=True):
+        distribution = row.distribution
+        inputs.append(
+            {
+                "name": row.name,
+                "unit": row.unit,
+                "distribution": distribution.kind,
+                "a": distribution.a,
+                "b": distribution.b,
+                "low": low,
+                "high": high,
+            }
+        )
+    outputs = []
+    for name, parameter, response in zip(FITTED, (*LAW, *LAW), result.responses, strict=True):
+        if response is not None:
+            outputs.append({"name": name, "unit": parameter.unit, **to_json(response)})
+    about = (
+        "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x -"
+        " low) / (high - low) - 1; valid for low <= x <= high; the mean over random surfaces"
+    )
+    if any("below" in output for output in outputs):
+        about += "; with `below`: the output of that name less this"
+    return {"about": about, "inputs": inputs, "law": dict(law), "outputs": outputs}

@@ -48,7 +48,8 @@ class Process:
 
         self.low = x.min(axis=0)
         self.width = np.ptp(x, axis=0)
-        self.sample, count = ot.Sample, int((self.width > 0).sum())
+        self.sample = ot.Sample
+        count = int((self.width > 0).sum())
         kernel = ot.MaternModel([2.0] * count, [1.0], 2.5)
         kernel.activateNuggetFactor(True)
         # a likelihood that is flat in some input ends by its number of calls; runs of the model
@@ -56,12 +57,12 @@ class Process:
         ot.Log.Show(0)
         fitted = self._fitted(x, y, kernel)
         kernel = fitted.getCovarianceModel()
-        if (
-            kernel.getAmplitude()[0] == 1.0
-        ):  # OpenTURNS 1.27 may leave it as given; the likeliest is this one
+        # OpenTURNS 1.27 may leave it as given; the likeliest is this one
+        if kernel.getAmplitude()[0] == 1.0:
             scaled = self._scaled(x)
             left = y - np.array(fitted.getMetaModel()(scaled))[:, 0]
-            square = left @ np.linalg.solve(np.array(kernel.discretize(scaled)), left) / y.size
+            correlation = np.array(kernel.discretize(scaled))
+            square = left @ np.linalg.solve(correlation, left) / y.size
             kernel.setAmplitude([np.sqrt(square)])
             fitted = self._fitted(x, y, kernel, optimize=False)
         regression = ot.GaussianProcessRegression(fitted)
@@ -80,13 +81,15 @@ class Process:
 
     def _scaled(self, x: Array) -> Any:
         used = self.width > 0
-        return self.sample(2.0 * (x[:, used] - self.low[used]) / self.width[used] - 1.0)
+        doubled = 2.0 * (x[:, used] - self.low[used])
+        return self.sample(doubled / self.width[used] - 1.0)
 
     def __call__(self, x: Array) -> tuple[Array, Array]:
         """Mean and deviation at points (m, k), shape (m,) each."""
         scaled = self._scaled(x)
         variance = np.array(self.covariance.getConditionalMarginalVariance(scaled))[:, 0]
-        return np.array(self.mean(scaled))[:, 0], np.sqrt(np.maximum(variance, 0.0))
+        mean = np.array(self.mean(scaled))[:, 0]
+        return mean, np.sqrt(np.maximum(variance, 0.0))
 
 
 @dataclass(frozen=True)
@@ -111,14 +114,11 @@ class Sampled:
 
     @property
     def variation(self) -> float:
-        """Coefficient of variation of the probability, from the scatter between the runs; 0 of one
-        run.
-        """
+        """Coefficient of variation of the probability between the runs; 0 of one run."""
         if self.estimates.size < 2 or not self.estimates.any():
             return 0.0
-        return float(
-            self.estimates.std(ddof=1) / self.estimates.mean() / np.sqrt(self.estimates.size)
-        )
+        relative = self.estimates.std(ddof=1) / self.estimates.mean()
+        return float(relative / np.sqrt(self.estimates.size))
 
     def interval(self, confidence: float = CONFIDENCE) -> tuple[float, float]:
         """Interval of the probability by the response."""
@@ -128,9 +128,7 @@ class Sampled:
 def _interval(
     value: float, variation: float, freedom: int, confidence: float
 ) -> tuple[float, float]:
-    """Interval of a lognormal estimate whose coefficient of variation was found with so many
-    degrees of freedom.
-    """
+    """Interval of a lognormal estimate, its variation known with so many degrees of freedom."""
     from scipy.special import stdtrit  # Student's quantile
 
     factor = stdtrit(max(freedom, 1), 0.5 + 0.5 * confidence)
@@ -150,8 +148,7 @@ def sample_event(
     samples: int = SAMPLES,
     repeats: int = REPEATS,
 ) -> Sampled:
-    """Subset simulation of the event that mean + deviation x (a standard normal number) is not
-    above the threshold.
+    """Subset simulation of: mean + deviation x (standard normal) is not above the threshold.
 
     Parameters
     ----------
@@ -168,13 +165,11 @@ def sample_event(
     # of each run so many as its share of the probability
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0x5A]))
     counts = [round(samples * share) for share in (estimates / estimates.sum()).tolist()]
-    points = np.concatenate(
-        [
-            rng.choice(likely, count)
-            for (_, likely), count in zip(runs, counts, strict=True)
-            if count and len(likely)
-        ]
-    )
+    drawn = []
+    for (_, likely), count in zip(runs, counts, strict=True):
+        if count and len(likely):
+            drawn.append(rng.choice(likely, count))
+    points = np.concatenate(drawn)
     mean, deviation = moments(points)
     return Sampled(estimates, points, ndtr((threshold - mean) / deviation))
 
@@ -182,14 +177,12 @@ def sample_event(
 def _simulate(
     moments: Moments, dimension: int, threshold: float, seed: int, samples: int
 ) -> tuple[float, Array]:
-    """Probability and points of one run of subset simulation; 0 and none where the event is not
-    met.
-    """
+    """Probability and points of one run of subset simulation; 0 and none without an event."""
     with needs("uncertainty"):
         import openturns as ot
 
-    def reserve(given: Any) -> Array:
-        z = np.array(given)
+    def reserve(sample: Any) -> Array:
+        z = np.array(sample)
         mean, deviation = moments(z[:, :-1])
         return (mean + deviation * z[:, -1])[:, None]
 
@@ -211,9 +204,8 @@ def _simulate(
             raise
         return 0.0, np.empty((0, dimension))
     last = subset.getStepsNumber() - 1
-    points = np.array(subset.getInputSample(last, ot.SubsetSampling.EVENT1)).reshape(
-        -1, dimension + 1
-    )[:, :-1]
+    sample = np.array(subset.getInputSample(last, ot.SubsetSampling.EVENT1))
+    points = sample.reshape(-1, dimension + 1)[:, :-1]
     return float(subset.getResult().getProbabilityEstimate()), points
 
 
@@ -225,8 +217,7 @@ def rates_given(
     draws: int = 400,
     inner: int = 100,
 ) -> Array:
-    """Probability of the event by what is common to all devices, for so many draws of it, shape
-    (draws,).
+    """Probability of the event by what is common to all devices, per draw of it, (draws,).
 
     The error of the response is one unknown for all devices too: each draw has its own, mean +
     deviation x (a standard normal number). The numbers of each device are drawn about the likeliest
@@ -245,27 +236,30 @@ def rates_given(
     def reserve(x: Array) -> Array:
         z = np.tile(shared, (1, x.shape[1], 1))
         z[..., ~common] = x
-        mean, deviation = (
-            part.reshape(x.shape[:2]) for part in moments(z.reshape(-1, common.size))
-        )
+        mean, deviation = moments(z.reshape(-1, common.size))
+        mean = mean.reshape(x.shape[:2])
+        deviation = deviation.reshape(x.shape[:2])
         return mean + deviation * error - threshold
 
     if common.all():
-        return (reserve(np.empty((draws, 1, 0)))[:, 0] <= 0.0).astype(float)
+        single = reserve(np.empty((draws, 1, 0)))
+        return (single[:, 0] <= 0.0).astype(float)
     likeliest = np.zeros((draws, 1, int((~common).sum())))
     for _ in range(3):
         x = rng.normal(size=(draws, inner, likeliest.shape[2]))
-        plane = np.linalg.pinv(np.concatenate([np.ones((draws, inner, 1)), x], axis=2))
-        level, *slope = np.moveaxis((plane @ reserve(likeliest + x)[..., None])[..., 0], 1, 0)
+        ones = np.ones((draws, inner, 1))
+        plane = np.linalg.pinv(np.concatenate([ones, x], axis=2))
+        fitted = (plane @ reserve(likeliest + x)[..., None])[..., 0]
+        level, *slope = np.moveaxis(fitted, 1, 0)
         slope = np.stack(slope, axis=-1)[:, None]
         steepness = np.maximum(np.linalg.norm(slope, axis=-1), 1e-9)
-        distance = (
-            level[:, None] - (slope * likeliest).sum(axis=-1)
-        ) / steepness  # of the plane from the middle
+        # of the plane from the middle
+        distance = (level[:, None] - (slope * likeliest).sum(axis=-1)) / steepness
         # further than 6.5 deviations, an event is rarer than `LEAST`
         likeliest = -(np.clip(distance, 0.0, 6.5) / steepness)[..., None] * slope
     x = likeliest + rng.normal(size=(draws, 4 * inner, likeliest.shape[2]))
-    weight = np.exp(0.5 * (likeliest**2).sum(axis=-1) - (x * likeliest).sum(axis=-1))
+    moved = (x * likeliest).sum(axis=-1)
+    weight = np.exp(0.5 * (likeliest**2).sum(axis=-1) - moved)
     return np.minimum((weight * (reserve(x) <= 0.0)).mean(axis=1), 1.0)
 
 
@@ -274,16 +268,12 @@ def quantiles_of(
 ) -> dict[str, dict[str, float]]:
     """Quantiles of rates, each between the order statistics that hold it with 95 %."""
     spread = 1.96 * np.sqrt([q * (1.0 - q) / rates.size for q in probabilities])
-    return {
-        f"{q:g}": dict(
-            zip(
-                ("value", "low", "high"),
-                np.quantile(rates, np.clip([q, q - e, q + e], 0.0, 1.0)).tolist(),
-                strict=True,
-            )
-        )
-        for q, e in zip(probabilities, spread.tolist(), strict=True)
-    }
+    result = {}
+    for q, error in zip(probabilities, spread.tolist(), strict=True):
+        orders = np.clip([q, q - error, q + error], 0.0, 1.0)
+        value, low, high = np.quantile(rates, orders).tolist()
+        result[f"{q:g}"] = {"value": value, "low": low, "high": high}
+    return result
 
 
 @dataclass(frozen=True)
@@ -329,7 +319,8 @@ def correct(
             0.0, 0.0, 3.0 / runs * sampled.probability, 0.0, sampled.probability, runs, 0
         )
     # one more run that differs keeps the scatter of few runs from being none
-    scatter = float(np.std(np.append(factors, 0.0), ddof=1)) / mean / np.sqrt(runs)
+    deviation = float(np.std(np.append(factors, 0.0), ddof=1))
+    scatter = deviation / mean / np.sqrt(runs)
     variation = float(np.hypot(scatter, sampled.variation))
     value = mean * sampled.probability
     low, high = _interval(value, variation, sampled.estimates.size - 1, confidence)

@@ -47,7 +47,9 @@ def sparse_chaos(
             f"{int(usable.sum())} usable runs for {inputs} inputs; at least {2 * inputs} are needed"
         )
     u = np.clip(scaled(x[usable], ranges), -1.0, 1.0)
-    target = np.log(y[usable]) if transform == "log" else y[usable]
+    target = y[usable]
+    if transform == "log":
+        target = np.log(target)
     # in units of its deviation, because LARS stops at absolute tolerances
     centre = target.mean()
     width = target.std() or 1.0
@@ -60,26 +62,27 @@ def sparse_chaos(
     basis = ot.OrthogonalProductPolynomialFactory(
         [ot.LegendreFactory()] * len(varying), enumerate_terms
     )
-    most = max(2, int(0.8 * usable.sum()))
-    size = min(enumerate_terms.getBasisSizeFromTotalDegree(degree), most)
+    most_terms = max(2, int(0.8 * usable.sum()))
+    size = min(enumerate_terms.getBasisSizeFromTotalDegree(degree), most_terms)
     selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
+    standard = (target - centre) / width + MEAN
+    uniform = ot.JointDistribution([ot.Uniform(-1, 1)] * len(varying))
     chaos = ot.FunctionalChaosAlgorithm(
         ot.Sample(u[:, varying]),
-        ot.Sample(((target - centre) / width + MEAN)[:, None]),
-        ot.JointDistribution([ot.Uniform(-1, 1)] * len(varying)),
+        ot.Sample(standard[:, None]),
+        uniform,
         ot.FixedStrategy(basis, size),
         ot.LeastSquaresStrategy(selection),
     )
     chaos.run()
     chosen = [int(k) for k in chaos.getResult().getIndices()]
     degrees = np.zeros((len(chosen), inputs), int)
-    degrees[:, varying] = np.array([list(enumerate_terms(k)) for k in chosen], int).reshape(
-        -1, len(varying)
-    )
+    terms = np.array([list(enumerate_terms(k)) for k in chosen], int)
+    degrees[:, varying] = terms.reshape(-1, len(varying))
     # an input that the selection left out would have an index of zero with an interval of no width
-    kept = [np.zeros(inputs, int), *np.eye(inputs, dtype=int)[varying]]
-    missing = [term for term in kept if not (degrees == term).all(axis=1).any()]
-    if len(degrees) + len(missing) > most:
+    needed = [np.zeros(inputs, int), *np.eye(inputs, dtype=int)[varying]]
+    missing = [term for term in needed if not (degrees == term).all(axis=1).any()]
+    if len(degrees) + len(missing) > most_terms:
         missing = [term for term in missing if not term.any()]  # few runs: the constant alone
     return refit(u, target, ranges, np.vstack([*missing, degrees]), transform)
 
@@ -97,6 +100,7 @@ def refit(
     matrix = basis_matrix(u, degrees)
     coefficients = np.asarray(np.linalg.lstsq(matrix, target, rcond=None)[0], float)
     if transform == "log":
-        shift = np.log(np.exp(target).mean() / np.exp(matrix @ coefficients).mean())
+        ratio = np.exp(target).mean() / np.exp(matrix @ coefficients).mean()
+        shift = np.log(ratio)
         coefficients = coefficients + np.where(degrees.sum(axis=1) == 0, shift, 0.0)
     return Surrogate(ranges, degrees, coefficients, transform)

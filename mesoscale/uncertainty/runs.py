@@ -1,6 +1,4 @@
-"""Runs of the contact model: which inputs and seed each has, computing them, and the law of
-each.
-"""
+"""Runs of the contact model: inputs and seed of each, computing them, and the law of each."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -61,7 +59,8 @@ def compute_rows(
         else:
             outcome = fit_cycle(cycle)
             touch = cycle.first_contact_nm
-        row: dict[str, float | int | str] = {"run": run.index, "seed": run.seed, **run.values}
+        row: dict[str, float | int | str] = {"run": run.index, "seed": run.seed}
+        row |= run.values
         for branch, fit in (("closing", outcome.closing), ("opening", outcome.opening)):
             for name, value in zip(PARAMETERS, fit.parameters.tolist(), strict=True):
                 row[f"{branch}_{name}"] = value if np.isfinite(value) else ""
@@ -100,8 +99,7 @@ def monte_carlo(
     seed: int = 1,
     progress: Callable[[float, str], None] | None = None,
 ) -> MonteCarlo:
-    """Close and open `samples` random surfaces, each with its own draw of the inputs, and fit the
-    law to each.
+    """Close and open `samples` random surfaces, each with a draw of the inputs; fit the law.
 
     Samples whose cycle or fit failed are left out and counted. More samples extend fewer ones of
     the same seed.
@@ -114,25 +112,26 @@ def monte_carlo(
     if isinstance(samples, bool) or not isinstance(samples, int) or samples < 1:
         raise InputError(f"samples = {samples!r}: accepted is a whole number >= 1")
     runs = random_runs(table, 0, samples, seed)
-    kept = []
+    drawn = []
     parameters = []
     failed = []
     for run, cycle in compute_all(runs, contact, progress):
         outcome = Outcome(NO_FIT, NO_FIT, cycle) if isinstance(cycle, str) else fit_cycle(cycle)
         pair = np.stack([outcome.closing.parameters, outcome.opening.parameters])
         if outcome.status == "ok" and np.isfinite(pair).all():
-            kept.append(list(run.values.values()))
+            drawn.append(list(run.values.values()))
             parameters.append(pair)
         else:
             reasons = [outcome.status, outcome.closing.status, outcome.opening.status]
             failed.append(next(reason for reason in reasons if reason != "ok"))
-    if not kept:
+    if not drawn:
         raise InputError(
             f"none of {samples} samples gave a law: {'; '.join(dict.fromkeys(failed))}"
         )
-    inputs = dict(zip(table.names, np.array(kept).T, strict=True))
-    closing, opening = (
-        Law(**dict(zip(PARAMETERS, columns, strict=True)), hamaker=inputs["hamaker"])
-        for columns in np.stack(parameters).transpose(1, 2, 0)
-    )
+    inputs = dict(zip(table.names, np.array(drawn).T, strict=True))
+    laws = []
+    for columns in np.stack(parameters).transpose(1, 2, 0):
+        by_name = dict(zip(PARAMETERS, columns, strict=True))
+        laws.append(Law(**by_name, hamaker=inputs["hamaker"]))
+    closing, opening = laws
     return MonteCarlo(inputs, closing, opening, tuple(failed))

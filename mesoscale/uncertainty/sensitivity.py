@@ -1,6 +1,4 @@
-"""Which input matters: elementary effects (the paper's Table 3) and Sobol' indices with
-intervals.
-"""
+"""Which input matters: elementary effects (Table 3) and Sobol' indices with intervals."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -102,20 +100,24 @@ def sensitivity_rows(
         lines = y[np.isfinite(y[:, :, k]).all(axis=1), :, k]
         effects = np.array([elementary_effects(line) for line in lines]).reshape(-1, inputs)
         for i, row in enumerate(table.rows):
-            mu_star = effects[:, i].mean() if len(effects) else np.nan
-            scatter = effects[:, i].std(ddof=1) if len(effects) > 1 else np.nan
+            mu_star = np.nan
+            scatter = np.nan
+            if len(effects):
+                mu_star = effects[:, i].mean()
+            if len(effects) > 1:
+                scatter = effects[:, i].std(ddof=1)
             line = {"output": output.name, "input": row.name, "unit": output.unit}
             line |= {"mu_star": mu_star, "mu_star_seed_sd": scatter}
             for label, tables in (("", paper), ("_as_printed", paper_as_printed)):
                 theirs = tables.get(output.short, {}).get(row.name, np.nan)
                 line[f"paper_mu_star{label}"] = theirs
-                line[f"difference_in_seed_sd{label}"] = (
-                    (mu_star - theirs) / scatter if scatter else np.nan
-                )
+                difference = np.nan
+                if scatter:
+                    difference = (mu_star - theirs) / scatter
+                line[f"difference_in_seed_sd{label}"] = difference
             for name, indices in (("sobol_first", first), ("sobol_total", total)):
-                line |= dict(
-                    zip((name, f"{name}_low", f"{name}_high"), indices[:, k, i], strict=True)
-                )
+                estimate, low, high = indices[:, k, i]
+                line |= {name: estimate, f"{name}_low": low, f"{name}_high": high}
             rows.append({**line, "seed_share": seed_share[k], "seeds_used": len(lines)})
     return rows
 
@@ -123,8 +125,7 @@ def sensitivity_rows(
 def index_intervals(
     responses: Sequence[Response | None], direct: Direct, table: InputTable
 ) -> tuple[Array, Array]:
-    """First-order and total indices of the outputs: estimate, lower and upper end, shape (3,
-    len(OUTPUTS), n).
+    """First-order and total indices: estimate, lower and upper end, (3, len(OUTPUTS), n).
 
     Parameters
     ----------
@@ -138,19 +139,17 @@ def index_intervals(
     for _ in range(SOBOL_RESAMPLES):
         # other samples as well: heavy tails make the estimators themselves uncertain
         again = points[:, rng.integers(points.shape[1], size=points.shape[1])]
-        picks = (
-            rng.integers(len(direct[0]), size=len(direct[0]))
-            if len(direct[0])
-            else np.empty(0, int)
-        )
-        resampled.append(
-            response_indices(again, _refitted(responses, direct[0][picks], outputs[picks]))
-        )
-    ends = np.full((2, *estimate.shape), np.nan)
+        picks = np.empty(0, int)
+        if len(direct[0]):
+            picks = rng.integers(len(direct[0]), size=len(direct[0]))
+        refitted = _refitted(responses, direct[0][picks], outputs[picks])
+        resampled.append(response_indices(again, refitted))
+    bounds = np.full((2, *estimate.shape), np.nan)
     draws = np.array(resampled)
     known = np.isfinite(draws).all(axis=0)
-    ends[:, known] = np.quantile(draws[:, known], [0.05, 0.95], axis=0)
-    first, total = (np.stack([estimate[j], ends[0, j], ends[1, j]]) for j in (0, 1))
+    bounds[:, known] = np.quantile(draws[:, known], [0.05, 0.95], axis=0)
+    first = np.stack([estimate[0], bounds[0, 0], bounds[1, 0]])
+    total = np.stack([estimate[1], bounds[0, 1], bounds[1, 1]])
     return first, total
 
 
@@ -162,23 +161,24 @@ def response_indices(points: Array, responses: Sequence[Response | None]) -> Arr
     points : of `pick_freeze`, shape (n + 2, count, n).
     """
     inputs = points.shape[2]
-    y = evaluate(responses, points.reshape(-1, inputs)).reshape(inputs + 2, -1, len(OUTPUTS))
-    return np.stack(
-        [sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(len(OUTPUTS))], axis=1
-    )
+    y = evaluate(responses, points.reshape(-1, inputs))
+    y = y.reshape(inputs + 2, -1, len(OUTPUTS))
+    indices = [sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(len(OUTPUTS))]
+    return np.stack(indices, axis=1)
 
 
 def _refitted(responses: Sequence[Response | None], x: Array, y: Array) -> list[Surrogate | None]:
-    """The regression responses with their terms kept and their coefficients fitted to other
-    runs.
-    """
+    """The regression responses with their terms and coefficients fitted to other runs."""
     again: list[Surrogate | None] = []
     for k, response in enumerate(responses):
         if not isinstance(response, Surrogate):
             again.append(None)
             continue
-        usable = np.isfinite(y[:, k]) & ((y[:, k] > 0) | (response.transform == "identity"))
+        positive = (y[:, k] > 0) | (response.transform == "identity")
+        usable = np.isfinite(y[:, k]) & positive
         u = np.clip(scaled(x[usable], response.ranges), -1, 1)
-        target = np.log(y[usable, k]) if response.transform == "log" else y[usable, k]
+        target = y[usable, k]
+        if response.transform == "log":
+            target = np.log(target)
         again.append(refit(u, target, response.ranges, response.degrees, response.transform))
     return again

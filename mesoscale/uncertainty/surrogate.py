@@ -11,12 +11,11 @@ Array = NDArray[np.float64]
 
 
 def legendre(u: Array, highest: int) -> Array:
-    """Legendre polynomials P_0 .. P_highest (P_n(1) = 1), shape (highest + 1, ...) with that of
-    u.
-    """
+    """Legendre polynomials P_0 .. P_highest (P_n(1) = 1), (highest + 1, ...) of u."""
     values = [np.ones_like(u), u]
     for n in range(1, highest):
-        values.append(((2 * n + 1) * u * values[n] - n * values[n - 1]) / (n + 1))
+        rising = (2 * n + 1) * u * values[n]
+        values.append((rising - n * values[n - 1]) / (n + 1))
     return np.stack(values[: highest + 1])
 
 
@@ -32,7 +31,8 @@ def basis_matrix(u: Array, degrees: NDArray[np.int_]) -> Array:
     -------
     shape (m, terms).
     """
-    powers = legendre(np.ascontiguousarray(u.T), max(1, int(degrees.max(initial=0))))
+    highest = max(1, int(degrees.max(initial=0)))
+    powers = legendre(np.ascontiguousarray(u.T), highest)
     columns = np.ones((len(degrees), len(u)))
     # most terms are of one or two inputs
     for term, k in zip(*np.nonzero(degrees), strict=True):
@@ -41,19 +41,17 @@ def basis_matrix(u: Array, degrees: NDArray[np.int_]) -> Array:
 
 
 def scaled(x: Array, ranges: Array) -> Array:
-    """Inputs (m, n), of ranges (n, 2), in -1 .. 1, and beyond where they leave them; an input of no
-    width gives 0.
-    """
+    """Inputs (m, n), of ranges (n, 2), in -1 .. 1 and beyond; an input of no width gives 0."""
     low = ranges[:, 0]
     high = ranges[:, 1]
     width = high - low
-    return np.where(width > 0, 2 * (x - low) / np.where(width > 0, width, 1.0) - 1, 0.0)
+    divisor = np.where(width > 0, width, 1.0)
+    return np.where(width > 0, 2 * (x - low) / divisor - 1, 0.0)
 
 
 @dataclass(frozen=True)
 class Surrogate:
-    """y = transform( sum_t coefficient_t prod_k P_{degree_tk}(u_k) ), u = 2 (x - low)/(high - low)
-    - 1.
+    """y = transform( sum_t coefficient_t prod_k P_{degree_tk}(u_k) ), u = -1 .. 1 over the range.
 
     Attributes
     ----------
@@ -70,16 +68,16 @@ class Surrogate:
 
     def __call__(self, x: Array) -> Array:
         """Output at inputs x of shape (m, n)."""
-        total = (
-            basis_matrix(scaled(np.atleast_2d(x), self.ranges), self.degrees) @ self.coefficients
-        )
-        return np.exp(total) if self.transform == "log" else total
+        matrix = basis_matrix(scaled(np.atleast_2d(x), self.ranges), self.degrees)
+        total = matrix @ self.coefficients
+        if self.transform == "log":
+            return np.exp(total)
+        return total
 
 
 @dataclass(frozen=True)
 class Below:
-    """y = above - drop, a response that nowhere exceeds another one: the drop is the exponential of
-    a sum.
+    """y = above - drop, which nowhere exceeds `above`: the drop is the exponential of a sum.
 
     Attributes
     ----------
@@ -105,21 +103,20 @@ Response = Surrogate | Below
 
 def evaluate(responses: Sequence[Callable[[Array], Array] | None], x: Array) -> Array:
     """Responses at inputs x (m, n), shape (m, responses); NaN where there is no response."""
-    return np.stack(
-        [response(x) if response else np.full(len(x), np.nan) for response in responses], axis=1
-    )
+    columns = []
+    for response in responses:
+        columns.append(response(x) if response else np.full(len(x), np.nan))
+    return np.stack(columns, axis=1)
 
 
 def to_json(response: Response) -> dict[str, Any]:
     """The response as plain values; docs/uncertainty.md has a ten-line reader."""
-    surrogate = response.drop if isinstance(response, Below) else response
-    return {
-        **({"below": response.above_name} if isinstance(response, Below) else {}),
-        "transform": surrogate.transform,
-        "terms": [
-            {"degrees": degrees, "coefficient": coefficient}
-            for degrees, coefficient in zip(
-                surrogate.degrees.tolist(), surrogate.coefficients.tolist(), strict=True
-            )
-        ],
-    }
+    content: dict[str, Any] = {}
+    if isinstance(response, Below):
+        content["below"] = response.above_name
+        response = response.drop
+    content["transform"] = response.transform
+    degrees = response.degrees.tolist()
+    pairs = zip(degrees, response.coefficients.tolist(), strict=True)
+    content["terms"] = [{"degrees": term, "coefficient": value} for term, value in pairs]
+    return content

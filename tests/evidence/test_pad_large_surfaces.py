@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from evidence.pad.large_surfaces import SIDE, comparison_rows
-from mesoscale.pad.cells import PadGrid
-from mesoscale.pad.curves import PadCells
+from mesoscale.pad.closing import PadCells
+from mesoscale.pad.grid import PadGrid
 
 SEPARATION = np.linspace(60.0, 20.0, 81)
 

@@ -265,17 +265,20 @@ def _law_band(root: Path) -> None:
 
 
 def _pad(root: Path) -> None:
+
     from asperity.guards.bundle import ROOT
     from asperity.guards.foreign_yaml import load_mapping
     from evidence.pad.closed_form import ClosedForm
     from mesoscale.answer.budget import budget, effects_of
-    from mesoscale.answer.points import Design, Pad, PadModel, Point, Solved
+    from mesoscale.answer.points import Design, Point
     from mesoscale.answer.release import switch_on_pad
-    from mesoscale.pad.cells import PadGrid
-    from mesoscale.pad.curves import PadCells
-    from mesoscale.pad.memory import Flats, curve_rows
+    from mesoscale.answer.switches import PadModel, Solved
+    from mesoscale.pad.closing import PadCells
+    from mesoscale.pad.curves import Flats
+    from mesoscale.pad.grid import PadGrid
+    from mesoscale.pad.pressed import Pad, curve_rows
     from mesoscale.settings import DeviceSettings
-    from mesoscale.switch.electrode import solve_deepened
+    from mesoscale.switch import switch_of
 
     area, flats = 1e6, Flats(0.215, 0.165)
     separation = np.concatenate([np.geomspace(200, 50, 8)[:-1], np.arange(50, 19.9, -0.25)])
@@ -297,10 +300,10 @@ def _pad(root: Path) -> None:
         grid, np.full(24, 1 / 24), np.ones(24), 40 - shifts, closing, opening, np.ones(24, bool)
     )
     pad = Pad(cells, flats)
-    _write(root / "pad/curves.csv", curve_rows(cells, pad.law))
-    states = solve_deepened(DeviceSettings(), pad.law)
+    _write(root / "pad/curves.csv", curve_rows(pad))
+    states = switch_of(DeviceSettings()).states(pad.curves)
     central = Solved(
-        Point({}, 0.165, DeviceSettings()), pad, states, (states["release_V"], states["release_V"])
+        Point({}, 0.165, DeviceSettings()), pad, states, (states.release_V, states.release_V)
     )
     model = PadModel(central, Design((), (), np.empty((0, 0)), np.arange(0), ()), ())
     switch = switch_on_pad(model, area)

@@ -4,10 +4,12 @@ word.
 
 import numpy as np
 
-from mesoscale.answer.points import Pad, PadModel, Solved
+from mesoscale.answer.switches import PadModel, Solved
 from mesoscale.inputs.table import to_rows
-from mesoscale.pad.memory import Flats
+from mesoscale.pad.curves import Flats
+from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.switch import States
 from tests.mesoscale.answer.test_release import MIDDLE, SEPARATION, TABLE, cells_of
 from workflow.files.results import write_csv
 from workflow.report.early import STATUS, early_page
@@ -20,7 +22,7 @@ def test_the_switch_at_central_inputs_has_a_page(tmp_path):
     pad = Pad(
         cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165)
     )
-    states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "deepened": 0.0}
+    states = States(pull_in_V=70.0, release_V=6.0, capacitance_fF=8e3)
     central = PadModel(Solved(points.by_number[0], pad, states, (5.9, 6.1)), points.design, ())
     root = tmp_path / "results/mine"
     write_csv(root / "inputs.csv", to_rows(TABLE))

@@ -1,12 +1,16 @@
 """pad/model.h5: what is written is what is read."""
 
+from dataclasses import replace
+
 import h5py
 import numpy as np
 import pytest
 
-from mesoscale.answer.points import Pad, Solved
-from mesoscale.pad.memory import Flats
+from mesoscale.answer.switches import Solved
+from mesoscale.pad.curves import Flats
+from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.switch import States
 from tests.mesoscale.answer.test_release import MIDDLE, SEPARATION, TABLE, cells_of
 from workflow.run.pads import CURVES, STATES, ScenePoints, UnfitModel, load_model, write_solved
 
@@ -17,13 +21,13 @@ def test_a_model_comes_back_from_its_file_and_from_its_parts(tmp_path):
     pad = Pad(
         cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165)
     )
-    states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "deepened": 0.0}
+    states = States(pull_in_V=70.0, release_V=6.0, capacitance_fF=8e3)
     solved = {
         0: Solved(points.by_number[0], pad, states, (5.9, 6.1)),
         1: Solved(
-            points.by_number[1], None, {}, (np.nan, np.nan), "the cells never reach the pressure"
+            points.by_number[1], None, None, (np.nan, np.nan), "the cells never reach the pressure"
         ),
-        2: Solved(points.by_number[2], pad, states | {"release_V": 0.0}, (np.nan, 0.0)),
+        2: Solved(points.by_number[2], pad, replace(states, release_V=0.0), (np.nan, 0.0)),
     }
     whole, parts = tmp_path / "model.h5", [tmp_path / "a.h5", tmp_path / "b.h5"]
     write_solved(str(whole), solved, {}, points.design)
@@ -106,7 +110,7 @@ def test_a_forged_model_is_refused_in_one_line(tmp_path, name):
     pad = Pad(
         cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165)
     )
-    states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "deepened": 0.0}
+    states = States(pull_in_V=70.0, release_V=6.0, capacitance_fF=8e3)
     path = str(tmp_path / "model.h5")
     solved = {0: Solved(points.by_number[0], pad, states, (5.9, 6.1))}
     solved[1] = Solved(points.by_number[1], pad, states, (5.9, 6.1))

@@ -6,19 +6,13 @@ from pathlib import Path
 import pytest
 
 from evidence.pad.rare_failures import known_pad
-from mesoscale.answer import points
-from mesoscale.answer.points import (
-    Pad,
-    PadModel,
-    central_point,
-    cutoff_range,
-    plan_points,
-    solve_point,
-    solve_points,
-)
+from mesoscale.answer import switches as answer_switches
+from mesoscale.answer.points import central_point, cutoff_range, plan_points
+from mesoscale.answer.switches import PadModel, solve_point, solve_points
 from mesoscale.circuit import switches
 from mesoscale.circuit.switches import spread_switches
 from mesoscale.inputs.table import film_table
+from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
 from tests.mesoscale.answer.test_release import cells_of, table
 from workflow.files.results import load_csv, write_csv
@@ -179,10 +173,10 @@ def test_switches_for_circuits_fit_their_table_whatever_their_inputs(
     """
 
     def press_pad(point, contact, cells, first_seed, **_):
-        law = known_pad(point).law
+        law = known_pad(point).curves
         return Pad(cells_of(law, 0.0), law.flats)
 
-    for module in (switches, points):
+    for module in (switches, answer_switches):
         monkeypatch.setattr(module, "press_pad", press_pad)
     contact, device = ContactSettings(mechanics="asperity"), DeviceSettings()
     of_pad = film_table(table(**rows), {}, scatter)

@@ -5,8 +5,8 @@ takes its place.
 from pathlib import Path
 from typing import Any
 
-from mesoscale.answer.points import PadModel
 from mesoscale.answer.release import switch_on_pad
+from mesoscale.answer.switches import PadModel
 from workflow.report.available import Results
 from workflow.report.render import render
 

@@ -207,19 +207,19 @@ def _device(results: Results) -> str:
     device = DeviceSettings(**results.record["scene"]["device"])
     rough = "".join(f"l4 {3 * (-1) ** k * (1 + k * 7 % 3) / 2:g}" for k in range(70))
     anchors = "M10 40h12v110H10zM378 40h12v110h-12z"
-    if device.ends == "cantilever" and device.bends:
-        anchors = "M10 40h12v110H10z"
-        metal = '<path class="metal" d="M20 40h30q110 0 190 50q50 20 100 20"/>'
-        size = f"cantilever of {device.length_um:g} × {device.width_um:g} µm"
-    elif device.bends:
-        metal = '<path class="metal" d="M20 40h30q25 0 60 46q20 24 90 24t90-24q35-46 60-46h30"/>'
-        size = f"beam of {device.length_um:g} × {device.width_um:g} µm, bending"
-    else:
+    if device.kind == "plate":
         metal = (
             '<path class="metal" d="M90 110h220"/><path class="rest" d="M200 30v10l-8 5 16'
             ' 8-16 8 16 8-16 8 8 5v28"/>'
         )
         size = f"plate on a spring of {show(device.spring_N_per_m)} N/m"
+    elif device.ends == "cantilever":
+        anchors = "M10 40h12v110H10z"
+        metal = '<path class="metal" d="M20 40h30q110 0 190 50q50 20 100 20"/>'
+        size = f"cantilever of {device.length_um:g} × {device.width_um:g} µm"
+    else:
+        metal = '<path class="metal" d="M20 40h30q25 0 60 46q20 24 90 24t90-24q35-46 60-46h30"/>'
+        size = f"beam of {device.length_um:g} × {device.width_um:g} µm, bending"
     hold = (
         f"held at {device.hold_voltage_V:g} V"
         if device.hold_voltage_V

@@ -8,24 +8,22 @@ import numpy as np
 
 from mesoscale.answer.points import (
     Design,
-    Pad,
-    PadModel,
     Point,
-    Solved,
     central_point,
     cutoff_range,
     on_pad_grid,
     plan_points,
-    press_pad,
-    surfaces_of,
 )
+from mesoscale.answer.switches import PadModel, Solved, press_pad, surfaces_of
 from mesoscale.failure.population import Population
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import film_table, from_rows
-from mesoscale.pad.cells import PadGrid
-from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import Flats
+from mesoscale.pad.closing import PadCells
+from mesoscale.pad.curves import Flats
+from mesoscale.pad.grid import PadGrid
+from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, DeviceSettings, FailureSettings, PadSettings
+from mesoscale.switch import States
 from workflow.files.results import Dataset, load_csv, load_h5, load_json, write_h5
 from workflow.run.contact_settings import contact_settings
 from workflow.run.job import settings_from_job
@@ -68,7 +66,7 @@ def write_solved(
         groups[name] = {} if one.pad is None else _curves(one.pad.cells)
         device = one.point.device.model_dump(mode="json", exclude={"spread"})
         attributes[name] = {
-            **one.states,
+            **(one.states.numbers if one.states else {}),
             "halves_V": one.halves_V,
             "refused": one.refused,
             "inputs": one.point.values,
@@ -282,7 +280,10 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
                 curves["settled"].astype(bool),
             )
             pad = Pad(cells, Flats(float(said["hamaker"]), float(said["offset_nm"])))
-        states = {key: float(said[key]) for key in STATES if key in said}
+        states = None
+        if not said["refused"]:
+            pull_in_V, release_V, capacitance_fF, deepened = (float(said[key]) for key in STATES)
+            states = States(pull_in_V, release_V, capacitance_fF, bool(deepened))
         first, second = (float(value) for value in said["halves_V"])
         yield number, Solved(points[number], pad, states, (first, second), str(said["refused"]))
 

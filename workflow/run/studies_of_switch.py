@@ -43,7 +43,9 @@ def stability_of_answer(snakemake: Any, progress: Progress) -> Iterator[StudyRow
     """Hard beams, and the scene's device at its extremes."""
     points, _ = points_of_job(snakemake)
     central = load_model([snakemake.input.model], points).central
-    return stability_rows(answer_stability.hard_cases(points.device, central.pressed.law), progress)
+    return stability_rows(
+        answer_stability.hard_cases(points.device, central.pressed.curves), progress
+    )
 
 
 def accuracy_of_circuit(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
@@ -56,7 +58,7 @@ def stability_of_circuit(snakemake: Any, progress: Progress) -> Iterator[StudyRo
     """Hard beams as lumps, and hard pads as tables."""
     points, _ = points_of_job(snakemake)
     central = load_model([snakemake.input.model], points).central
-    cases = circuit_stability.hard_cases(central.point, points.on_grid, central.pressed.law)
+    cases = circuit_stability.hard_cases(central.point, points.on_grid, central.pressed.curves)
     return stability_rows(cases, progress)
 
 

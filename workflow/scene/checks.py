@@ -182,14 +182,14 @@ def _no_switch(device: DeviceSettings) -> str:
         "dimple_nm",
         "spread",
     }
-    if device.touching_at_rest or not device.bends or not unusual & device.model_fields_set:
+    if device.touching_at_rest or not unusual & device.model_fields_set:
         return device.touching_at_rest
     from mesoscale.answer.spread import check_spread
-    from mesoscale.switch.pressing import never_closes, pull_in_V  # takes a second
+    from mesoscale.switch import never_closes, switch_of  # takes a second
 
     try:
         check_spread(device)
-        return never_closes(device, pull_in_V(device))
+        return never_closes(device, switch_of(device).pull_in_V)
     except InputError as error:
         return str(error)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from asperity.guards.foreign_yaml import load_mapping
 from mesoscale.answer.budget import TWIN, budget, effects_of, with_twins
-from mesoscale.answer.by_hardness import release_by_hardness
+from mesoscale.answer.other_devices import release_by_hardness
 from mesoscale.answer.release import switch_on_pad
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.verilog import verilog_pad
@@ -21,8 +21,8 @@ with job(snakemake) as run:
     points, settings = points_of_job(snakemake)
     model = load_model([snakemake.input.model], points)
     pad = model.central.pressed
-    write_text(snakemake.output.verilog, verilog_pad(pad.law, pad.cells.count))
-    write_text(snakemake.output.spice, spice_pad(pad.law, pad.cells.count))
+    write_text(snakemake.output.verilog, verilog_pad(pad.curves, pad.cells.count))
+    write_text(snakemake.output.spice, spice_pad(pad.curves, pad.cells.count))
     switch = switch_on_pad(model, points.contact.length_nm**2)
     write_json(snakemake.output.switch, switch, run.provenance)
     effects = effects_of(load_mapping(Path(snakemake.input.effects), "table of effects"))
@@ -35,7 +35,7 @@ with job(snakemake) as run:
     factors = [effect.hardness for effect in effects.values() if effect.hardness is not None]
     central = model.central.point
     releases = release_by_hardness(central, points.on_grid, settings.point_cells, factors)
-    errors = list(of_switch(central, points.on_grid, settings.point_cells, pad.law))
+    errors = list(of_switch(central, points.on_grid, settings.point_cells, pad.curves))
     write_csv(snakemake.output.errors, ({"stage": "answer", **row} for row in errors))
     errors_V = {row["knob"]: row["release_V"] for row in errors}
     write_csv(snakemake.output.budget, budget(effects, switch, model.central, releases, errors_V))

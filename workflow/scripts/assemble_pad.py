@@ -4,7 +4,7 @@ In: inputs.csv, pad/points/*.h5 (GPa against nm; V). Out: pad/model.h5, pad/inpu
 film's typical place, and how much places differ), pad/curves.csv (MPa against nm)."""
 
 from mesoscale.inputs.table import to_rows
-from mesoscale.pad.memory import curve_rows
+from mesoscale.pad.pressed import curve_rows
 from workflow.files.results import write_csv
 from workflow.run.job import job
 from workflow.run.pads import load_model, points_of_job, write_solved
@@ -20,4 +20,4 @@ with job(snakemake) as run:
         run.provenance,
         points.design,
     )
-    write_csv(snakemake.output.table, curve_rows(pad.cells, pad.law))
+    write_csv(snakemake.output.table, curve_rows(pad))

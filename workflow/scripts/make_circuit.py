@@ -18,7 +18,7 @@ with job(snakemake) as run:
     points, _ = points_of_job(snakemake)
     model = load_model([snakemake.input.model], points)
     pad = model.central.pressed
-    central, errors = central_switch(points.device, pad.law)
+    central, errors = central_switch(points.device, pad.curves)
     spread = spread_switches(model, points.table, points.on_grid, points.cutoffs_nm, errors.lumps)
     run.progress(0.5, "draws and corners")
     write_csv(
@@ -32,6 +32,6 @@ with job(snakemake) as run:
             lumps_of(switch.settings, errors.lumps),
             Path(snakemake.output.models) / switch.row["switch"],
         )
-        netlist = spice_switch(lumps, errors, switch.law, pad.cells.count, switch.row["pull_in_V"])
+        netlist = spice_switch(lumps, errors, switch.pad, pad.cells.count, switch.row["pull_in_V"])
         write_text(path.with_suffix(".sub"), netlist)
-        write_text(path.with_suffix(".va"), verilog_lump(lumps, switch.law, pad.cells.count))
+        write_text(path.with_suffix(".va"), verilog_lump(lumps, switch.pad, pad.cells.count))

@@ -5,7 +5,7 @@ inputs, whose job also writes report.html, as far as it is known then."""
 
 from pathlib import Path
 
-from mesoscale.answer.points import PadModel, solve_point, solve_points, surfaces_of
+from mesoscale.answer.switches import PadModel, solve_point, solve_points, surfaces_of
 from workflow.files.results import write_text
 from workflow.run.job import job
 from workflow.run.pads import points_of_job, write_solved

@@ -1,3 +1,1 @@
-"""Contact of rough surfaces whose asperities carry load each on its own, as in the paper
-(docs/contact.md).
-"""
+"""Contact of asperities that carry load each on its own, as in the paper (docs/contact.md)."""

@@ -28,19 +28,20 @@ class AsperityContact(Contact):
         numerics: Numerics = NUMERICS,
     ):
         super().__init__(surface, inputs, settings, numerics)
+        reading = settings.reading
         self.mechanics = state.Mechanics(
-            PREFACTOR[settings.reading.prefactor] * inputs.e_star,
+            PREFACTOR[reading.prefactor] * inputs.e_star,
             self.hardness,
             self.site_area,
-            settings.reading.radius == "curvature",
-            settings.reading.area == "sites",
+            reading.radius == "curvature",
+            reading.area == "sites",
         )
         self.rule = state.FlowRule(
             numerics.flow == "increment",
             numerics.flow_increment_nm,
             numerics.flow_width_nm,
             numerics.flow_floor_pixels * self.spacing,
-            WIDTH_RATIO[settings.reading.flow_pair],
+            WIDTH_RATIO[reading.flow_pair],
             self.tolerance,
             numerics.max_sweeps,
         )
@@ -73,7 +74,8 @@ class AsperityContact(Contact):
             self.changes.used[0],
         )
         self.pointer = stop
-        sweeps, settled = 0, True
+        sweeps = 0
+        settled = True
         if with_flow:
             sweeps, settled = kernels.settle(
                 self.heights,
@@ -108,28 +110,24 @@ class AsperityContact(Contact):
         if self.adhesion is None:
             return 0.0
         self.adhesion.take_out(self.changes)
-        self._sort_to(
-            min(self.adhesion.near_nm - separation + 2.0 * self.adhesion.bin_width, self.highest)
-        )
+        near_nm = self.adhesion.near_nm - separation + 2.0 * self.adhesion.bin_width
+        self._sort_to(min(near_nm, self.highest))
         force = self.adhesion.undeformed(
             self.heights, separation, self.order, self.order_heights, self.changes, self.changed
         )
-        return (
-            force
-            if self.adhesion.menisci is None
-            else force + self._liquid(self.adhesion, separation)
-        )
+        if self.adhesion.menisci is None:
+            return force
+        return force + self._liquid(self.adhesion, separation)
 
     def _liquid(self, law: Attraction, separation: float) -> float:
         """What liquid adds to the attraction, nN."""
         far, edge = law.far_edge(law.near_nm, separation)
-        near = (
-            self.order
-            if far == len(law.moments)
-            else self.order[: np.searchsorted(self.order_heights, edge)]
-        )
+        near = self.order
+        if far < len(law.moments):
+            near = near[: np.searchsorted(self.order_heights, edge)]
         moved = self.changes.sites[: self.changed_sites]
         gap = self.heights[np.concatenate((near[self.changed[near] == 0], moved))] + separation
-        return law.liquid(
-            gap, np.ones_like(gap) if law.touching else (gap >= 0.0).astype(float), separation, far
-        )
+        weight = np.ones_like(gap)
+        if not law.touching:
+            weight = (gap >= 0.0).astype(float)
+        return law.liquid(gap, weight, separation, far)

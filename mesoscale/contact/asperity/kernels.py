@@ -1,5 +1,4 @@
-"""Compiled loops: which sites touch and belong together, asperities' forces, plastic flow (section
-2.2).
+"""Compiled loops: which sites touch and belong together, forces, plastic flow (section 2.2).
 
 A site touches where h < level, with level = -separation. Connected touching sites (periodic, 8
 neighbours) form an asperity. The set is kept up to date locally: sites that come into contact start
@@ -17,9 +16,7 @@ REACH = 3.0  # a flow ends 3 s2 away from the peak, at 1 % of the second Gaussia
 
 @njit(cache=True, inline="always")
 def site_curvature(height, north, south, west, east, spacing):
-    """Mean of the two profile curvatures at a site, 1/nm; positive at a minimum (eq. 2 as
-    corrected).
-    """
+    """Mean of the profile curvatures at a site, 1/nm; positive at a minimum (eq. 2, corrected)."""
     slope_x = (east - west) / (2.0 * spacing)
     slope_y = (south - north) / (2.0 * spacing)
     fx = 1.0 + slope_x * slope_x
@@ -41,24 +38,33 @@ def grow(asperities, heights, n, level, spacing, seed):
     arena[end] = seed
     label[seed] = mine
     end += 1
-    here = start
+    visited = start
     peak = seed
     lowest = heights[seed]
     curvature = 0.0
     around = np.empty(8, np.int64)
-    while here < end:
-        site = np.int64(arena[here])
-        here += 1
+    while visited < end:
+        site = np.int64(arena[visited])
+        visited += 1
         height = heights[site]
         if height < lowest or (height == lowest and site < peak):
             lowest = height
             peak = site
         row = site // n
         col = site - row * n
-        north = site - n if row > 0 else site + n * (n - 1)
-        south = site + n if row < n - 1 else site - n * (n - 1)
-        west = -1 if col > 0 else n - 1
-        east = 1 if col < n - 1 else 1 - n
+        # neighbours in the periodic cell
+        north = site - n
+        if row == 0:
+            north += n * n
+        south = site + n
+        if row == n - 1:
+            south -= n * n
+        west = -1
+        if col == 0:
+            west += n
+        east = 1
+        if col == n - 1:
+            east -= n
         around[0] = north
         around[1] = south
         around[2] = site + west
@@ -206,7 +212,8 @@ def hardness(area, mechanics):
     base = law.h_macro + law.h_prime / np.sqrt(length)
     if law.t_film == 0.0:
         return base
-    return base + (law.h_film - base) / (1.0 + law.k_film * (length / law.t_film) ** law.m_film)
+    crossover = law.k_film * (length / law.t_film) ** law.m_film
+    return base + (law.h_film - base) / (1.0 + crossover)
 
 
 @njit(cache=True)
@@ -226,7 +233,10 @@ def total_force(asperities, level, mechanics, capped):
         indentation, radius, area, bounded = shape(asperities, number, level, mechanics)
         single = mechanics.stiffness * np.sqrt(radius * indentation) * indentation
         ceiling = hardness(area, mechanics) * area
-        load = max(load, single / ceiling if ceiling > 0.0 else np.inf)
+        ratio = np.inf
+        if ceiling > 0.0:
+            ratio = single / ceiling
+        load = max(load, ratio)
         if capped:
             single = min(single, ceiling)
         force += single
@@ -281,10 +291,15 @@ def _add_flow(heights, n, spacing, peak, amplitude, narrow, rule, changes, g1, g
             row -= n
         f1 = amplitude * g1[k]
         f2 = amplitude * balance * g2[k]
-        for part in range(2):  # columns up to the cell's edge, then those wrapped around it
-            origin = np.uint64(row * n + (left if part == 0 else 0))
-            offset = np.uint64(0 if part == 0 else before_edge)
-            count = np.uint64(before_edge if part == 0 else width - before_edge)
+        # columns up to the cell's edge, then those wrapped around it
+        for patch in range(2):
+            origin = np.uint64(row * n + left)
+            offset = np.uint64(0)
+            count = np.uint64(before_edge)
+            if patch == 1:
+                origin = np.uint64(row * n)
+                offset = np.uint64(before_edge)
+                count = np.uint64(width - before_edge)
             unknown = 0
             for m in range(count):
                 unknown += stamp[origin + m] != step
@@ -310,17 +325,14 @@ def _add_flow(heights, n, spacing, peak, amplitude, narrow, rule, changes, g1, g
 
 @njit(cache=True)
 def _release(heights, n, level, peak, reach, asperities, seeds, waiting):
-    """Break up the asperities within ``reach`` of a peak; their touching sites wait to be joined
-    again.
+    """Break up the asperities within ``reach`` of a peak; their touching sites wait for others.
 
     A waiting site has label -1. Returns the number of waiting sites.
     """
-    label, arena, firsts, counts = (
-        asperities.label,
-        asperities.arena,
-        asperities.first,
-        asperities.sites,
-    )
+    label = asperities.label
+    arena = asperities.arena
+    firsts = asperities.first
+    counts = asperities.sites
     width = 2 * reach + 1
     top = peak // n - reach
     left = peak % n - reach
@@ -333,14 +345,16 @@ def _release(heights, n, level, peak, reach, asperities, seeds, waiting):
             row += n
         elif row >= n:
             row -= n
-        for part in range(2):
-            origin = np.uint64(row * n + (left if part == 0 else 0))
-            count = np.uint64(before_edge if part == 0 else width - before_edge)
+        for patch in range(2):
+            origin = np.uint64(row * n + left)
+            count = np.uint64(before_edge)
+            if patch == 1:
+                origin = np.uint64(row * n)
+                count = np.uint64(width - before_edge)
             reached = 0
             for m in range(count):
-                reached += (label[origin + m] > 0) | (
-                    (label[origin + m] == 0) & (heights[origin + m] < level)
-                )
+                owner = label[origin + m]
+                reached += (owner > 0) | ((owner == 0) & (heights[origin + m] < level))
             if reached == 0:
                 continue
             for m in range(count):
@@ -388,9 +402,9 @@ def _find_yielding(heights, level, asperities, mechanics, rule, work, actives):
         work.margin[yielding] = rule.tolerance * indentation / 3.0
         # no wider than the contact itself (flattened tops have no curvature), no narrower than the
         # floor
-        work.width[yielding] = max(
-            rule.floor, min(np.sqrt(rule.width * radius), np.sqrt(area / np.pi))
-        )
+        roughness_width = np.sqrt(rule.width * radius)
+        contact_width = np.sqrt(area / np.pi)
+        work.width[yielding] = max(rule.floor, min(roughness_width, contact_width))
         yielding += 1
     return yielding
 
@@ -455,7 +469,9 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
                 )
             for m in range(low):
                 site = work.low[m]
-                rise = rule.increment if rule.fixed else goal - heights[site]
+                rise = rule.increment
+                if not rule.fixed:
+                    rise = goal - heights[site]
                 if rise > margin:
                     work.site[flows] = site
                     work.half[flows] = _add_flow(

@@ -1,6 +1,4 @@
-"""What a contact of single asperities consists of: its asperities, its constants, and room for the
-loops.
-"""
+"""A contact of single asperities: its asperities, its constants, and room for the loops."""
 
 from typing import NamedTuple
 
@@ -36,16 +34,15 @@ class Asperities(NamedTuple):
 
 def no_asperities(sites: int) -> Asperities:
     """Empty set for a surface of N^2 sites; the memory is touched only as contact grows."""
-    return Asperities(
-        np.zeros(sites, np.int32),
-        np.empty(3 * sites, np.int32),
-        np.empty(2 * sites, np.int32),
-        np.empty(2 * sites, np.int32),
-        np.empty(2 * sites, np.int32),
-        np.empty(2 * sites),
-        np.empty(2 * sites),
-        np.zeros(2, np.int64),
-    )
+    label = np.zeros(sites, np.int32)
+    arena = np.empty(3 * sites, np.int32)
+    first = np.empty(2 * sites, np.int32)
+    counts = np.empty(2 * sites, np.int32)
+    peak = np.empty(2 * sites, np.int32)
+    lowest = np.empty(2 * sites)
+    curvature = np.empty(2 * sites)
+    used = np.zeros(2, np.int64)
+    return Asperities(label, arena, first, counts, peak, lowest, curvature, used)
 
 
 class Mechanics(NamedTuple):
@@ -90,8 +87,7 @@ class FlowRule(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Lists that a sweep fills anew; preallocated because growing arrays are slow in compiled
-    loops.
+    """Lists that a sweep fills anew; preallocated, as growing arrays are slow in compiled loops.
 
     Attributes
     ----------
@@ -125,17 +121,21 @@ class Workspace(NamedTuple):
 
 def workspace(sites: int) -> Workspace:
     """Room for the worst case; the memory is touched only as needed."""
+
+    def places(count: int) -> np.ndarray:
+        return np.empty(count, np.int32)
+
     return Workspace(
-        np.empty(2 * sites, np.int32),
-        np.empty(sites, np.int32),
-        np.empty(sites, np.int32),
-        np.empty(sites),
-        np.empty(sites),
-        np.empty(sites),
-        np.empty(sites, np.int32),
-        np.empty(sites, np.int32),
-        np.empty(sites, np.int32),
-        np.empty(sites, np.int32),
-        np.empty(sites),
-        np.empty(sites),
+        active=places(2 * sites),
+        yielding=places(sites),
+        peak=places(sites),
+        goal=np.empty(sites),
+        margin=np.empty(sites),
+        width=np.empty(sites),
+        low=places(sites),
+        site=places(sites),
+        half=places(sites),
+        seeds=places(sites),
+        narrow=np.empty(sites),
+        wide=np.empty(sites),
     )

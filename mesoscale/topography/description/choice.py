@@ -193,6 +193,13 @@ def description_doubts(
                 " only"
             )
             yield Doubt("one_place", text, "measure other places of the surface", "rms")
+    lines = topography.line_fit
+    if lines is not None and not lines.settled:
+        text = (
+            "the knee of the two lines through the spectrum swings between two places; q1 and the"
+            " line fits are those of the last one"
+        )
+        yield Doubt("knee_unsettled", text, "add scans of other sizes about the knee", "q1")
     first = next(iter(topography.doubts), None)
     if name != "power_law" and first is not None and not first.fatal:
         text = f"{first.text}; used instead: {DESCRIPTIONS[name]}"

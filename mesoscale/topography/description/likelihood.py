@@ -47,6 +47,7 @@ class LikelihoodFit:
         is no power law.
     plateau_gain, power_gain : improvement of 2 ln L over a pure power law and over a flat spectrum.
     names : of the scans that were fitted.
+    settled : the search for q0 and slope ended within its tolerance.
     """
 
     plateau: float
@@ -60,6 +61,7 @@ class LikelihoodFit:
     plateau_gain: float
     power_gain: float
     names: tuple[str, ...]
+    settled: bool = True
 
     @property
     def amplitude_sd(self) -> float:
@@ -196,10 +198,12 @@ def fit(
     raw = level
     residual = np.ones(bins)
     between = PlaceScatter()
+    settled = False
     for _ in range(4):
         minimum = minimize(
             objective, best, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-3}
         )
+        settled = bool(minimum.success)
         best = np.clip(minimum.x, [low, 0.0], [high, MAX_SLOPE])
         _, level, ratio = _deviance(data, best[0], best[1], spread, level)
         raw = np.log(np.bincount(data.scan, data.weight * ratio, data.scans) / data.per_scan)
@@ -229,6 +233,7 @@ def fit(
         plateau_gain=float(pure - value) / scale,
         power_gain=float(flat - value) / scale,
         names=tuple(item.name for item in spectra),
+        settled=settled,
     )
 
 

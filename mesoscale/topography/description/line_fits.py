@@ -23,6 +23,8 @@ import numpy as np
 
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur
 
+MOST_ROUNDS = 20  # of the search for the knee, which settles in a few or swings
+
 
 @dataclass(frozen=True)
 class Points:
@@ -45,6 +47,7 @@ class LineFit:
         range.
     slope_low, slope_high : slopes of the lines through the knee that bound the scans' points.
     plateau_low, plateau_high : lowest and highest level of a scan, nm^4.
+    settled : the search for the knee ended; else it swings between two places.
     """
 
     plateau: float
@@ -56,6 +59,7 @@ class LineFit:
     slope_high: float
     plateau_low: float
     plateau_high: float
+    settled: bool = True
 
 
 def points(spectra: Sequence[TrustedSpectrum], q0: float = np.inf, slope: float = 0.0) -> Points:
@@ -131,7 +135,7 @@ def _fit_points(data: Points) -> LineFit | None:
     knee = _knee(x, y, end)
     if knee is None:
         return None
-    log_q0, level = knee
+    log_q0, level, settled = knee
     first = int(np.searchsorted(x, log_q0 + 0.15))
     last_bins = range(first + 4, len(x) + 1)
     fits = np.array([line(x[first:last], y[first:last]) for last in last_bins])
@@ -160,6 +164,7 @@ def _fit_points(data: Points) -> LineFit | None:
         slope_high=float(slopes.max()),
         plateau_low=float(np.exp(min(levels))),
         plateau_high=float(np.exp(max(levels))),
+        settled=settled,
     )
 
 
@@ -183,11 +188,14 @@ def _threshold(freedom: int) -> float:
     return float(stdtrit(max(freedom, 1), 0.99))
 
 
-def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float] | None:
-    """Meeting point of plateau and power law: ln q0 and the plateau's level."""
+def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float, bool] | None:
+    """Meeting point of plateau and power law: ln q0, the plateau's level, and whether it settled.
+
+    The bins of both lines depend on the knee, so that it may swing between two places."""
     log_q0 = float(x[end]) - 0.2
     level = 0.0
-    for _ in range(20):
+    settled = False
+    for _ in range(MOST_ROUNDS):
         flat = x < log_q0 - 0.1
         fall = x > log_q0 + 0.15
         if flat.sum() < 2 or fall.sum() < 4:
@@ -198,6 +206,7 @@ def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float] | None:
             return None
         new = (level - intercept) / slope
         if abs(new - log_q0) < 1e-6:
+            settled = True
             break
         log_q0 = new
-    return log_q0, level
+    return log_q0, level, settled

@@ -124,6 +124,9 @@ def _doubts(
         )
         doubts.append(Doubt("short_range", text, "add finer scans or use a sharper tip", "slope"))
     use_measured = "use the measured spectrum (topography.description)"
+    if not fitted.settled:
+        text = "the fit of eq. 9 ended before it settled: q0 and slope are those of its last step"
+        doubts.append(Doubt("fit_unsettled", text, use_measured))
     if fitted.misfit > MAX_MISFIT:
         text = (
             "no plateau with a power law common to the scans: the fit misses the spectra by a"

@@ -33,30 +33,34 @@ Array = np.ndarray
 
 @dataclass(frozen=True)
 class Lift:
-    """How the lift is estimated.
-
-    Attributes
-    ----------
-    further, furthest, finest_wave : roughness goes on with its slope beyond what is seen, to
-        between three and thirty
-        times, at most to waves of two atoms (1, 1, 1/nm).
-    largest : of ln C; where half the height would be lift this theory ends.
-    sites : of the Gaussian surfaces that a tip is set on.
-    amplitudes : of their short waves, times those measured.
-    recovered, error : share of the lift that is found from images, which lose skewness, and what
-        that leaves uncertain.
-    radius_error : relative; a radius is anywhere within, as a maker states it or a worn tip has it.
-    """
+    """How the lift is estimated."""
 
     further: float = 3.0
+    """Roughness goes on with its slope at least to so many times the wave vectors seen."""
+
     furthest: float = 30.0
+    """And at most to so many times."""
+
     finest_wave: float = 10.0
+    """At most to waves of two atoms, 1/nm."""
+
     largest: float = 2 * np.log(2)
+    """Of ln C; where half the height would be lift this theory ends."""
+
     sites: int = 256
+    """A side of the Gaussian surfaces that a tip is set on."""
+
     amplitudes: Array = field(default_factory=lambda: np.array([0.25, 0.5, 1.0, 2.0, 4.0]))
+    """Of their short waves, times those measured."""
+
     recovered: float = 0.85
+    """Share of the lift that is found from images, which lose skewness."""
+
     error: float = 0.2
+    """Share of the lift that this leaves uncertain."""
+
     radius_error: float = 0.2
+    """Relative; a radius is anywhere within, as a maker states it or a worn tip has it."""
 
 
 LIFT = Lift()

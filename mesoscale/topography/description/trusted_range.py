@@ -19,43 +19,53 @@ from mesoscale.topography.spectrum import Spectrum, hann_spectrum
 
 @dataclass(frozen=True)
 class Trust:
-    """How far spectra are trusted and corrected, by comparison with simulated scans of known truth.
-
-    Attributes
-    ----------
-    tip_bias : dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's radius times the
-        curvature per octave;
-        measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 %.
-    blunt_bias, blunt_error : beyond k = 0.5 the same comparison (slopes 2.4-4.2, tips of 5-20 nm)
-        gives 0.45 k, to 0.15
-        at 1.5 and 0.2 at 2.5; the error is a share of this correction.
-    curved, most_curved : k at which a range ends, and up to which it can be corrected beyond.
-    levelled_error : of ln C in the first shells, after their blur is taken out.
-    noise : C over the level of the noise at which a range ends.
-    lowest_shell : below, levelling and the window change a map's waves.
-    lowest_wave, lowest_wave_bow : below, the window and the line taken off a profile change its
-        waves, or the parabola.
-    pixels, even_line, uneven_line : of Nyquist. Short waves folded back lift C1, which is shallow,
-        by 6 % at the first
-        of a line's (slope 2.84); straight lines between uneven points smooth.
-    """
+    """How far spectra are trusted and corrected, by simulated scans of known truth."""
 
     tip_bias: tuple[float, float] = (0.5, 1.3)
+    """Dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's curvature per octave.
+
+    Measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 %."""
+
     blunt_bias: float = 0.45
+    """Times k is -ln of what dilation leaves beyond k = 0.5 (slopes 2.4-4.2, tips of 5-20 nm)."""
+
     blunt_error: float = 0.3
+    """Share of this correction that is unknown: 0.15 of ln C at k = 1.5 and 0.2 at 2.5."""
+
     curved: float = 0.5
+    """k at which a range ends."""
+
     most_curved: float = 2.0
+    """k up to which a range can be corrected beyond its end."""
+
     levelled_error: float = 0.5
+    """Of ln C in the first shells, after their blur is taken out."""
+
     noise: float = 20.0
+    """C over the level of the noise at which a range ends."""
+
     lowest_shell: float = 2.5
+    """Below, levelling and the window change a map's waves."""
+
     lowest_wave: float = 2.5
+    """Below, the window and the line taken off a profile change its waves."""
+
     lowest_wave_bow: float = 4.0
+    """Below, the parabola taken off a profile changes its waves."""
+
     pixels: float = 0.7
+    """Of Nyquist: end of a map's range."""
+
     even_line: float = 0.35
+    """Of Nyquist, of a line. Short waves folded back lift C1 by 6 % here (slope 2.84)."""
+
     uneven_line: float = 0.5
+    """Of Nyquist: straight lines between uneven points smooth."""
 
 
 TRUST = Trust()
+MOST_ROUNDS = 12  # for the tip's correction, whose error falls to a half or less in each
+SETTLED = 1e-3  # change of ln C in the last round; beyond, a correction has not settled
 
 
 def curvature(
@@ -137,11 +147,17 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     use : (m,) bool, the shells.
     psd : (m,) C with the tip's bias and the window's blur taken out, nm^4.
     error : (m,) error of ln C that the correction leaves; 0 in the trusted range.
+
+    Raises
+    ------
+    InputError : the tip's correction does not settle.
     """
     q, psd = item.spectrum.q, item.spectrum.psd
     smooth = _smooth(psd, q)
     curved = bias = np.zeros_like(q)
-    for _ in range(12):
+    previous = bias
+    for _ in range(MOST_ROUNDS):
+        previous = bias
         curved = curvature(item.tip_radius_nm, q, smooth, np.exp(bias))
         blunt = TRUST.blunt_bias * np.minimum(curved, 2 * TRUST.most_curved)
         bias = np.where(curved < 0.5, tip_bias(curved), blunt)
@@ -149,6 +165,7 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     blunt = curved > TRUST.most_curved
     if (blunt & use).any():
         use &= q < q[blunt & use][0]
+    _check_settled(item, np.abs(bias - previous)[use])
     error = np.where(q > item.high, TRUST.blunt_error * bias, 0.0)
     psd = psd * np.exp(bias)
     if (
@@ -163,6 +180,16 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
         error = np.where(long, TRUST.levelled_error, error)
         use |= long
     return use, psd, error
+
+
+def _check_settled(item: TrustedSpectrum, change: np.ndarray) -> None:
+    """Refuse a correction of the tip that still changes ln C in its last round."""
+    if change.max(initial=0.0) > SETTLED:
+        raise InputError(
+            f"{item.name}: the correction of a tip of {item.tip_radius_nm:g} nm does not settle:"
+            f" ln C still changes by {change.max():.2g} in its last round; state the tip's radius"
+            " (topography.instruments), or leave the scan out"
+        )
 
 
 def trusted_map(cleaned: Scan, measured: Measurement) -> TrustedSpectrum:

@@ -131,7 +131,7 @@ def test_a_quench_goes_on_when_it_ends_in_a_network_that_is_there_already(tmp_pa
         cell.rattle(0.08, seed=seed)
     results = iter([first.copy(), second.copy()])
     monkeypatch.setattr(networks, "quench", lambda *_: next(results))
-    made, rows = make_glass(NITRIDE, NitrideGlassSettings(), 1, tmp_path, others={"a01": first})
+    made, rows = make_glass(NITRIDE, NitrideGlassSettings(), 1, tmp_path, accepted={"a01": first})
     assert [row["status"] for row in rows] == ["rejected: the network of a01 again", "accepted"]
     assert np.array_equal(made.positions, second.positions)
 

@@ -63,7 +63,7 @@ def test_h_prime_is_that_of_the_hand_calculation(hardness, expected):
     """10.6 and 5.3 GPa at 3 nm with H_macro 1.95 GPa: H' = 15.0 and 5.8 GPa nm^0.5."""
     points = [point(hardness, 3.0, spread=0.0, asperity=f"a{k}") for k in range(4)]
     result = fit_size_effect(
-        points, GLASS, 0.0, lambda p: np.full_like(p, 1.95), others={"none": 0.0}
+        points, GLASS, 0.0, lambda p: np.full_like(p, 1.95), systematic_errors={"none": 0.0}
     )
     assert result["H_prime_GPa_nm0.5"]["median"] == pytest.approx(expected, abs=0.05)
     assert result["inputs"]["h_film"]["values"] == pytest.approx([hardness] * 200)
@@ -74,7 +74,9 @@ def test_h_prime_follows_the_scenes_own_h_macro():
     nm^0.5.
     """
     points = [point(10.0, 4.0, spread=0.0, asperity=f"a{k}") for k in range(4)]
-    result = fit_size_effect(points, GLASS, 0.0, lambda p: 6 + 2 * p, others={"none": 0.0})
+    result = fit_size_effect(
+        points, GLASS, 0.0, lambda p: 6 + 2 * p, systematic_errors={"none": 0.0}
+    )
     low, high = (result["inputs"]["h_prime"][end] for end in "ab")
     # the 68 % interval of H_macro is 6.32 to 7.68 GPa
     assert (low, high) == pytest.approx((2 * (10 - 7.68), 2 * (10 - 6.32)), abs=0.15)

@@ -2,6 +2,7 @@
 are refused.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,12 +10,13 @@ import pytest
 
 from asperity.guards.foreign_yaml import load_mapping
 from mesoscale.answer.budget import NUMERICAL, TWIN, budget, effects_of, with_twins
-from mesoscale.answer.points import Point, Solved
+from mesoscale.answer.points import Point
+from mesoscale.answer.switches import Solved
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.definitions import BY_NAME
-from mesoscale.studies.answer_stability import made_up_law
-from mesoscale.switch.electrode import solve_deepened
+from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.switch import switch_of
 
 SHIPPED = load_mapping(Path(__file__).parents[3] / "config" / "effects.yaml", "table of effects")
 ROW = {
@@ -32,11 +34,11 @@ SWITCH_CONTENT = {
 
 
 class KnownPad:
-    law = made_up_law(40.0)
+    curves = made_up_pad(40.0)
 
 
 def central(device):
-    states = solve_deepened(device, KnownPad.law)
+    states = switch_of(device).states(KnownPad.curves)
     return Solved(Point({}, 0.2, device), KnownPad, states, (0.0, 0.0))
 
 
@@ -79,8 +81,8 @@ def test_every_number_is_that_of_its_own_calculation():
     device = DeviceSettings(hold_voltage_V=80.0)
     switch = central(device)
     rows = {row["effect"]: row for row in budget(effects_of(SHIPPED), SWITCH_CONTENT, switch)}
-    release = switch.states["release_V"]
-    hot = central(device.model_copy(update={"temperature_C": 30.0})).states["release_V"]
+    release = switch.states.release_V
+    hot = central(device.model_copy(update={"temperature_C": 30.0})).states.release_V
     assert rows["temperature"]["volts"] == pytest.approx(abs(hot - release))
     assert rows["charge in the dielectric, even"]["volts"] == pytest.approx(
         0.458, abs=0.001
@@ -109,7 +111,7 @@ def test_a_plate_has_no_stress_and_a_switch_that_sticks_has_no_budget():
         budget(
             {},
             SWITCH_CONTENT,
-            Solved(stuck.point, KnownPad, stuck.states | {"release_V": 0.0}, (0.0, 0.0)),
+            Solved(stuck.point, KnownPad, replace(stuck.states, release_V=0.0), (0.0, 0.0)),
         )
         == []
     )

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from mesoscale.answer.by_hardness import harder, release_by_hardness
-from mesoscale.answer.points import Point, press_pad, surfaces_of
+from mesoscale.answer.other_devices import harder, release_by_hardness
+from mesoscale.answer.points import Point
+from mesoscale.answer.switches import press_pad, surfaces_of
 from mesoscale.settings import ContactSettings, DeviceSettings
-from mesoscale.switch.electrode import release_or_nan_V
+from mesoscale.switch import release_or_nan_V
 
 VALUES = {
     "hamaker": 0.1, "e_star": 91.0, "h_macro": 2.0, "h_prime": 8.0, "q0": 0.1, "hurst": 0.8,
@@ -42,7 +43,7 @@ def test_pads_of_all_factors_have_the_same_surfaces():
     """The pad of factor 1 is that of the point itself, bit for bit; a softer one closes farther."""
     found = release_by_hardness(BODY, CONTACT, 2, [0.5])
     pad = press_pad(BODY, CONTACT, 2, surfaces_of(0))
-    assert found[1.0] == release_or_nan_V(BODY.device, pad.law)
+    assert found[1.0] == release_or_nan_V(BODY.device, pad.curves)
     soft = press_pad(harder(BODY, 0.5), CONTACT, 2, surfaces_of(0))
     np.testing.assert_array_equal(soft.cells.first_contact_nm, pad.cells.first_contact_nm)
     assert found[0.5] != found[1.0]

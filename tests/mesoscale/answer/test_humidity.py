@@ -4,15 +4,8 @@ import numpy as np
 import pytest
 
 from mesoscale.answer.humidity import HALVINGS, humidity_rows, levels, sticking_between
-from mesoscale.answer.points import (
-    PadModel,
-    central_point,
-    plan_points,
-    press_pad,
-    solve_point,
-    solve_points,
-    surfaces_of,
-)
+from mesoscale.answer.points import central_point, plan_points
+from mesoscale.answer.switches import PadModel, press_pad, solve_point, solve_points, surfaces_of
 from mesoscale.contact.menisci import menisci_of, reach_nm
 from mesoscale.failure.population import Population
 from mesoscale.inputs.table import input_table
@@ -103,7 +96,7 @@ def test_a_pad_is_computed_as_far_as_liquid_reaches():
         solve_point(central_point(table, contact, SWITCH), contact, 4, 1000).pressed
         for contact in (CONTACT, CONTACT.model_copy(update={"air": air}))
     ]
-    dry, humid = (pad.law for pad in pads)
+    dry, humid = (pad.curves for pad in pads)
     touching = (
         pads[1].cells.first_contact_nm.max() + 5.0
     )  # cells stand for some that touch first farther out

@@ -9,27 +9,21 @@ import pytest
 
 from evidence.pad.closed_form import ClosedForm
 from evidence.pad.rare_failures import known_pad
-from mesoscale.answer import points
-from mesoscale.answer.by_key import release_by_key
-from mesoscale.answer.points import (
-    Pad,
-    PadModel,
-    central_point,
-    plan_points,
-    solve_point,
-    solve_points,
-)
+from mesoscale.answer import points, switches
+from mesoscale.answer.other_devices import release_by_key
+from mesoscale.answer.points import central_point, plan_points
 from mesoscale.answer.release import _probability, answer, switch_on_pad
+from mesoscale.answer.switches import PadModel, solve_point, solve_points
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.table import input_table
-from mesoscale.pad.cells import PadGrid
-from mesoscale.pad.curves import PadCells
+from mesoscale.pad.closing import PadCells
+from mesoscale.pad.curves import closing_alone
+from mesoscale.pad.grid import PadGrid
+from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
+from mesoscale.switch import switch_of
 from mesoscale.switch.beam_kernels import solve_beam_matrix
-from mesoscale.switch.beam_switch import press_GPa
-from mesoscale.switch.electrode import presser, solve_deepened
-from mesoscale.switch.numerics import SWITCH
-from mesoscale.switch.pressing import pressing, pressure_to_compute
+from mesoscale.switch.switch import EDGE
 
 CONTACT = ContactSettings(mechanics="asperity")
 PLATE = DeviceSettings(spring_N_per_m=170.0)
@@ -91,10 +85,10 @@ def known(monkeypatch):
     """Pads are those of a closed form, whose two cells differ by a tenth."""
 
     def press_pad(point, contact, cells, first_seed, **_):
-        law = known_pad(point).law
+        law = known_pad(point).curves
         return Pad(cells_of(law, 0.1 / np.sqrt(cells / 2)), law.flats)
 
-    monkeypatch.setattr(points, "press_pad", press_pad)
+    monkeypatch.setattr(switches, "press_pad", press_pad)
 
 
 def model_of(settings, count, cells=2):
@@ -134,27 +128,28 @@ def test_pads_have_the_coarsest_grid_that_holds_all_waves(reaches, pixels):
 
 def test_an_undecided_point_has_more_cells_and_a_decided_one_has_not(known, monkeypatch):
     asked = []
-    press = points.press_pad
+    press = switches.press_pad
 
     def counted(point, contact, cells, first_seed, **options):
         asked.append(cells)
         return press(point, contact, cells, first_seed, **options)
 
-    monkeypatch.setattr(points, "press_pad", counted)
+    monkeypatch.setattr(switches, "press_pad", counted)
     point = central_point(TABLE, CONTACT, PLATE)
     (decided,) = solve_points([(1, point)], CONTACT, 2)
     assert asked == [2]
     assert decided.error_V == pytest.approx(0.5 * abs(decided.halves_V[0] - decided.halves_V[1]))
-    monkeypatch.setattr(points, "SWITCH", replace(SWITCH, undecided=1e-6, of_release=1e-6))
+    monkeypatch.setattr(switches, "UNDECIDED_SHARE", 1e-6)
+    monkeypatch.setattr(switches, "UNDECIDED_OF_RELEASE", 1e-6)
     list(solve_points([(1, point)], CONTACT, 2))
-    assert asked[1:] == [2, 2 * SWITCH.more_cells]
+    assert asked[1:] == [2, 2 * switches.MORE_CELLS]
 
 
 def test_a_point_that_cannot_be_pressed_leaves_its_reason(monkeypatch):
     def refused(*_, **__):
         raise InputError("4 cells closed by 90 nm carry 1 of the 5 MPa")
 
-    monkeypatch.setattr(points, "press_pad", refused)
+    monkeypatch.setattr(switches, "press_pad", refused)
     (solved,) = solve_points([(1, central_point(TABLE, CONTACT, PLATE))], CONTACT, 4)
     assert solved.pad is None
     assert not solved.states
@@ -189,7 +184,7 @@ def test_two_points_have_an_answer_that_explains_nothing(known):
 
 def test_a_pad_that_one_cell_in_a_hundred_carries_is_undecided(monkeypatch):
     """The half of the cells without it has no pressure, so that it cannot carry the switch."""
-    law = known_pad(central_point(TABLE, CONTACT, PLATE)).law
+    law = known_pad(central_point(TABLE, CONTACT, PLATE)).curves
     pair = cells_of(law, 0.0)
     share = np.where(np.arange(100) == 37, 100.0, 0.0)
     cells = PadCells(
@@ -201,10 +196,10 @@ def test_a_pad_that_one_cell_in_a_hundred_carries_is_undecided(monkeypatch):
         share[:, None, None, None] * pair.opening[0],
         np.ones(100, bool),
     )
-    monkeypatch.setattr(points, "press_pad", lambda *_, **__: Pad(cells, law.flats))
+    monkeypatch.setattr(switches, "press_pad", lambda *_, **__: Pad(cells, law.flats))
     solved = solve_point(central_point(TABLE, CONTACT, PLATE), CONTACT, 100, 0)
-    assert solved.states["release_V"] == pytest.approx(
-        solve_deepened(PLATE, law)["release_V"], rel=1e-3
+    assert solved.states.release_V == pytest.approx(
+        switch_of(PLATE).states(law).release_V, rel=1e-3
     )
     assert solved.undecided
 
@@ -234,31 +229,31 @@ def test_the_gate_fails_where_halves_of_the_cells_disagree_on_sticking(known):
 
 def test_pads_are_computed_to_more_than_the_plate_can_press():
     s = np.array([10.0, 20.0])
-    plate, beam = pressure_to_compute(PLATE)(s), pressure_to_compute(DeviceSettings())(s)
+    plate, beam = switch_of(PLATE).least_GPa(s), switch_of(DeviceSettings()).least_GPa(s)
     assert (beam > plate).all()
     assert plate[0] > plate[1]
-    assert pressing(DeviceSettings(tilt_nm=50.0)) == pressing(DeviceSettings())
+    assert DeviceSettings(tilt_nm=50.0).level == DeviceSettings()
 
 
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
 def test_a_pad_that_is_pressed_harder_than_it_was_computed_is_continued(settings):
-    local = pressure_to_compute(settings)(
+    local = switch_of(settings).least_GPa(
         SEPARATION
     )  # 2.5 times that of the voltage alone, with less than which a plate presses
     enough, less = (MIDDLE.pressed(share * local, SEPARATION) for share in (1.5, 0.3))
-    computed, continued = solve_deepened(settings, enough), solve_deepened(settings, less)
-    assert (computed["deepened"], continued["deepened"]) == (0.0, 1.0)
+    computed, continued = switch_of(settings).states(enough), switch_of(settings).states(less)
+    assert (computed.deepened, continued.deepened) == (False, True)
     # an opening from deeper is stiffer than from the deepest computed depth, and the tail of
     # closing is Gaussian
-    assert continued["release_V"] == pytest.approx(computed["release_V"], rel=0.01)
-    assert continued["capacitance_fF"] == pytest.approx(computed["capacitance_fF"], rel=0.01)
+    assert continued.release_V == pytest.approx(computed.release_V, rel=0.01)
+    assert continued.capacitance_fF == pytest.approx(computed.capacitance_fF, rel=0.01)
 
 
 def test_a_pad_that_was_closed_far_too_little_stays_refused():
     smooth = replace(MIDDLE, beta=0.0, hamaker=1e-9)
     with pytest.raises(NotComputed, match="where its curves end"):
-        solve_deepened(
-            DeviceSettings(), smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION)
+        switch_of(DeviceSettings()).states(
+            smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION)
         )
 
 
@@ -268,14 +263,13 @@ def test_a_pad_that_was_closed_far_too_little_stays_refused():
 def test_pilots_know_what_the_beam_will_press_with(change):
     """From a closing curve that ends too early, within the 15 % by which pilot cells are off."""
     settings = DeviceSettings().model_copy(update=change)
-    local = pressure_to_compute(settings)(SEPARATION)
+    local = switch_of(settings).least_GPa(SEPARATION)
     short, long = (MIDDLE.pressed(share * local, SEPARATION) for share in (0.6, 3.0))
-    pressed = presser(settings)(short.separation_nm, short.closing.sum(axis=0))
-    assert pressed == pytest.approx(press_GPa(settings, long), rel=0.15)
-    assert (
-        pressed
-        > 1.3 * float(local[np.searchsorted(SEPARATION, short.separation_nm[0])]) / SWITCH.edge
-    )
+    switch = switch_of(settings)
+    pressed = switch.pressed_GPa(closing_alone(short.separation_nm, short.closing.sum(axis=0)))
+    assert pressed == pytest.approx(switch.pressed_GPa(long), rel=0.15)
+    electrostatic = float(local[np.searchsorted(SEPARATION, short.separation_nm[0])]) / EDGE
+    assert pressed > 1.3 * electrostatic
 
 
 def test_a_pad_closed_nearly_to_its_mean_plane_asks_for_nothing_deeper():
@@ -283,24 +277,21 @@ def test_a_pad_closed_nearly_to_its_mean_plane_asks_for_nothing_deeper():
     switch.
     """
     separation = np.linspace(0.5, 3.0, 20)
-    assert presser(DeviceSettings())(separation, 1e-6 * np.exp(-(separation - 3.0))) == 0.0
+    pad = closing_alone(separation, 1e-6 * np.exp(-(separation - 3.0)))
+    assert switch_of(DeviceSettings()).pressed_GPa(pad) == 0.0
 
 
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
 def test_a_hold_voltage_that_never_closes_the_switch_is_refused_in_one_line(settings):
-    law = MIDDLE.pressed(2.0 * pressure_to_compute(settings)(SEPARATION), SEPARATION)
-    pull_in = solve_deepened(settings, law)["pull_in_V"]
-    assert (
-        solve_deepened(settings.model_copy(update={"hold_voltage_V": 1.01 * pull_in}), law)[
-            "release_V"
-        ]
-        >= 0.0
-    )
+    law = MIDDLE.pressed(2.0 * switch_of(settings).least_GPa(SEPARATION), SEPARATION)
+    pull_in = switch_of(settings).states(law).pull_in_V
+    held = settings.model_copy(update={"hold_voltage_V": 1.01 * pull_in})
+    assert switch_of(held).states(law).release_V >= 0.0
     for share in (0.8, 0.99):
         with pytest.raises(
             InputError, match=f"never closes this switch, which pulls in at {pull_in:.4g} V"
         ) as caught:
-            solve_deepened(settings.model_copy(update={"hold_voltage_V": share * pull_in}), law)
+            switch_of(settings.model_copy(update={"hold_voltage_V": share * pull_in})).states(law)
         assert "\n" not in str(caught.value)
 
 
@@ -342,25 +333,25 @@ def test_the_matrix_of_a_beam_that_stretches_is_solved_where_the_beam_alone_is_s
 
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
 def test_release_by_key_is_that_of_the_changed_device_and_ends_with_a_reason(settings):
-    law = MIDDLE.pressed(2.0 * pressure_to_compute(settings)(SEPARATION), SEPARATION)
+    law = MIDDLE.pressed(2.0 * switch_of(settings).least_GPa(SEPARATION), SEPARATION)
     rows = release_by_key(settings, law)
     keys = list(dict.fromkeys(row["key"] for row in rows))
-    assert len(keys) == (6 if settings.bends else 5)
+    assert len(keys) == (6 if settings.kind == "beam" else 5)
     for key in keys:
         of_key = [row for row in rows if row["key"] == key]
         assert [row["value"] for row in of_key] == sorted(row["value"] for row in of_key)
         assert sum(row["own"] for row in of_key) == 1
         assert not any(row["reason"] for row in of_key[1:-1]), "nothing is solved beyond an end"
         for row in (row for row in (of_key[0], of_key[-1]) if not row["reason"]):
-            state = solve_deepened(settings.model_copy(update={key: row["value"]}), law)
-            assert (row["pull_in_V"], row["release_V"]) == (state["pull_in_V"], state["release_V"])
+            state = switch_of(settings.model_copy(update={key: row["value"]})).states(law)
+            assert (row["pull_in_V"], row["release_V"]) == (state.pull_in_V, state.release_V)
     (low,) = [row for row in rows if row["key"] == "hold_voltage_V" and row["reason"]]
     assert "never closes" in low["reason"]
     assert low["release_V"] is None
     stiffer = [
         row["release_V"]
         for row in rows
-        if row["key"] == ("gap_um" if settings.bends else "spring_N_per_m")
+        if row["key"] == ("gap_um" if settings.kind == "beam" else "spring_N_per_m")
     ]
     assert stiffer == sorted(stiffer)
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mesoscale.calibration import surfaces
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.observables import NAMES, Cycles, force_levels_nN
 from mesoscale.calibration.posterior import Calibration
@@ -177,6 +178,15 @@ def test_likelihood_of_curves_is_the_dense_normal_density(model, prior):
         exact.append(log - 0.5 * np.linalg.slogdet(np.eye(len(spread)) + precision @ spread)[1])
     found = part.log_likelihood(x)
     assert found - found[0] == pytest.approx(np.array(exact) - exact[0], rel=1e-6, abs=1e-6)
+
+
+def test_observables_that_are_still_moving_are_refused(model, monkeypatch):
+    """One step does not reach where curves are linearised; thirty do."""
+    table = curves(2, np.random.default_rng(3))
+    model.posterior([table])
+    monkeypatch.setattr(surfaces, "MOST_STEPS", 1)
+    with pytest.raises(InputError, match=r"curves\.csv: specimen c0: .* do not settle in 1 steps"):
+        model.posterior([table])
 
 
 def test_an_unknown_zero_changes_nothing(model, prior):

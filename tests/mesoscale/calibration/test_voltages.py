@@ -5,13 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mesoscale.answer.points import PadModel, Point, Solved, plan_points
+from mesoscale.answer.points import Point, plan_points
+from mesoscale.answer.switches import PadModel, Solved
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.posterior import Calibration, Model
 from mesoscale.calibration.summary import predictive_rows
 from mesoscale.calibration.voltages import fit_voltages
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.switch import States
 from tests.mesoscale.calibration.conftest import MAX_FORCE_NN
 
 EACH_V, SHARED_V = 0.5, 1.0
@@ -34,9 +36,9 @@ def pads(prior, count=200, middle_V=20.0):
             + EACH_V * scaled[k, each]
             - SHARED_V * scaled[k, d0]
         )
-        states = {"pull_in_V": 60.0 + 0.1 * release, "release_V": max(release, 0.0)}
+        states = States(60.0 + 0.1 * release, max(release, 0.0), 8e3)
         points.append(Solved(point, None, states, (release, release)))
-    central = Solved(Point(prior.medians(), 0.2, settings), None, {}, (0.0, 0.0), "not needed")
+    central = Solved(Point(prior.medians(), 0.2, settings), None, None, (0.0, 0.0), "not needed")
     return PadModel(central, design, tuple(points))
 
 
@@ -108,7 +110,7 @@ def test_switches_that_stuck_are_rough_ones(prior, cycles):
     posterior = model.posterior([sticking(20, 20)])
     x = posterior.inputs(posterior.draw().z)
     assert np.quantile(x[:, 6], 0.05) > 7.0
-    assert posterior.simulated(x[:1], np.random.default_rng(1)).parts[0].stuck[0] > 10
+    assert posterior.simulated(x[:1], np.random.default_rng(1)).data[0].stuck[0] > 10
 
 
 def test_voltages_that_no_switch_has_are_refused(switches):
@@ -121,7 +123,7 @@ def test_voltages_that_no_switch_has_are_refused(switches):
 def test_too_few_switches_are_refused(prior):
     model = pads(prior, 30)
     stuck = tuple(
-        replace(point, states={**point.states, "release_V": 0.0}) for point in model.points
+        replace(point, states=replace(point.states, release_V=0.0)) for point in model.points
     )
     with pytest.raises(InputError, match=r"pad\.points: 0 of 30 switches over the prior let go"):
         fit_voltages(replace(model, points=stuck), prior)

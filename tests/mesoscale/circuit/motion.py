@@ -6,8 +6,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.switch.beam_kernels import NM, least_gap_nm
-from mesoscale.switch.plate import GPA, VACUUM_PERMITTIVITY
+from mesoscale.switch.beam_kernels import least_gap_nm
+from mesoscale.units import GPA, NM, VACUUM_PERMITTIVITY
 
 
 def _gap_m(lumps, separation_nm):

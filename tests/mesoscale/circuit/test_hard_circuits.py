@@ -5,8 +5,8 @@ import pytest
 
 from mesoscale.answer.points import Point
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.circuit.tables import law_of_tables, tables_of
-from mesoscale.pad.memory import PadLaw
+from mesoscale.circuit.tables import curves_of_tables, tables_of
+from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.studies.circuit_stability import hard_cases
 from mesoscale.switch.beam import lumped_beam
@@ -29,7 +29,7 @@ def as_pressed(law):
     they end.
     """
     way = law.separation_nm >= law.depth_nm[0] - 1e-9
-    return PadLaw(
+    return PadCurves(
         law.separation_nm[way], law.closing[:, way], law.depth_nm, law.opening[:, :, way], law.flats
     )
 
@@ -64,7 +64,7 @@ def test_tables_with_more_allowed_errors_are_farther_from_the_curves(cubic):
     known = np.isfinite(law.opening)
 
     def missed(looser):
-        made = law_of_tables(tables_of(law, cubic, looser), law, cubic)
+        made = curves_of_tables(tables_of(law, cubic, looser), law, cubic)
         return np.abs((made.opening - law.opening)[known]).max()
 
     assert missed(1.0) < missed(10.0) < missed(100.0)

@@ -18,9 +18,10 @@ from mesoscale.circuit.verilog import verilog_lump
 from mesoscale.errors import InputError
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
-from mesoscale.studies.answer_stability import made_up_law
-from mesoscale.switch.beam_switch import solve_beam
-from mesoscale.switch.plate import GPA, NM, VACUUM_PERMITTIVITY, plate_from_settings
+from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.switch.beam_switch import BeamSwitch
+from mesoscale.switch.plate import PlateSwitch
+from mesoscale.units import GPA, NM, VACUUM_PERMITTIVITY
 from tests.mesoscale.circuit.motion import capacitance_F, gas_flow, held_Pa, move, pull_Pa, rates
 from tests.mesoscale.circuit.simulators import (
     by_ngspice,
@@ -31,7 +32,7 @@ from tests.mesoscale.circuit.simulators import (
 from tests.mesoscale.circuit.test_tables import pad
 
 BEAM = DeviceSettings()
-SPRING = plate_from_settings(DeviceSettings(spring_N_per_m=10.0))
+SPRING = PlateSwitch(DeviceSettings(spring_N_per_m=10.0)).plate
 NONE = np.zeros((1, 1))
 PLATE = Lumps(
     np.array([SPRING.gap_nm]),
@@ -61,7 +62,7 @@ def test_lumps_vibrate_as_a_clamped_beam():
 
 
 @pytest.mark.parametrize(
-    "law", [LAW, made_up_law(0.0), made_up_law(30.0)], ids=["tails", "no adhesion", "adhesion"]
+    "law", [LAW, made_up_pad(0.0), made_up_pad(30.0)], ids=["tails", "no adhesion", "adhesion"]
 )
 def test_few_lumps_pull_in_and_release_as_the_finite_elements(law):
     errors = choose_lumps(BEAM, law)
@@ -75,7 +76,8 @@ def test_tilt_hardly_changes_what_the_lumps_leave_out():
     stretches more.
     """
     flat, tilted = (
-        solve_beam(BEAM.model_copy(update={"tilt_nm": tilt}), LAW) for tilt in (0.0, 200.0)
+        BeamSwitch(BEAM.model_copy(update={"tilt_nm": tilt})).states_on(LAW)
+        for tilt in (0.0, 200.0)
     )
     assert tilted.release_V == pytest.approx(flat.release_V, rel=1e-2)
     assert tilted.pull_in_V == pytest.approx(flat.pull_in_V, rel=2e-3)
@@ -277,7 +279,7 @@ def test_the_example_of_the_docs_runs_in_batch(tmp_path):
     example = re.search(r"```\n(\* a step.*?)```", Path("docs/circuit.md").read_text(), re.DOTALL)[
         1
     ]
-    lumps, closes_V = lumps_of(BEAM, 12), solve_beam(BEAM, LAW).pull_in_V
+    lumps, closes_V = lumps_of(BEAM, 12), BeamSwitch(BEAM).states_on(LAW).pull_in_V
     (tmp_path / "central.sub").write_text(spice_switch(lumps, EXACT, LAW, 256, closes_V))
     assert "reltol=1e-5" in example  # 1e-3 allows 3 nm in the depth that the pad remembers
     (tmp_path / "step.cir").write_text(example)

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from evidence.pad.rare_failures import CUTOFFS_NM, known_pad
-from mesoscale.answer import points
-from mesoscale.answer.points import Pad
+from mesoscale.answer import switches as answer_switches
 from mesoscale.circuit import switches
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.switches import CORNERS, central_switch, loops, spread_switches
 from mesoscale.errors import InputError
+from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.switch.beam import beam_of
-from mesoscale.switch.beam_switch import loop_fF, solve_beam
+from mesoscale.switch.beam_switch import BeamSwitch
 from tests.mesoscale.answer.test_release import TABLE, cells_of, model_of
 from tests.mesoscale.circuit.test_tables import pad
 
@@ -23,10 +23,10 @@ BEAM = DeviceSettings()
 
 def test_corners_lie_beyond_the_draws_in_their_direction(monkeypatch):
     def press_pad(point, contact, cells, first_seed, **_):
-        law = known_pad(point).law
+        law = known_pad(point).curves
         return Pad(cells_of(law, 0.0), law.flats)
 
-    for module in (switches, points):
+    for module in (switches, answer_switches):
         monkeypatch.setattr(module, "press_pad", press_pad)
     contact = ContactSettings(mechanics="asperity")
     made = {
@@ -44,9 +44,9 @@ def test_corners_lie_beyond_the_draws_in_their_direction(monkeypatch):
 
 def test_the_slow_loop_jumps_at_pull_in_and_release():
     law = pad()
-    states = solve_beam(BEAM, law)
+    states = BeamSwitch(BEAM).states_on(law)
     volts = np.linspace(0.0, 1.01 * states.pull_in_V, 101)
-    up, down = loop_fF(beam_of(BEAM, 128), BEAM, law, volts)
+    up, down = BeamSwitch(BEAM, beam_of(BEAM, 128)).loop_fF(law, volts)
     open_fF = 8.8541878128e-12 * 510e-6 * 123e-6 / (3490e-9 + 200e-9 / 7.9) * 1e15
     gap = 3490e-9 + 200e-9 / 7.9
     sides = BEAM.fringe * gap / 123e-6 * np.log(np.pi * 123e-6 / gap)  # of a thin strip (Palmer)

@@ -10,9 +10,9 @@ from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.tables import tables_of
 from mesoscale.circuit.verilog import verilog_pad
-from mesoscale.pad.memory import Flats, PadLaw
+from mesoscale.pad.curves import Flats, PadCurves
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.electrode import solve_deepened
+from mesoscale.switch import switch_of
 from tests.mesoscale.circuit.simulators import by_ngspice, needs_ngspice, needs_openvaf
 
 AREA = 1e12
@@ -25,7 +25,7 @@ def pad(hamaker=0.215, waves=0.0):
     form = ClosedForm(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 2.0, hamaker, 0.3)
     s = np.arange(19.0, 80.0, 0.1)
     depths = np.array([20.0, 22.0, 24.0, 26.0, 28.0])
-    law = form.law(s, depths)
+    law = form.curves(s, depths)
     law.opening[:, 1] *= 1.0 + waves * np.sin(5.0 * (s - depths[:, None]))
     return law
 
@@ -125,12 +125,12 @@ def test_the_switch_releases_on_the_table_as_on_the_curves(tmp_path):
     for k, depth in enumerate(depths):
         above = s >= depth - 1e-9
         opening[k][:, above] = apart([pressed(at, depth) for at in s[above]], 20.0 * well(law))
-    made = PadLaw(
+    made = PadCurves(
         s, apart([pressed(at, at) for at in s], 20.0 * well(law)), depths, opening, law.flats
     )
     by_curves, by_table = (
-        solve_deepened(DeviceSettings(), law),
-        solve_deepened(DeviceSettings(), made),
+        switch_of(DeviceSettings()).states(law),
+        switch_of(DeviceSettings()).states(made),
     )
     for name in ("pull_in_V", "release_V"):
         assert by_table[name] == pytest.approx(by_curves[name], rel=0.01)
@@ -232,7 +232,7 @@ def test_pads_of_few_depths_and_without_attraction_have_tables(depths, hamaker):
     law = pad(hamaker)
     if hamaker == 0.0:
         law.closing[1], law.opening[:, 1] = 0.0, 0.0 * law.opening[:, 1]
-    few = PadLaw(
+    few = PadCurves(
         law.separation_nm, law.closing, law.depth_nm[:depths], law.opening[:depths], law.flats
     )
     tables = tables_of(few, cubic=True)

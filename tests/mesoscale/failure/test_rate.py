@@ -18,21 +18,21 @@ from mesoscale.failure.rate import (
     least_rms_nm,
     least_spring,
 )
-from mesoscale.pad.memory import attracting
+from mesoscale.pad.curves import attracting
 from mesoscale.settings import DeviceSettings, FailureSettings
-from mesoscale.studies.answer_stability import made_up_law
-from mesoscale.switch.beam_switch import closed_beam, solve_beam
-from mesoscale.switch.plate import plate_from_settings, solve_on_pad
+from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.switch import switch_of
+from mesoscale.switch.beam_switch import BeamSwitch
 
 BEAM = DeviceSettings(hold_voltage_V=80.0)
 PLATE = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)
 
 
 def test_a_closed_beam_lets_go_where_the_solved_one_does():
-    law = made_up_law(40.0)
+    law = made_up_pad(40.0)
     for times in (0.5, 1.0):
-        release = solve_beam(BEAM, attracting(law, times)).release_V
-        closed = closed_beam(BEAM, law, 128)
+        release = BeamSwitch(BEAM).states_on(attracting(law, times)).release_V
+        closed = BeamSwitch(BEAM).closed_on(law)
         assert release > 0.0
         assert closed(1.01 * release, times)
         assert not closed(0.99 * release, times)
@@ -40,28 +40,30 @@ def test_a_closed_beam_lets_go_where_the_solved_one_does():
 
 @pytest.mark.parametrize("settings", [BEAM, PLATE])
 def test_the_reserve_is_the_attraction_with_which_the_switch_just_sticks(settings):
-    law = made_up_law(40.0)
-    reserve = Attracted(settings, law, 0.0, 128).reserve()
+    law = made_up_pad(40.0)
+    reserve = Attracted(settings, law, 0.0).reserve()
     for logarithm, wanted in ((reserve - FAILURE.step, False), (reserve + FAILURE.step, True)):
         scaled = attracting(law, float(np.exp(logarithm)))
-        if settings.spring_N_per_m is None:
-            assert (solve_beam(settings, scaled).release_V == 0.0) == wanted
-        else:
-            plate = solve_on_pad(plate_from_settings(settings), scaled, settings.hold_voltage_V)
-            assert (plate.release_V == 0.0) == wanted
+        assert (switch_of(settings).states_on(scaled).release_V == 0.0) == wanted
     assert (
-        Attracted(settings, law, 2.0, 128).reserve() <= reserve
+        Attracted(settings, law, 2.0).reserve() <= reserve
     )  # to let go in time asks for more than to let go
 
 
 def test_a_well_far_deeper_than_the_spring_and_none_at_all_reach_the_ends():
-    assert Attracted(PLATE, made_up_law(1e6), 0.0, 64).reserve() < np.log(0.1) + FAILURE.step
-    assert Attracted(PLATE, made_up_law(0.0), 0.0, 64).reserve() > np.log(30.0) - FAILURE.step
+    assert (
+        Attracted(PLATE, made_up_pad(1e6), 0.0, coarse=True).reserve() < np.log(0.1) + FAILURE.step
+    )
+    assert (
+        Attracted(PLATE, made_up_pad(0.0), 0.0, coarse=True).reserve() > np.log(30.0) - FAILURE.step
+    )
 
 
 def test_a_gap_of_20_nm_is_told_or_refused():
     """A switch that rests in its own pad gives an answer or a line, no other error."""
-    narrow = Attracted(PLATE.model_copy(update={"gap_um": 0.02}), made_up_law(40.0), 0.0, 64)
+    narrow = Attracted(
+        PLATE.model_copy(update={"gap_um": 0.02}), made_up_pad(40.0), 0.0, coarse=True
+    )
     with suppress(InputError):
         assert narrow.fails(1.0) in (True, False)
 
@@ -149,11 +151,11 @@ def test_a_switch_whose_halves_disagree_is_decided_by_more_cells():
     class Uneven(KnownPad):
         @property
         def halves(self):
-            return self.law, attracting(self.law, 10.0)
+            return self.curves, attracting(self.curves, 10.0)
 
     def press(point, times, number):
         asked.append(times)
-        law = known_pad(point).law
+        law = known_pad(point).curves
         return KnownPad(law) if times > 1 else Uneven(law)
 
     plates = replace(population(4), press=press)

@@ -76,7 +76,7 @@ def test_measured_hardness_is_compared_with_the_law_of_the_scene():
     (part,) = (
         Model(prior, Cycles(np.empty((0, 0)), np.empty((0, len(NAMES)))), {}, 7000.0)
         .posterior([data])
-        .parts
+        .data
     )
     x = np.array([[getattr(FILM, name, prior.medians()[name]) for name in prior.names]] * 2)
     np.testing.assert_allclose(part.model(x), [FILM.pressure(AREAS)] * 2)

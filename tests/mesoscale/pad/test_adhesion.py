@@ -5,9 +5,11 @@ import pytest
 
 from mesoscale.contact import ContactInputs
 from mesoscale.pad.adhesion import adhesion_of
-from mesoscale.pad.cells import plan_grid, sample_cells
-from mesoscale.pad.curves import press_cells
-from mesoscale.pad.memory import Flats, PadLaw, flats_of, law_of
+from mesoscale.pad.cells import sample_cells
+from mesoscale.pad.closing import press_cells
+from mesoscale.pad.curves import Flats, PadCurves
+from mesoscale.pad.pilots import plan_grid
+from mesoscale.pad.pressed import curves_of, flats_of
 from mesoscale.settings import ContactSettings
 
 INPUTS = ContactInputs(
@@ -20,16 +22,16 @@ def adhesion(mechanics: str = "asperity", cells: int = 2, **changes: float):
     """Adhesion of a pad pressed with some 5 MPa."""
     contact = SMALL.model_copy(update={"mechanics": mechanics, **changes})
     sampled = sample_cells(INPUTS, cells)
-    grid = plan_grid(INPUTS, contact, sampled, lambda separation: 0.005 + 0.0 * separation)
+    grid = plan_grid(INPUTS, contact, sampled, 0.005)
     return adhesion_of(
-        law_of(press_cells(INPUTS, contact, grid, sampled), flats_of(INPUTS, contact))
+        curves_of(press_cells(INPUTS, contact, grid, sampled), flats_of(INPUTS, contact))
     )
 
 
 def test_flats_that_touch_nowhere_have_hamakers_energy():
     separation, flats = np.geomspace(10.0, 200.0, 4000), Flats(INPUTS.hamaker, 0.3)
     closing = np.stack([0.0 * separation, -flats.pull_GPa(separation)])
-    (opened,) = adhesion_of(PadLaw(separation, closing, separation[:1], closing[None], flats))
+    (opened,) = adhesion_of(PadCurves(separation, closing, separation[:1], closing[None], flats))
     assert opened.energy_uJ_m2 == pytest.approx(opened.flats_uJ_m2, rel=1e-5)
     assert opened.flats_uJ_m2 == pytest.approx(1e6 * INPUTS.hamaker / (12.0 * np.pi * 10.3**2))
     assert opened.pull_off_kPa == pytest.approx(1e6 * float(flats.pull_GPa(10.0)))
@@ -43,7 +45,7 @@ def test_work_begins_where_the_force_is_zero():
     net = np.interp(separation, [20.0, 30.0, 40.0, 60.0], [1e-3, 0.0, -1e-4, 0.0])
     branch = np.stack([np.maximum(net, 0.0), np.minimum(net, 0.0)])
     (opened,) = adhesion_of(
-        PadLaw(separation, branch, separation[:1], branch[None], Flats(0.0, 0.0))
+        PadCurves(separation, branch, separation[:1], branch[None], Flats(0.0, 0.0))
     )
     assert opened.zero_force_nm == pytest.approx(30.0)
     assert opened.load_MPa == pytest.approx(1.0)

@@ -7,8 +7,9 @@ import pytest
 
 from mesoscale.contact import ContactInputs
 from mesoscale.contact.coupled import dense
-from mesoscale.pad.cells import plan_grid, sample_cells
-from mesoscale.pad.curves import press_cells
+from mesoscale.pad.cells import sample_cells
+from mesoscale.pad.closing import press_cells
+from mesoscale.pad.pilots import plan_grid
 from mesoscale.settings import ContactSettings
 from mesoscale.studies.pad_stability import ATTRACTIONS, SOFT_FILM, hard_cases, violations
 
@@ -64,9 +65,7 @@ def test_soft_cells_are_solved_with_the_blocks_of_their_own_sites(monkeypatch):
 def test_a_pad_that_breaks_an_invariant_is_told():
     contact = ContactSettings(mechanics="asperity", pixels=64)
     cells = sample_cells(MIDDLE, 2)
-    grid = plan_grid(
-        MIDDLE, contact, cells, lambda separation_nm: np.full_like(separation_nm, 5e-3)
-    )
+    grid = plan_grid(MIDDLE, contact, cells, 5e-3)
     pad = press_cells(MIDDLE, contact, grid, cells)
     assert violations(pad) == []
     harder = pad.opening.copy()

@@ -11,19 +11,20 @@ from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import FilmInputs
 from mesoscale.pad.cells import (
+    FIRST_SEED,
     Cell,
     FilmPieces,
-    PadGrid,
     half_of,
     place_ratio,
-    plan_grid,
     sample_cells,
     surface_of,
 )
-from mesoscale.pad.curves import PadCells, press_cells
+from mesoscale.pad.closing import PadCells, press_cells
+from mesoscale.pad.curves import Flats, PadCurves, deepened
+from mesoscale.pad.grid import PadGrid
 from mesoscale.pad.local import LocalPad
-from mesoscale.pad.memory import Flats, PadLaw, deepened, flats_of, law_of
-from mesoscale.pad.numerics import PAD
+from mesoscale.pad.pilots import plan_grid
+from mesoscale.pad.pressed import curves_of, flats_of
 from mesoscale.settings import ContactSettings
 
 MIDDLE = ContactInputs(
@@ -34,13 +35,9 @@ CELLS, STEP_NM = 16, 0.2
 WANTED_MPa = 5.0
 
 
-def wanted_GPa(separation_nm):
-    return np.full_like(separation_nm, WANTED_MPa * 1e-3)
-
-
 def pressed(inputs, cells, grid=None, contact=CONTACT):
     """A pad of cells, at separations of its own where none are given."""
-    grid = grid or plan_grid(inputs, contact, cells, wanted_GPa, step_nm=STEP_NM)
+    grid = grid or plan_grid(inputs, contact, cells, 1e-3 * WANTED_MPa, step_nm=STEP_NM)
     return press_cells(inputs, contact, grid, cells)
 
 
@@ -66,7 +63,7 @@ def exponential_law(depths):
         above = s >= depth - 1e-9
         opening[k, 0, above] = closing(depth) * np.exp(-(s[above] - depth) / 1.5)
         opening[k, 1, above] = attraction(s[above])
-    law = PadLaw(
+    law = PadCurves(
         s, np.stack([closing(s), attraction(s)]), np.array(depths), opening, Flats(0.2, 0.165)
     )
     return law, lambda at, depth: (closing(depth) * np.exp(-(at - depth) / 1.5), attraction(at))
@@ -82,7 +79,7 @@ def test_the_grid_reaches_the_pressure_and_all_first_contacts(pad):
 def test_a_pad_that_one_tall_grain_carries_is_opened_from_light_loads(monkeypatch):
     def with_a_grain(inputs, contact, cell):
         heights = surface_of(inputs, contact, cell)
-        if cell.seed == PAD.first_seed:
+        if cell.seed == FIRST_SEED:
             heights[:48, :48] -= 20.0
         return heights
 
@@ -97,11 +94,11 @@ def test_a_pressure_out_of_reach_is_refused():
     with pytest.raises(
         InputError, match=r"of the 5 MPa that the switch presses with; lower hold_voltage_V"
     ):
-        plan_grid(soft, rigid, sample_cells(soft, 4), wanted_GPa)
+        plan_grid(soft, rigid, sample_cells(soft, 4), 1e-3 * WANTED_MPa)
 
 
 def test_openings_start_where_closing_ended_and_deeper_pads_hold_more(pad):
-    law = law_of(pad, flats_of(MIDDLE, CONTACT))
+    law = curves_of(pad, flats_of(MIDDLE, CONTACT))
     for depth in law.depth_nm:
         # cells that touch first between two depths have no opening of their own
         assert law.opening_GPa(depth, depth) == pytest.approx(law.closing_GPa(depth), rel=1e-4)
@@ -119,7 +116,7 @@ def test_memory_between_depths_is_exact_for_exponential_branches():
 
 def test_a_pad_that_is_continued_below_its_deepest_closing_is_exact_for_exponential_branches():
     law, exact = exponential_law([22.0, 24.0])
-    law = PadLaw(
+    law = PadCurves(
         law.separation_nm[20:], law.closing[:, 20:], law.depth_nm, law.opening[:, :, 20:], law.flats
     )
     deeper = deepened(law)
@@ -144,7 +141,7 @@ def test_nothing_is_extrapolated_unasked():
 
 
 def test_far_away_a_pad_is_two_flats(pad):
-    law = law_of(pad, flats_of(MIDDLE, CONTACT))
+    law = curves_of(pad, flats_of(MIDDLE, CONTACT))
     far = law.separation_nm[-1]
     flats = -MIDDLE.hamaker / (6 * np.pi * (far + CONTACT.gap_cutoff_nm) ** 3)
     # two flats to 1 + 6 (rms / separation)^2
@@ -265,11 +262,11 @@ def test_a_dozen_cells_have_the_well_of_a_pad_of_many():
         np.array([-pull.min() for pull in of])
         for of in (
             [pad.mean(pad.closing)[1] for pad in pads],
-            [law_of(pad, flats).closing[1] for pad in pads],
+            [curves_of(pad, flats).closing[1] for pad in pads],
         )
     )
     assert abs(smoothed.mean() - exact) < 0.2 * (plain.mean() - exact)
-    area = np.array([-0.1 * law_of(pad, flats).closing[1].sum() for pad in pads])
+    area = np.array([-0.1 * curves_of(pad, flats).closing[1].sum() for pad in pads])
     assert area == pytest.approx(
         (2.0 * np.pi) ** 0.5, rel=1e-3
     )  # of a single well: nothing is lost
@@ -277,7 +274,7 @@ def test_a_dozen_cells_have_the_well_of_a_pad_of_many():
 
 def test_cells_that_touch_first_at_one_separation_are_not_shifted():
     pad = cells_with_wells(np.full(3, 30.0))
-    assert law_of(pad, Flats(0.215, 0.165)).closing == pytest.approx(
+    assert curves_of(pad, Flats(0.215, 0.165)).closing == pytest.approx(
         pad.mean(pad.closing)[:, ::-1], rel=1e-12
     )
 
@@ -293,14 +290,14 @@ def test_a_rough_place_in_its_own_steps_has_the_forces_of_short_ones(monkeypatch
     """Six times the median RMS, steps of 0.8 nm for 0.2: lines overrate a force by 6 %, underrate a
     well by 16 %.
     """
-    place = Cell(PAD.first_seed, float(np.log(6.0)) / 0.4, 0.0, 1.0)
+    place = Cell(FIRST_SEED, float(np.log(6.0)) / 0.4, 0.0, 1.0)
     touch = -float(surface_of(film(0.4), CONTACT, place).min())
     grid = PadGrid(
         touch + np.concatenate([np.arange(40.0, 2.0, -1.0), np.arange(2.0, -18.1, -0.2)]),
         np.array([138]),
     )
     own = pressed(film(0.4), [place], grid)
-    monkeypatch.setattr("mesoscale.pad.cells.PAD", replace(PAD, place_step_rms=0.0))
+    monkeypatch.setattr("mesoscale.pad.closing.PLACE_STEP_RMS", 0.0)
     short = pressed(film(0.4), [place], grid)
     assert short.closing.max() > 0.0, "not in contact"
     assert own.closing == pytest.approx(short.closing, abs=0.1 * short.closing.max())
@@ -311,7 +308,11 @@ def test_a_rough_place_in_its_own_steps_has_the_forces_of_short_ones(monkeypatch
 def test_steps_grow_with_the_roughness_of_the_places_that_touch():
     unequal, alike = (
         plan_grid(
-            film(scatter), CONTACT, sample_cells(film(scatter), 16), wanted_GPa, step_nm=STEP_NM
+            film(scatter),
+            CONTACT,
+            sample_cells(film(scatter), 16),
+            1e-3 * WANTED_MPa,
+            step_nm=STEP_NM,
         )
         for scatter in (0.15, 0.0)
     )
@@ -332,7 +333,7 @@ def test_where_rough_places_alone_carry_the_pad_the_grid_ends_above_the_typical_
 
 def test_mean_planes_and_heights_of_a_place_grow_together():
     """As in a film whose amplitude varies slowly from place to place."""
-    cell = Cell(PAD.first_seed + 3, 0.7, -0.4, 1.0)
+    cell = Cell(FIRST_SEED + 3, 0.7, -0.4, 1.0)
     times = place_ratio(film(0.5), cell)
     here = surface_of(film(0.5), CONTACT, cell)
     assert here == pytest.approx(times * FilmPieces(MIDDLE, CONTACT).surface(cell), abs=1e-9)
@@ -347,7 +348,7 @@ def test_a_film_of_long_waves_is_closed_in_steps_that_fit_its_way():
         CONTACT.model_copy(update={"length_nm": 6000.0}),
     )
     cells = sample_cells(long, 4)
-    grid = plan_grid(long, contact, cells, wanted_GPa, step_nm=0.05 * long.rms)
+    grid = plan_grid(long, contact, cells, 1e-3 * WANTED_MPa, step_nm=0.05 * long.rms)
     steps = -np.diff(grid.separation_nm)
     assert steps[-1] <= 0.05 * long.rms / 3 + 1e-9
     assert (

@@ -4,22 +4,15 @@ import numpy as np
 import pytest
 from scipy.special import ndtri
 
-from mesoscale.answer.points import (
-    PadModel,
-    central_point,
-    plan_points,
-    solve_point,
-    solve_points,
-    surfaces_of,
-)
+from mesoscale.answer.points import central_point, plan_points
+from mesoscale.answer.switches import PadModel, solve_point, solve_points, surfaces_of
 from mesoscale.contact.surface import random_surface, shared_wave
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
-from mesoscale.pad.cells import PadGrid
-from mesoscale.pad.numerics import PAD
+from mesoscale.pad.grid import DEPTHS, PadGrid, usual_step_nm
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.studies.pad_accuracy import (
+    BY_DEPTHS,
     CELLS,
-    DEPTHS,
     POINTS,
     SITES,
     STEPS,
@@ -58,18 +51,18 @@ def rows():
 
 
 def test_every_choice_has_errors_with_their_own_and_the_value_in_use(rows):
-    assert {row["knob"] for row in rows} == {CELLS, STEPS, DEPTHS, SITES, POINTS}
+    assert {row["knob"] for row in rows} == {CELLS, STEPS, BY_DEPTHS, SITES, POINTS}
     assert {row["unit"] for row in rows} == {"V"}
     for row in rows:
         assert np.isfinite([row["error"], row["own_error"], row["cpu_s"]]).all()
         assert row["release_V"] == row["error"]
     in_use = {row["knob"]: row["value"] for row in rows if row["shipped"]}
-    step = min(PAD.step_rms * POINT.values["rms"], PAD.longest_step_nm)
-    assert in_use == {CELLS: 2, STEPS: step, DEPTHS: PAD.depths, SITES: 2.0, POINTS: 32}
+    step = usual_step_nm(POINT.values["rms"])
+    assert in_use == {CELLS: 2, STEPS: step, BY_DEPTHS: DEPTHS, SITES: 2.0, POINTS: 32}
 
 
 def test_the_depths_converge(rows):
-    few, *_, most = [row["error"] for row in rows if row["knob"] == DEPTHS]
+    few, *_, most = [row["error"] for row in rows if row["knob"] == BY_DEPTHS]
     assert most < 0.5 * few
 
 

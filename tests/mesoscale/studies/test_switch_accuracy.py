@@ -4,15 +4,16 @@ import numpy as np
 import pytest
 
 from evidence.pad.rare_failures import PLATE, known_pad, population
-from mesoscale.answer import points
-from mesoscale.answer.points import Pad
+from mesoscale.answer import switches
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE
+from mesoscale.pad.pressed import Pad
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies import answer_accuracy, circuit_accuracy, failure_accuracy
+from mesoscale.switch.beam import ELEMENTS
 from mesoscale.switch.beam_kernels import OPENING_NM
-from mesoscale.switch.numerics import SWITCH
+from mesoscale.switch.beam_switch import RELEASE_TOLERANCE
 from tests.mesoscale.answer.test_release import cells_of, model_of
 
 STAGES = {"answer": answer_accuracy, "circuit": circuit_accuracy}
@@ -20,10 +21,10 @@ STAGES = {"answer": answer_accuracy, "circuit": circuit_accuracy}
 
 def pressed_as_known(monkeypatch):
     def press_pad(point, contact, cells, first_seed, **_):
-        law = known_pad(point).law
+        law = known_pad(point).curves
         return Pad(cells_of(law, 0.1 / np.sqrt(cells / 2)), law.flats)
 
-    monkeypatch.setattr(points, "press_pad", press_pad)
+    monkeypatch.setattr(switches, "press_pad", press_pad)
 
 
 @pytest.fixture(scope="module")
@@ -53,9 +54,9 @@ def test_every_choice_has_errors_and_the_value_in_use(tables, stage):
 def test_the_values_in_use_are_those_of_the_numerics(tables):
     in_use = {row["knob"]: row["value"] for row in tables["answer"] if row["shipped"]}
     assert in_use == {
-        answer_accuracy.ELEMENTS: SWITCH.elements,
+        answer_accuracy.BY_ELEMENTS: ELEMENTS,
         answer_accuracy.STEPS: OPENING_NM,
-        answer_accuracy.TOLERANCE: SWITCH.release_tolerance,
+        answer_accuracy.TOLERANCE: RELEASE_TOLERANCE,
     }
     (lumps,) = {
         row["value"]
@@ -67,7 +68,7 @@ def test_the_values_in_use_are_those_of_the_numerics(tables):
 
 def test_errors_fall_towards_the_finest(tables):
     for stage, knob in (
-        ("answer", answer_accuracy.ELEMENTS),
+        ("answer", answer_accuracy.BY_ELEMENTS),
         ("answer", answer_accuracy.TOLERANCE),
         ("circuit", circuit_accuracy.LUMPS),
         ("circuit", circuit_accuracy.STRAIGHT),
@@ -76,7 +77,7 @@ def test_errors_fall_towards_the_finest(tables):
         assert finest <= coarsest, knob
     # a release is no farther off than it is said to be
     _, usual, finer = releases(tables["answer"], answer_accuracy.TOLERANCE)
-    assert usual < SWITCH.release_tolerance * 100.0
+    assert usual < RELEASE_TOLERANCE * 100.0
     assert finer <= usual
 
 

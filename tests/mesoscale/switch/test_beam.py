@@ -6,14 +6,15 @@ from scipy.optimize import brentq
 
 from evidence.pad import finite_differences
 from mesoscale.errors import InputError, NotComputed
+from mesoscale.pad.curves import PadCurves
 from mesoscale.pad.local import LocalPad
-from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
-from mesoscale.studies.answer_stability import made_up_law
+from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.switch import switch_of
 from mesoscale.switch.beam import beam_of, euler_MPa, rests_as_stated
 from mesoscale.switch.beam_kernels import elongation
-from mesoscale.switch.beam_switch import free_pull_in_V, solve_beam
-from mesoscale.switch.plate import VACUUM_PERMITTIVITY, beam_stiffness_N_per_m
+from mesoscale.switch.beam_switch import BeamSwitch
+from mesoscale.units import VACUUM_PERMITTIVITY
 
 DEFAULT = DeviceSettings(gap_um=2.3)
 
@@ -26,10 +27,15 @@ def deflection_of(settings, pressure_Pa):
     return beam, change[16, 0]
 
 
+def stiffness_N_per_m(beam):
+    """Of a flat clamped beam, 32 E b (t / L)^3 (G. M. Rebeiz, RF MEMS, Wiley 2003, section 2.2)."""
+    return 384.0 * beam.bending_N_m2 / beam.length_m**3
+
+
 def test_uniform_load_bends_by_the_stiffness_of_the_lumped_switch():
     beam, middle = deflection_of(DEFAULT, -1e3)
     force = 1e3 * beam.length_m * beam.width_m
-    assert -middle == pytest.approx(force / beam_stiffness_N_per_m(DEFAULT), rel=1e-6)
+    assert -middle == pytest.approx(force / stiffness_N_per_m(beam), rel=1e-6)
 
 
 def test_a_tense_beam_bends_as_the_exact_solution():
@@ -172,14 +178,14 @@ def test_heat_is_a_stress_and_moves_a_bow():
     hot = DeviceSettings(temperature_C=25.0)
     assert hot.heating_MPa == pytest.approx(-89.3e3 * 10.8e-6 * 5.0)
     stressed = DeviceSettings(residual_stress_MPa=hot.heating_MPa / 0.7)
-    assert free_pull_in_V(hot) == pytest.approx(free_pull_in_V(stressed), rel=1e-6)
+    assert switch_of(hot).pull_in_V == pytest.approx(switch_of(stressed).pull_in_V, rel=1e-6)
     bowed = beam_of(hot.model_copy(update={"bow_nm": 10.0}), 64)
     assert 1e9 * bowed.rest_nodal[32, 0] == pytest.approx(
         10.0 / (1.0 + hot.heating_MPa / euler_MPa(hot)), rel=1e-3
     )
     cantilever = DeviceSettings(ends="cantilever", temperature_C=200.0, residual_stress_MPa=-300.0)
     cold = cantilever.model_copy(update={"temperature_C": 20.0, "residual_stress_MPa": 0.0})
-    assert free_pull_in_V(cantilever) == free_pull_in_V(cold)
+    assert switch_of(cantilever).pull_in_V == switch_of(cold).pull_in_V
 
 
 PUBLISHED = (
@@ -204,9 +210,9 @@ def test_published_bridges_pull_in_within_3_percent(length_um, stress_MPa, volts
         "dielectric_nm": 0.0,
     }
     silicon = {"youngs_modulus_GPa": 169.0, "poisson_ratio": 0.06}
-    assert free_pull_in_V(
+    assert switch_of(
         DeviceSettings(**bridge, **silicon, residual_stress_MPa=stress_MPa)
-    ) == pytest.approx(volts, rel=0.03)
+    ).pull_in_V == pytest.approx(volts, rel=0.03)
 
 
 def test_a_published_cantilever_pulls_in_within_1_percent():
@@ -221,7 +227,7 @@ def test_a_published_cantilever_pulls_in_within_1_percent():
     settings = DeviceSettings(
         ends="cantilever", youngs_modulus_GPa=169.0, poisson_ratio=0.06, **beam
     )
-    assert free_pull_in_V(settings) == pytest.approx(37.84, rel=0.01)
+    assert switch_of(settings).pull_in_V == pytest.approx(37.84, rel=0.01)
 
 
 def test_a_short_electrode_pulls_a_cantilever_as_a_force_at_its_place():
@@ -245,22 +251,25 @@ def test_a_short_electrode_pulls_a_cantilever_as_a_force_at_its_place():
 )
 def test_release_from_the_snap_is_that_of_finite_differences(settings):
     """A plain twin of the whole way: pull-in, snap, landing, memory, release."""
-    law = made_up_law(8.0)
+    law = made_up_pad(8.0)
     pull_in, release = finite_differences.release(settings, law)
-    states = solve_beam(settings, law)
+    states = BeamSwitch(settings).states_on(law)
     assert states.pull_in_V == pytest.approx(pull_in, rel=1e-3)
     assert states.release_V == pytest.approx(release, rel=1e-2)
     assert release > 1.0
 
 
 def test_a_beam_that_peels_from_few_elements_lets_go_as_one_of_four_times_as_many():
-    law = made_up_law(160.0)
-    release = solve_beam(DeviceSettings(), law).release_V
-    assert release == pytest.approx(solve_beam(DeviceSettings(), law, 512).release_V, rel=1e-3)
+    law = made_up_pad(160.0)
+    release = BeamSwitch(DeviceSettings()).states_on(law).release_V
+    assert release == pytest.approx(
+        BeamSwitch(DeviceSettings(), beam_of(DeviceSettings(), 512)).states_on(law).release_V,
+        rel=1e-3,
+    )
 
 
 def test_local_pressure_is_that_of_the_pad_with_its_memory():
-    law = made_up_law(5.0)
+    law = made_up_pad(5.0)
     local = LocalPad(law)
     at = np.array([[24.0, 25.5, 30.0, 90.0]])
     np.testing.assert_allclose(
@@ -273,7 +282,7 @@ def test_local_pressure_is_that_of_the_pad_with_its_memory():
 
 @pytest.fixture(scope="module")
 def landed():
-    return solve_beam(DEFAULT, made_up_law(), 32)
+    return BeamSwitch(DEFAULT, beam_of(DEFAULT, 32)).states_on(made_up_pad())
 
 
 def test_pull_in_is_the_exact_number():
@@ -285,21 +294,28 @@ def test_pull_in_is_the_exact_number():
         beam = beam_of(settings, 64)
         gap = settings.gap_um * 1e-6 + settings.dielectric_nm / settings.permittivity * 1e-9
         number = (
-            VACUUM_PERMITTIVITY * beam.width_m * free_pull_in_V(settings) ** 2 * beam.length_m**4
+            VACUUM_PERMITTIVITY
+            * beam.width_m
+            * switch_of(settings).pull_in_V ** 2
+            * beam.length_m**4
         )
         assert number / (2 * beam.bending_N_m2 * gap**3) == pytest.approx(exact, rel=2e-4)
 
 
 def test_the_landed_area_is_a_result_that_grows_with_the_voltage(landed):
-    harder = solve_beam(
-        DEFAULT.model_copy(update={"hold_voltage_V": 1.1 * landed.pull_in_V}), made_up_law(), 32
-    )
+    harder = BeamSwitch(
+        DEFAULT.model_copy(update={"hold_voltage_V": 1.1 * landed.pull_in_V}),
+        beam_of(DEFAULT.model_copy(update={"hold_voltage_V": 1.1 * landed.pull_in_V}), 32),
+    ).states_on(made_up_pad())
     assert 0.1 < landed.landed_share < harder.landed_share < 1.0
     assert 0 < landed.release_V < landed.hold_V
 
 
 def test_a_bow_away_from_the_dielectric_raises_pull_in_and_release(landed):
-    bowed = solve_beam(DEFAULT.model_copy(update={"bow_nm": 500.0}), made_up_law(), 32)
+    bowed = BeamSwitch(
+        DEFAULT.model_copy(update={"bow_nm": 500.0}),
+        beam_of(DEFAULT.model_copy(update={"bow_nm": 500.0}), 32),
+    ).states_on(made_up_pad())
     assert bowed.pull_in_V > landed.pull_in_V
     assert bowed.release_V > landed.release_V
 
@@ -338,9 +354,9 @@ def test_a_bow_away_from_the_dielectric_raises_pull_in_and_release(landed):
     ],
 )
 def test_a_beam_that_cannot_be_solved_is_refused_in_one_line(change, words):
-    law = made_up_law()
+    law = made_up_pad()
     # closed to 24 nm only
-    law = PadLaw(
+    law = PadCurves(
         law.separation_nm[180:],
         law.closing[:, 180:],
         law.depth_nm[4:],
@@ -348,13 +364,15 @@ def test_a_beam_that_cannot_be_solved_is_refused_in_one_line(change, words):
         law.flats,
     )
     with pytest.raises(InputError, match=words) as caught:
-        solve_beam(DEFAULT.model_copy(update=change), law, 32)
+        BeamSwitch(
+            DEFAULT.model_copy(update=change), beam_of(DEFAULT.model_copy(update=change), 32)
+        ).states_on(law)
     assert "\n" not in str(caught.value)
 
 
 def test_a_pad_that_was_hardly_closed_is_refused_with_what_helps():
-    law = made_up_law()
-    law = PadLaw(
+    law = made_up_pad()
+    law = PadCurves(
         law.separation_nm,
         law.closing * np.array([[1e-9], [1.0]]),
         law.depth_nm,
@@ -364,4 +382,4 @@ def test_a_pad_that_was_hardly_closed_is_refused_with_what_helps():
     with pytest.raises(
         NotComputed, match=r"carries 6.3e-07 MPa at 15 nm, where its curves end; raise pad\.cells"
     ):
-        solve_beam(DEFAULT, law)
+        BeamSwitch(DEFAULT).states_on(law)

@@ -7,7 +7,7 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.electrode import solve_deepened
+from mesoscale.switch import switch_of
 from tests.mesoscale.circuit.test_tables import pad
 
 
@@ -38,13 +38,13 @@ def test_devices_at_the_ends_of_their_ranges_give_an_answer_or_none():
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             try:
-                states = solve_deepened(DeviceSettings(**chosen), law)
+                states = switch_of(DeviceSettings(**chosen)).states(law)
             except (
                 InputError
             ):  # a beam that stands on the dielectric at rest, or presses beyond the pad
                 continue
-        assert states["release_V"] >= 0
-        assert not states["pull_in_V"] < 0
+        assert states.release_V >= 0
+        assert not states.pull_in_V < 0
 
 
 @pytest.mark.parametrize(

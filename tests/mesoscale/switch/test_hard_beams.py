@@ -13,11 +13,10 @@ from mesoscale.studies.answer_stability import (
     SOLVED,
     hard_beams,
     hard_cases,
-    made_up_law,
+    made_up_pad,
+    solved_beam,
 )
 from mesoscale.switch.beam import lumped_beam
-from mesoscale.switch.beam_switch import solve_beam
-from mesoscale.switch.electrode import with_pad
 
 CASES = list(hard_beams())
 
@@ -36,7 +35,7 @@ def test_no_hard_beam_is_left_out():
 def test_a_scene_is_tried_with_its_own_device_on_its_own_pad():
     device = DeviceSettings(gap_um=2.3)
     own = [
-        case for case in hard_cases(device, made_up_law(2.0)) if case.name.startswith("own device")
+        case for case in hard_cases(device, made_up_pad(2.0)) if case.name.startswith("own device")
     ]
     assert len(own) == 11
     assert own[0].description == "gap_um = 1.15"
@@ -99,7 +98,4 @@ def test_a_device_that_is_none_is_refused_in_one_line(change, words):
 def test_an_electrode_beside_its_contact_is_refused_for_a_true_reason(electrode, contact, words):
     """By its place, and not by voltages that nobody has or by a fault of the solver."""
     with pytest.raises(InputError, match=words):
-        with_pad(
-            lambda law: solve_beam(DeviceSettings(electrode=electrode, contact=contact), law),
-            made_up_law(2.0),
-        )
+        solved_beam(DeviceSettings(electrode=electrode, contact=contact), made_up_pad(2.0))

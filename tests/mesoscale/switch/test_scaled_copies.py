@@ -6,11 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
-from mesoscale.studies.answer_stability import SOLVED, made_up_law
-from mesoscale.switch.beam_switch import solve_beam
-from mesoscale.switch.electrode import with_pad
+from mesoscale.studies.answer_stability import SOLVED, made_up_pad, solved_beam
 
 
 def softer(settings, law, times):
@@ -21,7 +19,9 @@ def softer(settings, law, times):
         "residual_stress_MPa": stress,
     }
     flats = replace(law.flats, hamaker=times * law.flats.hamaker)
-    pad = PadLaw(law.separation_nm, times * law.closing, law.depth_nm, times * law.opening, flats)
+    pad = PadCurves(
+        law.separation_nm, times * law.closing, law.depth_nm, times * law.opening, flats
+    )
     return settings.model_copy(update=update), pad
 
 
@@ -31,13 +31,13 @@ def softer(settings, law, times):
 @pytest.mark.parametrize("times", [2.0**-14, 1e-4])
 def test_the_solver_knows_no_pressure_but_those_of_beam_and_pad(name, times):
     """Voltages go with the root of all pressures; a power of four scales every number exactly."""
-    settings, law = DeviceSettings(**{**SOLVED[name], "temperature_C": 20.0}), made_up_law(2.0)
+    settings, law = DeviceSettings(**{**SOLVED[name], "temperature_C": 20.0}), made_up_pad(2.0)
     hold = {
         "hold_voltage_V": times**0.5 * settings.hold_voltage_V if settings.hold_voltage_V else None
     }
-    stiff, _ = with_pad(lambda pad: solve_beam(settings, pad), law)
+    stiff = solved_beam(settings, law)
     soft_settings, soft_law = softer(settings, law, times)
-    soft, _ = with_pad(lambda pad: solve_beam(soft_settings.model_copy(update=hold), pad), soft_law)
+    soft = solved_beam(soft_settings.model_copy(update=hold), soft_law)
     for way in ("pull_in_V", "hold_V", "release_V"):
         assert getattr(soft, way) / times**0.5 == pytest.approx(getattr(stiff, way), rel=1e-6)
     assert soft.landed_share == pytest.approx(stiff.landed_share, rel=1e-6)
@@ -55,7 +55,7 @@ def test_a_long_thin_cantilever_lands_on_an_ordinary_pad(adhesion_kPa):
         thickness_um=1.04,
         youngs_modulus_GPa=45.0,
     )
-    states, _ = with_pad(lambda law: solve_beam(settings, law), made_up_law(adhesion_kPa))
+    states = solved_beam(settings, made_up_pad(adhesion_kPa))
     assert 0.4 < states.pull_in_V < 0.5  # of a cantilever: sqrt(0.28 E t^3 g^3 / eps L^4) = 0.47
     assert 0.2 < states.landed_share < 0.5
     assert 0.0 <= states.release_V < states.pull_in_V

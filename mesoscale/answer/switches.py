@@ -1,0 +1,206 @@
+"""The switches of the points, each on a pad that is pressed for it.
+
+Nothing is fitted between points. Each pad has a few cells of its own, so their error averages out
+over the points as surfaces common to all would not let it. Half of its cells against the other half
+tells the error of a point; one that they leave undecided has more cells."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.answer.points import Design, Point
+from mesoscale.errors import InputError
+from mesoscale.pad.cells import FIRST_SEED, sample_cells
+from mesoscale.pad.closing import press_cells
+from mesoscale.pad.grid import DEPTHS
+from mesoscale.pad.pilots import Pilots
+from mesoscale.pad.pressed import Pad, flats_of
+from mesoscale.settings import ContactSettings
+from mesoscale.switch import States, Switch, release_or_nan_V, switch_of
+
+Array = NDArray[np.float64]
+Progress = Callable[[float, str], None]
+
+MARGIN = 1.25
+"""Over what the switch presses with: the mean of the few pilot cells is off by 15 %."""
+UNDECIDED_SHARE = 0.008
+"""Error of a release, over the pull-in voltage, from which a pad has more cells: 0.6 V of the
+default switch."""
+UNDECIDED_OF_RELEASE = 0.1
+"""The same over the release; it must exceed both."""
+MORE_CELLS = 4
+"""Times as many cells has a point that is undecided."""
+SEEDS_APART = 1_000_000
+"""Between the first surfaces of two points."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """The switch of a point.
+
+    Attributes
+    ----------
+    pad : None where it cannot be pressed.
+    states : what the switch does; None where it has no answer.
+    halves_V : release on either half of the cells; NaN where it cannot carry the switch.
+    refused : why it has no answer; empty where it has one.
+    """
+
+    point: Point
+    pad: Pad | None
+    states: States | None
+    halves_V: tuple[float, float]
+    refused: str = ""
+
+    @property
+    def pressed(self) -> Pad:
+        """The pad.
+
+        Raises
+        ------
+        InputError : it cannot be pressed.
+        """
+        if self.pad is None:
+            raise InputError(self.refused)
+        return self.pad
+
+    @property
+    def outcome(self) -> str:
+        """What the switch does, in words."""
+        if self.states is None:
+            return f"no switch: {self.refused}"
+        release_V = self.states.release_V
+        opens = f"lets go at {release_V:.3g} V" if release_V > 0.0 else "sticks"
+        return f"the switch closes at {self.states.pull_in_V:.3g} V and {opens}"
+
+    @property
+    def error_V(self) -> float:
+        """Estimated standard error of the release by the number of cells."""
+        return 0.5 * abs(self.halves_V[0] - self.halves_V[1])
+
+    @property
+    def undecided(self) -> bool:
+        """Whether more cells are wanted: the halves disagree by much, or on whether the switch
+        sticks, or fail.
+        """
+        if self.states is None:
+            return False
+        first_V, second_V = self.halves_V
+        disagree = (first_V == 0.0) != (second_V == 0.0)
+        enough_V = max(
+            UNDECIDED_SHARE * self.states.pull_in_V, UNDECIDED_OF_RELEASE * self.states.release_V
+        )
+        return disagree or not self.error_V <= enough_V
+
+
+def solve_point(
+    point: Point,
+    contact: ContactSettings,
+    cells: int,
+    first_seed: int,
+    progress: Progress | None = None,
+) -> Solved:
+    """The switch of a point on a pad of so many cells; a point without an answer has the reason."""
+    pad = None
+    try:
+        pad = press_pad(point, contact, cells, first_seed, progress=progress)
+        states = switch_of(point.device).states(pad.curves)
+    except InputError as error:
+        return Solved(point, pad, None, (np.nan, np.nan), str(error))
+    first, second = (release_or_nan_V(point.device, half, coarse=True) for half in pad.halves)
+    return Solved(point, pad, states, (first, second))
+
+
+def press_pad(
+    point: Point,
+    contact: ContactSettings,
+    cells: int,
+    first_seed: int,
+    *,
+    step_nm: float | None = None,
+    depths: int = DEPTHS,
+    progress: Progress | None = None,
+) -> Pad:
+    """The pad of a point, closed as hard as its switch presses, and opened.
+
+    Parameters
+    ----------
+    step_nm : of separation in and near contact, at most; None: `usual_step_nm`.
+    depths : from which the pad is opened.
+
+    Raises
+    ------
+    InputError : inputs that the contact does not accept, or cells that never reach the pressure.
+    """
+    inputs, settings = point.contact_of(contact)
+    pad_cells = point.device.pad_um2 * 1e6 / settings.length_nm**2
+    drawn = sample_cells(inputs, cells, first_seed, pad_cells)
+    pilots = close_for(switch_of(point.device.level), Pilots(inputs, settings, drawn, step_nm))
+    closed = press_cells(inputs, settings, pilots.grid(depths), drawn, progress)
+    return Pad(closed, flats_of(inputs, settings))
+
+
+def close_for(switch: Switch, pilots: Pilots) -> Pilots:
+    """The pilots of a pad, closed until they carry a switch.
+
+    Raises
+    ------
+    InputError : they never do, or their asperities merge before.
+    """
+    carried = False
+    while not carried:
+        pilots.close()
+        if pilots.repel(float(switch.least_GPa(pilots.separation_nm))):
+            carried = pilots.carry(MARGIN * switch.pressed_GPa(pilots.curves))
+    if pilots.have_enough_steps:
+        return pilots
+    return close_for(switch, pilots.in_finer_steps())
+
+
+def surfaces_of(number: int) -> int:
+    """First seed of the surfaces of a point; number 0 is the central one."""
+    return FIRST_SEED + SEEDS_APART * number
+
+
+def solve_points(
+    points: Sequence[tuple[int, Point]], contact: ContactSettings, cells: int
+) -> Iterator[Solved]:
+    """The switches of points, each with its number; one that is undecided has more cells."""
+    for number, point in points:
+        solved = solve_point(point, contact, cells, surfaces_of(number))
+        if solved.undecided:
+            solved = solve_point(point, contact, MORE_CELLS * cells, surfaces_of(number))
+        yield solved
+
+
+@dataclass(frozen=True)
+class PadModel:
+    """Everything that was computed of a pad: content of pad/model.h5.
+
+    Attributes
+    ----------
+    central : the switch at central inputs.
+    design : the points, and what is drawn for them.
+    points : the switch at each of them.
+    """
+
+    central: Solved
+    design: Design
+    points: tuple[Solved, ...]
+
+    @property
+    def solved(self) -> NDArray[np.int_]:
+        """Positions of the points that have an answer."""
+        return np.flatnonzero([not point.refused for point in self.points])
+
+    @property
+    def refused(self) -> list[str]:
+        """Why the others have none."""
+        return [point.refused for point in self.points if point.refused]
+
+    def states(self, name: str) -> Array:
+        """A state of all solved switches, by its name in `States`, shape (solved,)."""
+        solved = [point.states for point in self.points if point.states is not None]
+        return np.array([getattr(states, name) for states in solved], float)

@@ -1,0 +1,353 @@
+"""A beam that moves over a pad: where it lands, and when it lets go.
+
+The beam of `mesoscale.switch.beam` meets the pad place by place, and every place remembers its own
+deepest closing. The landed area is a result. The way down is followed by the place that comes down
+farthest, past pull-in to contact. From just beyond pull-in the beam creeps to the balance at the
+hold voltage, as it snaps. Then the voltage is lowered until no place is in contact."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.errors import InputError, NotComputed
+from mesoscale.pad.local import LocalPad
+from mesoscale.settings import DeviceSettings
+from mesoscale.switch.beam import Beam
+from mesoscale.switch.beam_kernels import (
+    BEYOND,
+    CLOSING_NM,
+    SETTLED,
+    UNSETTLED,
+    add_loads,
+    creep,
+    least_gap_nm,
+)
+from mesoscale.units import GPA, NM, VACUUM_PERMITTIVITY
+
+Array = NDArray[np.float64]
+
+LANDED_SHARE = 0.066
+"""Of the pull of the spring (`Beam.spring_Pa`): a place that is pushed with more has landed. It is
+1 kPa of the default switch."""
+OFF_SHARE = 0.5
+"""Of the separation at rest: a beam that is nowhere lower is off its pad. It pulls in from two
+thirds."""
+STEPS_DOWN = 81
+"""Separations of the way down, from rest to touch."""
+NEWTON_STEPS = 30
+"""At most, to each of them."""
+UNHELD_SHARE = 0.05
+"""Of the hold voltage: a beam that is still closed at less is tried without any."""
+MOST_V = 1e4
+"""Largest voltage that a scene may state; more pulls no switch."""
+BESIDE = "place electrode nearer to contact, or take a softer beam"
+
+
+class _Held(NamedTuple):
+    """A closed beam at one voltage."""
+
+    voltage: float
+    nodal: Array
+    deepest_nm: Array
+
+
+class MovingBeam:
+    """A beam on a pad with what it remembers; without a pad it moves freely until it touches.
+
+    Attributes
+    ----------
+    nodal : its deflection (m) and slope at the nodes, shape (nodes, 2).
+    deepest_nm : how near each place came to the mean plane of the pad, shape (elements, points).
+    """
+
+    def __init__(self, beam: Beam, settings: DeviceSettings, pad: LocalPad | None = None) -> None:
+        self.beam = beam
+        self.pad = pad
+        self.dielectric_nm = settings.dielectric_gap_nm
+        self.flat_nm = 1e3 * settings.gap_um
+        self.edge_per_nm = settings.fringe / (1e3 * settings.width_um)
+        self.nodal = np.zeros((beam.elements + 1, 2))
+        self.deepest_nm = np.full(beam.rest_m.shape, np.inf)
+        self.touch_nm = 0.0
+        self.contact_nm = 0.0
+        self.landed_GPa = 0.0
+        if pad is not None:
+            self._take_up(pad)
+
+    def _take_up(self, pad: LocalPad) -> None:
+        """The separations at which a place touches the pad, and has landed on it."""
+        curves = pad.curves
+        repulsion = curves.closing[0]
+        self.landed_GPa = LANDED_SHARE * self.beam.spring_Pa / GPA
+        landed = repulsion > self.landed_GPa
+        if not landed.any():
+            raise NotComputed(
+                f"device: the pad carries {repulsion.max() * 1e3:.3g} MPa at"
+                f" {curves.separation_nm[0]:.4g} nm, where its curves end; raise pad.cells, whose"
+                " first ones say how far they are closed"
+            )
+        # the curve is of straight pieces: it repels up to the first separation at which it does not
+        last = int(np.flatnonzero(repulsion > 0)[-1])
+        first_free = min(last + 1, curves.separation_nm.size - 1)
+        self.touch_nm = float(curves.separation_nm[first_free])
+        self.contact_nm = float(curves.separation_nm[landed].max())
+
+    @property
+    def landed_on(self) -> LocalPad:
+        """The pad, which is there."""
+        assert self.pad is not None
+        return self.pad
+
+    def separation_nm(self) -> Array:
+        """Local separations at the integration points."""
+        return (self.beam.rest_m + self.beam.deflection_m(self.nodal)) / NM
+
+    def _electric(self, squared_V2: float) -> tuple[float, float, float, float]:
+        """What `add_loads` takes of the voltage."""
+        return self.dielectric_nm, squared_V2, VACUUM_PERMITTIVITY, self.edge_per_nm
+
+    def load(self, separation_m: Array, squared_V2: float) -> tuple[Array, Array]:
+        """Pressure (Pa) and slope (Pa/m) of pad, stoppers and voltage together."""
+        separation_nm = separation_m / NM
+        if self.pad is None:
+            pressure = np.zeros_like(separation_nm)
+            slope = np.zeros_like(separation_nm)
+        else:
+            pressure, slope = self.pad(separation_nm - self.beam.dimple_nm, self.deepest_nm)
+        add_loads(separation_nm, pressure, slope, self._electric(squared_V2), self.beam.places)
+        return pressure * GPA, slope * GPA / NM
+
+    def _pull_Pa(self) -> Array:
+        """Electrostatic pull of 1 V."""
+        separation_nm = self.separation_nm()
+        pressure = np.zeros_like(separation_nm)
+        slope = np.zeros_like(separation_nm)
+        without_pad = (self.beam.wired, np.ones_like(separation_nm), 0.0, 0.0, 0.0)
+        add_loads(separation_nm, pressure, slope, self._electric(1.0), without_pad)
+        return pressure * GPA
+
+    def landed_share(self) -> float:
+        """Share of the contact part that is pushed."""
+        height_nm = self.separation_nm() - self.beam.dimple_nm
+        pressure_GPa = self.beam.lands * self.landed_on(height_nm, self.deepest_nm)[0]
+        pushed = pressure_GPa > self.landed_GPa
+        return float((pushed * self.beam.weights_m).sum() / self.beam.contact_m)
+
+    def capacitance_fF(self) -> float:
+        """Of the beam as a row of plates, with the field at the sides."""
+        least_nm = least_gap_nm(self.dielectric_nm)
+        gaps_m = np.maximum(self.separation_nm() + self.dielectric_nm, least_nm) * NM
+        width_m = self.beam.width_m
+        sides = self.edge_per_nm / NM * np.log(np.pi * width_m / gaps_m)
+        lengths = self.beam.wired * self.beam.weights_m * (1.0 / gaps_m + sides)
+        return 1e15 * float(VACUUM_PERMITTIVITY * width_m * lengths.sum())
+
+    def _beside_GPa(self) -> float:
+        """Largest pressure on stoppers beside the pad."""
+        _, lands, _, stopper_nm, stopper_GPa_nm = self.beam.places
+        pressed_nm = np.maximum(stopper_nm - self.separation_nm(), 0.0)
+        return float((stopper_GPa_nm * (1.0 - lands) * pressed_nm).max())
+
+    def _above_nm(self) -> Array:
+        """Local separations over what the beam touches first: the pad, or stoppers beside it."""
+        over_pad = self.beam.dimple_nm + self.touch_nm
+        touched = np.where(self.beam.lands > 0, over_pad, self.beam.stopper_nm)
+        return self.separation_nm() - touched
+
+    def _leading(self) -> int:
+        """The node that a small voltage brings down farthest."""
+        _, per_V2 = self.beam.step(self.nodal, lambda s: self.load(s, 0.0), 0.0, self._pull_Pa())
+        return int(np.argmin(per_V2[:, 0]))
+
+    def relax(self, voltage: float, steps: int) -> None:
+        """So many plain steps towards the balance at a voltage."""
+        for _ in range(steps):
+            change, _ = self.beam.step(self.nodal, lambda s: self.load(s, voltage**2))
+            self.nodal = self.nodal + change
+
+    def snap_V(self) -> float:
+        """Pull-in, the largest voltage on the way down; the beam is left just beyond, from where it
+        snaps.
+
+        A beam whose electrode stays far enough touches before it would snap. Its pull-in is the
+        voltage at touch.
+
+        Raises
+        ------
+        InputError : the beam rests in its pad, or no voltage brings it down.
+        """
+        self._check_rest()
+        node = self._leading()
+        height_nm = float(self._above_nm()[max(node - 1, 0) : node + 1].mean())
+        squares_V2 = [0.0]
+        states = [self.nodal]
+        for down_nm in np.linspace(0.0, height_nm, STEPS_DOWN)[1:]:
+            squared_V2, settled = self._bring_down(node, down_nm, squares_V2[-1])
+            touches = self._above_nm().min() < 0.0 and abs(squared_V2) < MOST_V**2
+            if not (settled or touches):
+                # it is beyond the snap, or else no voltage gets it there
+                if np.argmax(squares_V2) == len(squares_V2) - 1:
+                    raise InputError(
+                        f"device: no voltage brings the beam down by {down_nm:.4g} nm; {BESIDE}"
+                    )
+                break
+            squares_V2.append(squared_V2)
+            states.append(self.nodal)
+            if touches:
+                break
+        if max(squares_V2) > MOST_V**2:
+            raise InputError(
+                f"device: more than {MOST_V:g} V are needed to pull the beam down; {BESIDE}"
+            )
+        top = int(np.argmax(squares_V2))
+        if top == len(squares_V2) - 1:
+            self.nodal = states[-2]
+            return float(np.sqrt(squares_V2[-1]))
+        self.nodal = states[top + 1]
+        return float(np.sqrt(_vertex(*squares_V2[top - 1 : top + 2])))
+
+    def _check_rest(self) -> None:
+        """Refuse a beam that rests in its pad."""
+        above_nm = float(self._above_nm().min())
+        if above_nm > 0.0:
+            return
+        # a beam that only stretches snaps as low as at 1 / 3.3 of its gap
+        enough_um = 3.5e-3 * (self.flat_nm - above_nm)
+        raise InputError(
+            f"device: the beam rests within reach of its pad; raise gap_um to {enough_um:.3g}, or"
+            " bow_nm, or lower tilt_nm, dimple_nm or stopper_nm"
+        )
+
+    def _bring_down(self, node: int, down_nm: float, squared_V2: float) -> tuple[float, bool]:
+        """Bring a node down by a distance from rest; the square of the voltage that does so.
+
+        Whether it is settled comes second: not to the last digit, as where the beam buckles, is
+        enough."""
+        more_V2 = np.inf
+        missing_m = np.inf
+        for _ in range(NEWTON_STEPS):
+            change, per_V2 = self.beam.step(
+                self.nodal, lambda s, now=squared_V2: self.load(s, now), 0.0, self._pull_Pa()
+            )
+            missing_m = -down_nm * NM - self.nodal[node, 0]
+            more_V2 = (missing_m - change[node, 0]) / per_V2[node, 0]
+            self.nodal = self.nodal + change + more_V2 * per_V2
+            squared_V2 += more_V2
+            if abs(more_V2) < 1e-9 * abs(squared_V2) and abs(missing_m) < 1e-6 * NM:
+                break
+        settled = abs(more_V2) < 1e-3 * abs(squared_V2) and abs(missing_m) < 1e-2 * NM
+        return squared_V2, settled
+
+    def creep(self, voltage: float, longest_nm: float = CLOSING_NM) -> bool:
+        """Let the beam move to the balance at a voltage; whether it is then closed.
+
+        Parameters
+        ----------
+        longest_nm : largest step of a place in contact.
+
+        Raises
+        ------
+        NotComputed : the balance is below the computed closing of the pad.
+        InputError : no balance within the allowed number of steps.
+        """
+        over_pad_nm = self.beam.rest_m[self.beam.lands > 0] / NM - self.beam.dimple_nm
+        off_nm = OFF_SHARE * float(over_pad_nm.min())
+        outcome = creep(
+            self.nodal,
+            self.deepest_nm,
+            self.beam.rest_m,
+            self.beam.mechanics,
+            self.beam.places,
+            self.landed_on.tables,
+            self._electric(voltage**2),
+            self.beam.spring_Pa,
+            self.contact_nm,
+            min(self.touch_nm, off_nm),
+            off_nm,
+            longest_nm,
+        )
+        if outcome == BEYOND:
+            curves = self.landed_on.curves
+            end_nm = curves.separation_nm[0]
+            raise NotComputed(
+                f"device.hold_voltage_V = {voltage:.4g}: the beam presses the pad below"
+                f" {end_nm:.4g} nm ({curves.closing_GPa(end_nm) * 1e3:.3g} MPa), where its curves"
+                " end"
+            )
+        if outcome == UNSETTLED:
+            self._refuse(voltage)
+        return outcome == SETTLED
+
+    def _refuse(self, voltage: float) -> None:
+        """Why the beam finds no balance at a voltage."""
+        beside_GPa = self._beside_GPa()
+        if beside_GPa > 0.0:
+            raise InputError(
+                f"device: at {voltage:.4g} V the electrode lands beside the contact part and"
+                f" presses {beside_GPa:.3g} GPa on what stands there; raise stopper_nm or"
+                f" dimple_nm, lower hold_voltage_V, or {BESIDE}"
+            )
+        raise InputError(
+            f"device: the beam finds no balance at {voltage:.4g} V; this is a fault of the solver"
+        )
+
+    def release_V(self, hold_V: float, opening_nm: float, tolerance: float) -> float:
+        """Lower the voltage from the held state until the beam lets go; 0 where it sticks.
+
+        The voltage is halved in the longer steps of closing until it opens. These may tear off a
+        little more than they should, so the way from the last voltage but one is gone again in
+        short steps.
+
+        Parameters
+        ----------
+        opening_nm : largest step of a place in contact.
+        tolerance : relative error.
+        """
+        held = self._halved(hold_V)
+        low_V = None
+        while low_V is None or held.voltage - low_V > tolerance * held.voltage:
+            if low_V is None:
+                voltage = _lower_V(held.voltage, hold_V)
+            else:
+                voltage = 0.5 * (low_V + held.voltage)
+            if self.creep(voltage, opening_nm):
+                held = self._state(voltage)
+                if voltage == 0.0:
+                    return 0.0
+            else:
+                low_V = voltage
+                self._return_to(held)
+        return held.voltage
+
+    def _halved(self, hold_V: float) -> _Held:
+        """Halve the voltage until the beam opens, and return to the last voltage but one.
+
+        An opening is elastic, so the state at a lower voltage is reached from any higher one."""
+        closed = [self._state(hold_V)]
+        while True:
+            before_V = closed[-1].voltage
+            voltage = _lower_V(before_V, hold_V)
+            if voltage >= before_V or not self.creep(voltage, CLOSING_NM):
+                break
+            closed.append(self._state(voltage))
+        last_but_one = closed[-2:][0]
+        self._return_to(last_but_one)
+        return last_but_one
+
+    def _state(self, voltage: float) -> _Held:
+        return _Held(voltage, self.nodal.copy(), self.deepest_nm.copy())
+
+    def _return_to(self, held: _Held) -> None:
+        self.nodal = held.nodal.copy()
+        self.deepest_nm = held.deepest_nm.copy()
+
+
+def _lower_V(voltage: float, hold_V: float) -> float:
+    """Half of a voltage, or none where little holds the beam."""
+    return 0.5 * voltage if voltage > UNHELD_SHARE * hold_V else 0.0
+
+
+def _vertex(before: float, top: float, after: float) -> float:
+    """Height of the parabola through three equal steps."""
+    return top + (before - after) ** 2 / (8.0 * (2.0 * top - before - after))
