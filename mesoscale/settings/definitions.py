@@ -43,7 +43,10 @@ class InputDefinition:
     @property
     def accepted(self) -> str:
         """The accepted values in words."""
-        return f"{'0 or ' if self.zero else ''}{self.low:g} .. {self.high:g}"
+        accepted = f"{self.low:g} .. {self.high:g}"
+        if self.zero:
+            return f"0 or {accepted}"
+        return accepted
 
     @property
     def may_lack(self) -> bool:

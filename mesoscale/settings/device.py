@@ -293,4 +293,6 @@ class DeviceSettings(Settings):
 def unit_of(name: str) -> str:
     """Unit of a key of the device; 1 where it has none."""
     extra = DeviceSettings.model_fields[name].json_schema_extra
-    return str(extra["unit"]) if isinstance(extra, dict) and "unit" in extra else "1"
+    if isinstance(extra, dict) and "unit" in extra:
+        return str(extra["unit"])
+    return "1"

@@ -40,7 +40,9 @@ class DistributionRow(Settings):
     def _numbers_or_path(cls, stated: Any) -> Any:
         if stated is None or isinstance(stated, str):
             return stated
-        numbers = stated if isinstance(stated, (list, tuple)) else [None]
+        numbers = [None]
+        if isinstance(stated, (list, tuple)):
+            numbers = stated
         if not all(
             isinstance(item, (int, float)) and not isinstance(item, bool) for item in numbers
         ):
