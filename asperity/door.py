@@ -21,7 +21,7 @@ from mesoscale.topography.measurements import check_count, files_in
 from mesoscale.topography.measurements.loading import load_measurements
 
 
-def topography_of(given: Namespace) -> dict[str, Any]:
+def topography_of(words: Namespace) -> dict[str, Any]:
     """Keys of the section `topography` from the options --channel, --unit, --size, --crop, --points
     and --detrend.
 
@@ -29,51 +29,49 @@ def topography_of(given: Namespace) -> dict[str, Any]:
     ------
     InputError : no unit of length, no size, or a size for several files.
     """
-    keys = {name: getattr(given, name) for name in ("channel", "detrend") if getattr(given, name)}
+    keys = {name: getattr(words, name) for name in ("channel", "detrend") if getattr(words, name)}
     added: dict[str, Any] = {}
-    if given.unit:
-        units, known = (
-            re.sub("[\u00b5\u03bc]", "u", given.unit).split(","),
-            get_args(LengthUnit),
-        )  # micro sign, mu
+    if words.unit:
+        units = re.sub("[\u00b5\u03bc]", "u", words.unit).split(",")  # micro sign, mu
+        known = get_args(LengthUnit)
         if len(units) > 2 or not set(units) <= set(known):
             raise InputError(
-                f"--unit {given.unit}: accepted are {', '.join(known)}, or two of them such as"
+                f"--unit {words.unit}: accepted are {', '.join(known)}, or two of them such as"
                 " um,nm"
             )
         added |= dict(zip(("unit", "height_unit"), units, strict=False))
-    if given.size:
-        sides = re.fullmatch(rf"({NUMBER})(?:x({NUMBER}))?", given.size)
+    if words.size:
+        sides = re.fullmatch(rf"({NUMBER})(?:x({NUMBER}))?", words.size)
         if sides is None:
             raise InputError(
-                f"--size {given.size}: accepted is a number or two (10 or 10x5), in --unit or the"
+                f"--size {words.size}: accepted is a number or two (10 or 10x5), in --unit or the"
                 " file's"
             )
-        _check_alone(given, "--size")
+        _check_alone(words, "--size")
         added["size"] = tuple(float(side) for side in sides.groups() if side)
-    if given.points:
-        places = re.fullmatch(r"(\d+)x(\d+)", given.points)
+    if words.points:
+        places = re.fullmatch(r"(\d+)x(\d+)", words.points)
         if places is None:
             raise InputError(
-                f"--points {given.points}: accepted are two numbers such as 64x64, places along x"
+                f"--points {words.points}: accepted are two numbers such as 64x64, places along x"
                 " and y"
             )
-        _check_alone(given, "--points")
+        _check_alone(words, "--points")
         added["points"] = int(places[1]), int(places[2])
-    if given.crop:
-        ends = re.fullmatch(r"(\d+):(\d+),(\d+):(\d+)", given.crop)
-        if ends is None and given.crop != "largest":
+    if words.crop:
+        corners = re.fullmatch(r"(\d+):(\d+),(\d+):(\d+)", words.crop)
+        if corners is None and words.crop != "largest":
             raise InputError(
-                f"--crop {given.crop}: accepted is nothing (the largest rectangle without missing"
+                f"--crop {words.crop}: accepted is nothing (the largest rectangle without missing"
                 " points), or the pixels to keep along x and y, such as 10:500,0:480; give files"
                 " before it"
             )
-        added["crop"] = tuple(int(end) for end in ends.groups()) if ends else "largest"
+        added["crop"] = tuple(int(end) for end in corners.groups()) if corners else "largest"
     return keys | ({"instruments": (InstrumentSettings(files="*", **added),)} if added else {})
 
 
-def _check_alone(given: Namespace, option: str) -> None:
-    if len(given.files) > 1 or os.path.isdir(given.files[0]):
+def _check_alone(words: Namespace, option: str) -> None:
+    if len(words.files) > 1 or os.path.isdir(words.files[0]):
         raise InputError(
             f"{option}: accepted for one file; for several, state topography.instruments in a scene"
         )

@@ -105,28 +105,30 @@ class Film(Shown):
         tip_nm: float | None = None,
         **settings: Any,
     ) -> None:
-        given = [files] if isinstance(files, (str, Path, Scan)) else list(files)
-        if not all(isinstance(item, (str, Path, Scan)) for item in given):
+        stated = [files] if isinstance(files, (str, Path, Scan)) else list(files)
+        if not all(isinstance(item, (str, Path, Scan)) for item in stated):
             raise InputError(
                 "Film: heights alone have no side; give Scan(heights_nm, (length_x_nm,"
                 " length_y_nm), name), or press them by asp.press(heights, side_nm, loads_nN,"
                 " e_star)"
             )
         sources = [
-            part
-            for item in given
-            for part in ([item] if isinstance(item, Scan) else files_in(item))
+            file
+            for item in stated
+            for file in ([item] if isinstance(item, Scan) else files_in(item))
         ]
         if not sources:
             raise InputError(
-                f"{', '.join(map(str, given)) or 'files'}: nothing to read; give scans of a surface"
+                f"{', '.join(map(str, stated)) or 'files'}: nothing to read; give scans of a"
+                " surface"
             )
-        check_count(", ".join(str(item) for item in given[:3]), sources)
+        check_count(", ".join(str(item) for item in stated[:3]), sources)
         names = tuple(item.name if isinstance(item, Scan) else item for item in sources)
         tip = {} if tip_nm is None else {"tip_radius_nm": tip_nm}
         self.settings = TopographySettings(scans=names, **tip, **settings)
         self.measurements: list[Measurement] = []
-        arrays, attributes = {}, {}
+        arrays = {}
+        attributes = {}
         for number, source in enumerate(sources, 1):
             for measured in _load(source, number, self.settings):
                 name = measured.data.name
@@ -156,7 +158,8 @@ class Film(Shown):
 
     def lines(self) -> Iterator[str]:
         """A summary, what each measurement shows, and the doubts."""
-        used, doubts = self.description["description"], self.description["doubts"]
+        used = self.description["description"]
+        doubts = self.description["doubts"]
         several = any(doubt["code"] == "several_surfaces" for doubt in doubts)
         yield (
             f"Film (measurements: {len(self.measurements)}, doubts: {len(doubts)}): as far as can"
@@ -204,11 +207,11 @@ class Film(Shown):
         ------
         InputError : an unknown input, a value out of range, or measurements that no description
             fits."""
-        given = {name: _row(value) for name, value in (material or {}).items()}
-        laws = ("", given.get("hardness", "paper"))
+        stated = {name: _row(value) for name, value in (material or {}).items()}
+        laws = ("", stated.get("hardness", "paper"))
         rows = {
             **{name: row for name, row in MATERIAL.items() if definition(name).hardness in laws},
-            **given,
+            **stated,
         }
         if "adhesion" in rows:  # states the attraction by work and range
             rows = {
@@ -239,7 +242,8 @@ class Film(Shown):
         InputError : as `inputs`, or a grid that does not resolve the cut-off.
         """
         table = self.inputs(material)
-        described, side = self.description, self.description["cell_nm"]
+        described = self.description
+        side = self.description["cell_nm"]
         pixels = pixels or pixels_for(described["inputs"]["q1"], side)
         settings = ContactSettings(pixels=pixels, surface=described["surface"]).on_cell(side)
         check_resolved(table, settings.nyquist_per_nm)
@@ -279,7 +283,8 @@ class FilmContact(Shown):
 
     def lines(self) -> Iterator[str]:
         """Where it touches, how much of it, and how hard it pulls."""
-        closing, share = self.cycle.closing, float((self.pressure_GPa > 0).mean())
+        closing = self.cycle.closing
+        share = float((self.pressure_GPa > 0).mean())
         yield (
             f"Contact: touches at {self.cycle.first_contact_nm:.4g} nm;"
             f" {closing.repulsive_nN[-1]:.4g} nN press it to {closing.separation_nm[-1]:.4g} nm,"
@@ -323,7 +328,8 @@ class FilmContact(Shown):
         ------
         InputError : the pad never reaches the pressure that the switch presses with.
         """
-        device, pad = device or DeviceSettings(), pad or PadSettings()
+        device = device or DeviceSettings()
+        pad = pad or PadSettings()
         table = self._pad(pad.rms_scatter)
         central = central_point(table, self.on_grid, device)
         solved = solve_point(
@@ -360,11 +366,9 @@ class Switch(Shown):
 
     def lines(self) -> Iterator[str]:
         """Pull-in, release, and why not to trust them."""
-        cells, states, reasons = (
-            self.content["cells_computed"],
-            self.states,
-            self.content["gate"]["reasons"],
-        )
+        cells = self.content["cells_computed"]
+        states = self.states
+        reasons = self.content["gate"]["reasons"]
         opens = f"opens at {self.release_V:.3g} V" if self.release_V > 0 else "sticks"
         does = (
             f"closes at {states['pull_in_V']:.3g} V, {opens}"

@@ -53,7 +53,8 @@ class ServedModel:
         ------
         InputError : wrong shape, unknown key of the configuration, values out of range, no finite
             result."""
-        checked, named = self.checked_config(config), ", ".join(INPUTS)
+        checked = self.checked_config(config)
+        named = ", ".join(INPUTS)
         values = parameters[0] if isinstance(parameters, list) and len(parameters) == 1 else None
         if (
             not isinstance(values, list)
@@ -67,12 +68,12 @@ class ServedModel:
             inputs = ContactInputs(**dict(zip(INPUTS, map(float, values), strict=True)))
         except OverflowError:
             raise InputError(f"{self.name}: a number too large; inputs are {named}") from None
-        result = [np.asarray(part, float) for part in self.evaluate(inputs, checked)]
-        if not all(np.isfinite(part).all() for part in result):
+        result = [np.asarray(output, float) for output in self.evaluate(inputs, checked)]
+        if not all(np.isfinite(output).all() for output in result):
             raise InputError(
                 f"{self.name}: no finite result at these inputs (JSON has no NaN); look at {named}"
             )
-        return [part.tolist() for part in result]
+        return [output.tolist() for output in result]
 
     def checked_config(self, config: Any) -> Config:
         """The configuration, with its keys checked.
@@ -130,8 +131,8 @@ def _contact_cycle(inputs: ContactInputs, config: Config) -> Sequence[Any]:
     """
     cycle = _cycle(inputs, config)
     forces = force_levels_nN(_contact(config).max_force_nN)
-    ends = [cycle.first_contact_nm, cycle.last_contact_nm, -cycle.opening.net_nN.min()]
-    return [ends, separations_at(cycle.closing, forces), separations_at(cycle.opening, forces)]
+    scalars = [cycle.first_contact_nm, cycle.last_contact_nm, -cycle.opening.net_nN.min()]
+    return [scalars, separations_at(cycle.closing, forces), separations_at(cycle.opening, forces)]
 
 
 def _law(inputs: ContactInputs, config: Config) -> Sequence[Any]:
@@ -141,25 +142,27 @@ def _law(inputs: ContactInputs, config: Config) -> Sequence[Any]:
 
 
 def _separations(config: Config) -> list[float]:
-    stated, most = config.get("separations_nm", (40.0, 35.0, 30.0, 28.0)), 1000
-    listed = isinstance(stated, (list, tuple)) and 0 < len(stated) <= most
+    stated = config.get("separations_nm", (40.0, 35.0, 30.0, 28.0))
+    limit = 1000
+    listed = isinstance(stated, (list, tuple)) and 0 < len(stated) <= limit
     if not listed or not all(map(_is_number, stated)):
         raise InputError(
-            f"config.separations_nm: must be a list of 1 .. {most} falling separations in nm"
+            f"config.separations_nm: must be a list of 1 .. {limit} falling separations in nm"
         )
     return [float(x) for x in stated]
 
 
 def _pad(inputs: ContactInputs, config: Config) -> Sequence[Any]:
     """Mean net pressure (MPa) at the separations, of closing and of opening from the last one."""
-    count, first, most = config.get("cells", 16), _seed(config, 1000), 100_000
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= most:
-        raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. {most}")
-    contact, separations = _contact(config, count), np.array(_separations(config))
-    grid, cells = (
-        PadGrid(separations, np.array([separations.size - 1])),
-        sample_cells(inputs, count, first),
-    )
+    count = config.get("cells", 16)
+    first = _seed(config, 1000)
+    limit = 100_000
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= limit:
+        raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. {limit}")
+    contact = _contact(config, count)
+    separations = np.array(_separations(config))
+    grid = PadGrid(separations, np.array([separations.size - 1]))
+    cells = sample_cells(inputs, count, first)
     closed = press_cells(inputs, contact, grid, cells)
     curves = curves_of(closed, flats_of(inputs, contact))
     return [1e3 * branch.sum(axis=0)[::-1] for branch in (curves.closing, curves.opening[0])]

@@ -212,8 +212,9 @@ def press(
         )
     by_load = loads_nN is not None
     steps = _steps(loads_nN, approach_nm)
+    few = h_macro is None and steps.size <= FEW_LOADS  # no load needs the way there
     surface, spacing = _surface(
-        heights, counterface, side_nm, bool(periodic), contact_at, steps.size
+        heights, counterface, side_nm, bool(periodic), contact_at, steps.size, few
     )
     hardness = {"h_macro": 0.0 if h_macro is None else h_macro, "h_prime": h_prime}
     inputs = ContactInputs(hamaker=0.0, e_star=e_star, **hardness, q0=1.0, hurst=0.5, rms=0.0)
@@ -222,7 +223,7 @@ def press(
     )
     check_hardness(inputs, settings)
     offset, lowest = float(surface.mean()), float(surface.min())
-    if h_macro is None and steps.size <= FEW_LOADS:
+    if few:
         states = _each(surface, periodic, steps, by_load, inputs, settings)
     else:
         states = _way(surface, periodic, steps, by_load, inputs, settings)
@@ -233,8 +234,12 @@ def press(
         for number, state in enumerate(states):
             forces[number] = state.force
             separations[number] = state.separation
-            pressures[number] = state.pressure
-            gaps[number] = state.gap
+            if steps.size == 1:  # a large map is not copied
+                pressures = state.pressure[None]
+                gaps = state.gap[None]
+            else:
+                pressures[number] = state.pressure
+                gaps[number] = state.gap
             converged &= state.settled
             if attraction is not None:
                 pulls[number] = _pull(attraction, gaps[number], pressures[number], spacing**2)
@@ -348,6 +353,7 @@ def _surface(
     periodic: bool,
     contact_at: ContactAt,
     loads: int,
+    few: bool,
 ) -> tuple[np.ndarray, float]:
     """Heights of both surfaces together, contact at the lowest, and the spacing of the sites
     (nm).
@@ -376,7 +382,11 @@ def _surface(
             f"contact_at = {contact_at}: accepted are highest (measured maps) and lowest"
         )
     sites = shape[0] ** 2 if periodic else 4 * max(shape) ** 2
-    check_memory(sites, "coupled", MAP_MB * loads * surface.size)
+    if few:
+        mechanics = "one load" if periodic else "one load on a map alone"
+        check_memory(max(shape) ** 2, mechanics, MAP_MB * (loads - 1) * surface.size)
+    else:
+        check_memory(sites, "coupled", MAP_MB * loads * surface.size)
     if counterface is not None:
         second = checked_heights(counterface, float(sides.max()), square=False, name="counterface")
         if second.shape != shape:

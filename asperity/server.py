@@ -43,10 +43,10 @@ class _Worker:
     def __init__(self) -> None:
         # a fresh process: a fork would inherit the server's sockets and keep them open after it
         context = multiprocessing.get_context("spawn")
-        self.pipe, there = context.Pipe()
-        self.process = context.Process(target=_work, args=(there,), daemon=True)
+        self.pipe, far_end = context.Pipe()
+        self.process = context.Process(target=_work, args=(far_end,), daemon=True)
         self.process.start()
-        there.close()
+        far_end.close()
 
     def evaluate(self, request: tuple[str, Any, Any]) -> Any:
         """Answer of the process, or its error; blocks."""

@@ -82,10 +82,10 @@ def number_of(word: str, text: str, unit: str) -> float:
         return float(plain)
     if re.fullmatch(NUMBER.replace(r"\.", ","), plain) and "," in plain:
         raise InputError(f"{word}: a decimal comma; write {name}={plain.replace(',', '.')}")
-    parts = re.fullmatch(rf"({NUMBER}) ?([^\d\s].*)", plain)
-    if parts is None:
+    with_unit = re.fullmatch(rf"({NUMBER}) ?([^\d\s].*)", plain)
+    if with_unit is None:
         raise InputError(f"{word}: {text!r} is no number; write for instance {name}=2.5")
-    number, stated = parts.groups()
+    number, stated = with_unit.groups()
     if stated == unit:
         return float(number)
     if stated == "%" and unit == "1":
@@ -185,8 +185,8 @@ def _device_value(word: str, name: str, value: str) -> Any:
 
 def _choices(kind: Any) -> Iterator[Any]:
     """The words that a literal type accepts, also where None is accepted besides."""
-    for part in get_args(kind):
-        yield from _choices(part) if get_args(part) else (part,)
+    for member in get_args(kind):
+        yield from _choices(member) if get_args(member) else (member,)
 
 
 def assumed_lines(material: Mapping[str, Any], device: Mapping[str, Any]) -> Iterator[str]:

@@ -116,8 +116,8 @@ def first_difference(first: Any, second: Any, place: str = "") -> str:
     if isinstance(first, dict) and isinstance(second, dict):
         if list(first) != list(second):
             gone, new = (
-                ", ".join(sorted(one.keys() - other.keys()))
-                for one, other in ((first, second), (second, first))
+                ", ".join(sorted(folder_a.keys() - other.keys()))
+                for folder_a, other in ((first, second), (second, first))
             )
             return (
                 f"{place} keys in another order"
@@ -139,7 +139,8 @@ def first_difference(first: Any, second: Any, place: str = "") -> str:
 def _value_difference(first: Any, second: Any, place: str) -> str:
     if isinstance(first, bytes) and isinstance(second, bytes):
         return "" if first == second else f"{place} other bytes".strip()
-    a, b = np.asarray(first), np.asarray(second)
+    a = np.asarray(first)
+    b = np.asarray(second)
     equal_values = a.tolist() == b.tolist() if a.dtype == object else a.tobytes() == b.tobytes()
     if (a.dtype, a.shape) == (b.dtype, b.shape) and equal_values:
         return ""
@@ -151,13 +152,13 @@ def _value_difference(first: Any, second: Any, place: str) -> str:
 def _said(folder: Path) -> str:
     """What a folder says of its switch, with its name; a stranger's files may hold anything."""
     try:
-        said = verdict(results_in(folder))
+        answer = verdict(results_in(folder))
     except Exception as error:
         return (
             f"{folder.name}: its switch cannot be read ({type(error).__name__}): damaged, or of"
             " another version"
         )
-    return f"{folder.name}: {said.sentence if said else 'no switch on a pad'}".replace(
+    return f"{folder.name}: {answer.sentence if answer else 'no switch on a pad'}".replace(
         "\u00a0", " "
     )
 

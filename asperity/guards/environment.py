@@ -40,8 +40,8 @@ def secure() -> None:
     os.environ["PYTHONSAFEPATH"] = (
         "1"  # no module is taken from the working folder or from beside a job's script
     )
-    given = os.environ.get("PYTHONPATH", "").split(os.pathsep)
-    paths = [str(ROOT), *(path for path in given if os.path.isabs(path))]
+    entries = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    paths = [str(ROOT), *(path for path in entries if os.path.isabs(path))]
     os.environ["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(paths))
     try:
         locale.setlocale(locale.LC_CTYPE, "")
@@ -63,9 +63,9 @@ def secure() -> None:
     if state.is_dir():
         _check_state(state)
     for name, why in READ.items():
-        there = [*Path().glob(name)] if "*" in name else [Path(name)]
-        if there and os.path.lexists(there[0]):
-            raise UnsafeFolder(f"{there[0]}: {why}; move it away, or work in another folder")
+        present = [*Path().glob(name)] if "*" in name else [Path(name)]
+        if present and os.path.lexists(present[0]):
+            raise UnsafeFolder(f"{present[0]}: {why}; move it away, or work in another folder")
 
 
 def _check_state(path: Path) -> None:

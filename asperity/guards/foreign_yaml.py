@@ -87,8 +87,8 @@ def _tuple(loader: _ContainerLoader, node: Any) -> tuple[Any, ...]:
 
 def _prepare() -> None:
     for first, pairs in yaml.SafeLoader.yaml_implicit_resolvers.items():
-        kept = [(tag, pattern) for tag, pattern in pairs if tag.endswith((":bool", ":null"))]
-        _Loader.yaml_implicit_resolvers[first] = kept
+        plain_tags = [(tag, pattern) for tag, pattern in pairs if tag.endswith((":bool", ":null"))]
+        _Loader.yaml_implicit_resolvers[first] = plain_tags
     for kind, pattern in NUMBERS.items():
         _Loader.add_implicit_resolver(
             f"tag:yaml.org,2002:{kind}", re.compile(pattern), list("-+0123456789.")

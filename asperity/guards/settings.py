@@ -16,7 +16,7 @@ from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
 _INTERVAL = re.compile(r"([\[(])(\S+), (\S+)([\])])(?: (.+))?")
 
 
-def key(default: Any, meaning: str, accepted: str = "", **others: Any) -> Any:
+def key(default: Any, meaning: str, accepted: str = "", **field_options: Any) -> Any:
     """A field of a class of settings.
 
     Parameters
@@ -31,10 +31,15 @@ def key(default: Any, meaning: str, accepted: str = "", **others: Any) -> Any:
     unit: str | None = accepted
     if match := _INTERVAL.fullmatch(accepted):
         left, low, high, right, unit = match.groups()
-        ends = {"ge" if left == "[" else "gt": low, "le" if right == "]" else "lt": high}
-        others |= {bound: _number(end) for bound, end in ends.items() if not end.endswith("inf")}
+        bounds = {"ge" if left == "[" else "gt": low, "le" if right == "]" else "lt": high}
+        field_options |= {
+            bound: _number(end) for bound, end in bounds.items() if not end.endswith("inf")
+        }
     return Field(
-        default, description=meaning, json_schema_extra={"unit": unit} if unit else None, **others
+        default,
+        description=meaning,
+        json_schema_extra={"unit": unit} if unit else None,
+        **field_options,
     )
 
 
@@ -125,8 +130,8 @@ def load_settings(kind: type[Content], path: Path, what: str, example: str) -> C
     except ValidationError as error:
         first = error.errors()[0]
         where = " ".join(".".join(map(str, first["loc"])).split())
-        said = first["msg"].removeprefix("Value error, ")
+        message = first["msg"].removeprefix("Value error, ")
         got = (
             "" if first["type"] in ("missing", "value_error") else f" (got {first['input']!r:.80})"
         )
-        raise InputError(f"{path}: {where + ': ' if where else ''}{said}{got}") from None
+        raise InputError(f"{path}: {where + ': ' if where else ''}{message}{got}") from None

@@ -116,13 +116,21 @@ def test_a_pressed_map_is_drawn_and_says_what_it_is():
     assert list(pressed.lines())[2].startswith("1000 nN: ")
 
 
-@pytest.mark.parametrize(("periodic", "needed"), [(True, "0.00256"), (False, "0.00944")])
-def test_a_map_beyond_memory_is_refused(monkeypatch, periodic, needed):
-    monkeypatch.setattr("mesoscale.checks.machine_MB", lambda: 2)
+@pytest.mark.parametrize(
+    ("periodic", "h_macro", "needed"),
+    [
+        (True, 5.0, "0.00256"),
+        (False, 5.0, "0.00944"),
+        (True, None, "0.00102"),
+        (False, None, "0.00229"),
+    ],
+)
+def test_a_map_beyond_memory_is_refused(monkeypatch, periodic, h_macro, needed):
+    monkeypatch.setattr("mesoscale.checks.machine_MB", lambda: 1)
     with pytest.raises(
-        asp.InputError, match=f"needs {needed} GB of memory, this machine has 0.002; take a part"
+        asp.InputError, match=f"needs {needed} GB of memory, this machine has 0.001; take a part"
     ):
-        asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=periodic)
+        asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=periodic, h_macro=h_macro)
 
 
 @pytest.mark.parametrize("periodic", [True, False])

@@ -135,7 +135,8 @@ def load_csv(path: str | Path) -> list[dict[str, str]]:
     path = Path(path)
     with path.open(newline="", encoding="utf-8") as stream:
         reader = csv.DictReader(stream)
-        header, rows = reader.fieldnames or (), list(reader)
+        header = reader.fieldnames or ()
+        rows = list(reader)
     schema = schema_of(path)
     if schema is not None and (misfit := schema.misfit(header, rows)):
         raise UnfitTable(

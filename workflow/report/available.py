@@ -31,7 +31,9 @@ class Results:
         scene: str,
         at_hand: Mapping[str, Any] | None = None,
     ) -> None:
-        self.root, self.scene, self.at_hand = Path(root), scene, at_hand or {}
+        self.root = Path(root)
+        self.scene = scene
+        self.at_hand = at_hand or {}
         self.paths = {Path(path).relative_to(self.root).as_posix() for path in map(Path, paths)}
 
     @property

@@ -87,15 +87,15 @@ def draw(
         stream = io.StringIO()
         # not Figure.savefig, which draws twice: once to find out what a layout would need
         FigureCanvasSVG(figure).print_svg(stream, metadata={"Date": None, "Creator": None})
-    whole = _inline(stream.getvalue(), name, label)
+    full_figure = _inline(stream.getvalue(), name, label)
     if not boxes:
-        return whole
+        return full_figure
     pieces = (
         f'<svg viewBox="{box}" role="img" aria-label="{_attribute(label)}, panel {k}">'
         f'<use href="#{name}-figure_1"/></svg>'
         for k, box in enumerate(boxes, start=1)
     )
-    return f'<div class="whole">{whole}</div><div class="panels">{"".join(pieces)}</div>'
+    return f'<div class="whole">{full_figure}</div><div class="panels">{"".join(pieces)}</div>'
 
 
 def _lay_out(figure: Figure) -> None:
@@ -119,9 +119,9 @@ def _panels(figure: Figure) -> list[str]:
         if axis.get_visible() and not any(axis in bar for bar in bars.values())
     ]
     for axis in panels:
-        parts = [part.get_tightbbox() for part in (axis, *bars[axis])]
+        extents = [extent.get_tightbbox() for extent in (axis, *bars[axis])]
         box = (
-            Bbox.union([part for part in parts if part is not None])
+            Bbox.union([extent for extent in extents if extent is not None])
             .transformed(figure.transFigure.inverted())
             .padded(0.005)
         )

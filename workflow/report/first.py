@@ -181,7 +181,8 @@ def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
         ),
     ]
     if len(said.release_V) == 3 and said.release_V[2] > 0:
-        low, high = x(said.release_V[0]), x(said.release_V[2])
+        low = x(said.release_V[0])
+        high = x(said.release_V[2])
         parts.append(f'<path class="interval" d="M{low} 36H{high}"/>')
     if middle > 0:
         parts += [

@@ -128,8 +128,8 @@ def other_law_V(results: Results) -> tuple[float, float] | None:
     rows = results.json("answer/pad_switch.json").get("by_attraction", [])
     releases = {round(row["times"], 3): number(row["release_V"]) for row in rows}
     works = (1.0, OTHER_WORK.get(results.contact.get("attraction", ""), 0.0))
-    here, other = (releases.get(round(times, 3), np.nan) for times in works)
-    return (here, other) if np.isfinite([here, other]).all() else None
+    this_law, other = (releases.get(round(times, 3), np.nan) for times in works)
+    return (this_law, other) if np.isfinite([this_law, other]).all() else None
 
 
 def _attraction(results: Results) -> Iterator[Gate]:

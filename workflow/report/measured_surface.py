@@ -74,12 +74,12 @@ def doubts(parameters: Mapping[str, Any], *about: str) -> Iterator[DoubtNote]:
 
 def short_names(names: Sequence[str]) -> dict[str, str]:
     """Names of measurements without what all of them begin with."""
-    parts = [name.split("_") for name in names]
+    words = [name.split("_") for name in names]
     alike = sum(
-        1 for _ in takewhile(lambda column: len(set(column)) == 1, zip(*parts, strict=False))
+        1 for _ in takewhile(lambda column: len(set(column)) == 1, zip(*words, strict=False))
     )
-    cut = min(alike, *(len(part) - 1 for part in parts)) if len(names) > 1 else 0
-    return {name: "_".join(part[cut:]) for name, part in zip(names, parts, strict=True)}
+    cut = min(alike, *(len(split) - 1 for split in words)) if len(names) > 1 else 0
+    return {name: "_".join(split[cut:]) for name, split in zip(names, words, strict=True)}
 
 
 def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None:
@@ -94,11 +94,10 @@ def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None
 
     def plot(axis: Any) -> None:
         for name, color in zip(names, apart if several else [SKY] * len(names), strict=False):
-            q, psd = groups[name]["q"], groups[name]["psd"]
-            low, high = (
-                float(attributes[name]["trusted_low"]),
-                float(attributes[name]["trusted_high"]),
-            )
+            q = groups[name]["q"]
+            psd = groups[name]["psd"]
+            low = float(attributes[name]["trusted_low"])
+            high = float(attributes[name]["trusted_high"])
             trusted = (q >= low) & (q <= high)
             label = f"{short[name.removeprefix('scans/')]}, trusted range" if several else None
             axis.loglog(q, psd, color=SOFT, linewidth=0.6, alpha=0.7, zorder=1)
@@ -106,12 +105,18 @@ def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None
         if not several:
             axis.plot([], [], color=SKY, label="measurements, trusted range")
         axis.plot([], [], color=SOFT, label="limited by levelling, tip, noise or pixels")
-        one, level = groups["one_spectrum"], f"{float(parameters['confidence']):.0%}"
+        common = groups["one_spectrum"]
+        level = f"{float(parameters['confidence']):.0%}"
         axis.fill_between(
-            one["q"], one["band_low"], one["band_high"], color=ORANGE, alpha=0.25, linewidth=0
+            common["q"],
+            common["band_low"],
+            common["band_high"],
+            color=ORANGE,
+            alpha=0.25,
+            linewidth=0,
         )
         axis.loglog(
-            one["q"], one["psd"], color=ORANGE, label=f"one spectrum, {level} band", zorder=3
+            common["q"], common["psd"], color=ORANGE, label=f"one spectrum, {level} band", zorder=3
         )
         end = parameters["trusted_end"]
         axis.axvline(
@@ -128,11 +133,12 @@ def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None
 
 
 def _statistics(parameters: Mapping[str, Any]) -> Iterator[Block]:
-    one = parameters["one_spectrum"]
+    common = parameters["one_spectrum"]
     names = {"rms_height": "RMS height", "rms_slope": "RMS slope", "rms_curvature": "RMS curvature"}
     yield table(
-        f"The measured surface, all waves from {show(one['from_q'])} to {show(one['to_q'])} /nm",
-        [{"what": text, **one[key]} for key, text in names.items()],
+        f"The measured surface, all waves from {show(common['from_q'])} to"
+        f" {show(common['to_q'])} /nm",
+        [{"what": text, **common[key]} for key, text in names.items()],
         {
             "what": "what",
             "unit": lambda row: shown_unit(row["unit"]),
@@ -142,13 +148,13 @@ def _statistics(parameters: Mapping[str, Any]) -> Iterator[Block]:
             ),
         },
     )
-    if not one["overlaps"] and len(one["measurements"]) > 1:
+    if not common["overlaps"] and len(common["measurements"]) > 1:
         yield "No two measurements see common waves: none can be checked by another."
-    if one["overlaps"]:
-        short = short_names(one["measurements"])
+    if common["overlaps"]:
+        short = short_names(common["measurements"])
         yield table(
             "Where measurements overlap",
-            one["overlaps"][:12],
+            common["overlaps"][:12],
             {
                 "measurements": lambda row: f"{short[row['first']]}, {short[row['second']]}",
                 "shared q (1/nm)": lambda row: f"{show(row['from_q'])} to {show(row['to_q'])}",

@@ -72,5 +72,7 @@ def spread(
     """A number with its interval; a dash where there is none, the number alone without an
     interval.
     """
-    value, *ends = (show(number(row.get(name)) * factor, digits) for name in (middle, low, high))
-    return f"{value} [{', '.join(ends)}]" if "–" not in (value, *ends) else value
+    value, *interval = (
+        show(number(row.get(name)) * factor, digits) for name in (middle, low, high)
+    )
+    return f"{value} [{', '.join(interval)}]" if "–" not in (value, *interval) else value

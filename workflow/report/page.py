@@ -91,8 +91,8 @@ class Section:
     @property
     def folded(self) -> list[Block]:
         """Figures, tables and doubts, then the notes."""
-        rest = [block for block in self.blocks if not getattr(block, "front", False)]
-        return sorted(rest, key=lambda block: isinstance(block, str))
+        folded_blocks = [block for block in self.blocks if not getattr(block, "front", False)]
+        return sorted(folded_blocks, key=lambda block: isinstance(block, str))
 
 
 def section(

@@ -30,18 +30,18 @@ def render(results: Results) -> str:
     itself alone.
     """
     broken: list[Gate] = []
-    parts = []
+    filled = []
     for anchor, title, stages in PARTS:
         built = [
             guarded(_name(stage), partial(stage.describe, results), None, broken)
             for stage in stages
         ]
         if sections := [section for section in built if section]:
-            parts.append({"anchor": anchor, "title": title, "sections": sections})
+            filled.append({"anchor": anchor, "title": title, "sections": sections})
     gates = [
         gate
         for build in GATES
-        for gate in guarded("gates", lambda one=build: [*one(results)], [], broken)
+        for gate in guarded("gates", lambda builder=build: [*builder(results)], [], broken)
     ]
     first = guarded("first screen", partial(first_screen, results, gates), None, broken)
     failures = guarded("accepted gates", partial(accepted_failures, results), {}, broken)
@@ -53,7 +53,7 @@ def render(results: Results) -> str:
         "scene": results.scene,
         "beside_paper": results.beside_paper,
         "first": first,
-        "parts": parts,
+        "parts": filled,
         "studies": guarded("studies", partial(studies, results), [], broken),
         "limits": guarded("limits", partial(limits, results), [], broken),
         "provenance": guarded("provenance", partial(_provenance, results), [], broken),

@@ -180,14 +180,14 @@ def _lines(results: Results, tables: Sequence[KnobTable]) -> Iterator[Block]:
             unknown.append(stage)
             continue
         in_volts = [table for table in used if np.isfinite(_in_use(table).release_V)]
-        others = [table for table in used if table not in in_volts]
+        unweighed = [table for table in used if table not in in_volts]
         volts = "not known"
         worst = []
         if in_volts:
             worst.append(max(in_volts, key=lambda table: _in_use(table).release_V))
             volts = f"{show(_in_use(worst[0]).release_V, 2)} V"
-        if others:
-            worst.append(max(others, key=lambda table: _in_use(table).error))
+        if unweighed:
+            worst.append(max(unweighed, key=lambda table: _in_use(table).error))
         choices = [f"{table.name}, {_short(table.shipped)}" for table in worst]
         rows.append(
             (stage, "; ".join(choices), "; ".join(str(_in_use(table)) for table in worst), volts)
@@ -271,7 +271,8 @@ def recommended(table: KnobTable, deviation_V: float = np.nan) -> str:
         return "–"
     errors = np.array([error.error for _, error in curve])
     own_errors = np.nan_to_num([error.own_error for _, error in curve])
-    best, worst = int(errors.argmin()), int(errors.argmax())
+    best = int(errors.argmin())
+    worst = int(errors.argmax())
     if errors[worst] - errors[best] <= TOLD_APART * np.hypot(own_errors[best], own_errors[worst]):
         return "values cannot be told apart"
     rises = np.diff(errors) > TOLD_APART * np.hypot(own_errors[1:], own_errors[:-1])
@@ -338,10 +339,10 @@ def drawn_points(table: KnobTable) -> list[tuple[float, float, bool]]:
 
 
 def _draw_panel(axis, knobs: Sequence[KnobTable]) -> None:
-    every = []
+    pooled = []
     for color, knob in zip(SERIES * len(knobs), knobs, strict=False):
         points = drawn_points(knob)
-        every += points
+        pooled += points
         seconds, errors, shipped = map(np.array, zip(*sorted(points), strict=True))
         axis.plot(seconds, errors, ".-", color=color, label=f"{knob.name}: {knob.quantity}")
         axis.plot(
@@ -353,7 +354,7 @@ def _draw_panel(axis, knobs: Sequence[KnobTable]) -> None:
             markersize=10,
             linewidth=0,
         )
-    front = pareto_front([(seconds, error) for seconds, error, _ in every])
+    front = pareto_front([(seconds, error) for seconds, error, _ in pooled])
     axis.plot(*zip(*front, strict=True), "--", color=SOFT, linewidth=1, zorder=0)
     axis.legend(
         fontsize=8, loc="upper left", bbox_to_anchor=(0, -0.18)

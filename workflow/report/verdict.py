@@ -93,7 +93,11 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
         return None
     pad = results.json("answer/pad_switch.json")
     answer = pad.get("answer")
-    release, stuck, no_interval, causes, no_cause = None, None, "", (), ""
+    release = None
+    stuck = None
+    no_interval = ""
+    causes = ()
+    no_cause = ""
     if answer:
         release = tuple(answer["release_V"]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
         stuck = tuple(answer["stuck"][key] for key in ("low", "value", "high"))
@@ -103,8 +107,8 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
         no_interval = ("; ".join(pad["gate"]["reasons"]) if release is None else "") or pad[
             "answer_status"
         ]
-    every = gates_of(results) if gates is None else gates
-    failed = [gate for gate in every if gate.used and gate.answer and not gate.passed]
+    all_gates = gates_of(results) if gates is None else gates
+    failed = [gate for gate in all_gates if gate.used and gate.answer and not gate.passed]
     return Verdict(
         "bending electrode" if pad.get("electrode", "bending") == "bending" else "flat electrode",
         release,
@@ -180,10 +184,8 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
         return "Compute more cells next (pad.point_cells)."
     if no_cause:
         return "Compute more switches next (pad.points)." if answer["explained"] <= 0 else ""
-    name, shrinks = (
-        rows[0]["name"],
-        f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}",
-    )
+    name = rows[0]["name"]
+    shrinks = f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}"
     if rows[0]["varies"] == "each":
         return (
             f"Control next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}:"

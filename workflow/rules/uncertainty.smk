@@ -61,7 +61,7 @@ rule uncertainty:
 
 
 rule sensitivity:
-    """the same as uncertainty: the ranking of the inputs comes with their effect"""
+    """the same as uncertainty: which input matters, and how much"""
     input:
         rules.uncertainty.output,
 

@@ -66,7 +66,7 @@ def renewed_by(readers: Iterable[int], needs: Mapping[int, Iterable[int]]) -> se
     renewed = set(readers)
     grown = True
     while grown:
-        waiting = {number for number, others in needs.items() if renewed & set(others)}
+        waiting = {number for number, needed in needs.items() if renewed & set(needed)}
         grown = not waiting <= renewed
         renewed |= waiting
     return renewed

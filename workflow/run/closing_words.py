@@ -33,9 +33,10 @@ def judgement(rows: list[dict[str, str]]) -> Iterator[str]:
         yield "no scan could be pressed (none is areal with square pixels)"
         return
     inside = sum(row["inside"] == "True" for row in rows)
-    way = "made without it" if testable(rows) else "made from it"
+    origin = "made without it" if testable(rows) else "made from it"
     summary = (
-        f"pressing each scan agrees with its description ({way}) in {inside} of {len(rows)} numbers"
+        f"pressing each scan agrees with its description ({origin}) in {inside} of {len(rows)}"
+        " numbers"
     )
     if worst := disagreeing(rows):
         yield (

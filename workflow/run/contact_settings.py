@@ -9,7 +9,7 @@ from workflow.files.results import load_json
 from workflow.run.job import settings_from_job
 
 
-def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:
+def contact_settings(contact: dict[str, Any], snakemake: Any) -> ContactSettings:
     """Settings of the scene; where it takes the surface from measurements, their cell, and their
     spectrum and heights.
 
@@ -21,6 +21,6 @@ def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:
     path = snakemake.input.get("topography")
     described = load_json(path) if path else {}
     settings = ContactSettings(
-        **dict(settings_from_job(SceneContact, given)), surface=described.get("surface", {})
+        **dict(settings_from_job(SceneContact, contact)), surface=described.get("surface", {})
     )
     return settings.on_cell(described.get("cell_nm", settings.length_nm))

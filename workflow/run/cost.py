@@ -79,9 +79,9 @@ class Costs:
     def seconds(self, rule: str, wildcards: Mapping[str, str]) -> float:
         """Seconds of one core of this machine, by all that jobs took so far."""
         # jobs of 60 typical seconds count as much as the tables
-        every = zip((60.0, 60.0), *self._learned.values(), strict=True)
+        logs = zip((60.0, 60.0), *self._learned.values(), strict=True)
         # a rule that has not run here is as slow as the others were
-        took, typical = self._learned.get(rule) or map(sum, every)
+        took, typical = self._learned.get(rule) or map(sum, logs)
         return took / typical * self._typical_s(rule, wildcards)
 
     def learn(self, rule: str, wildcards: Mapping[str, str], took: float) -> None:
@@ -158,7 +158,9 @@ def wall_seconds(
     needs : numbers of the jobs that each waits for; of others than these it waits no more.
     """
     waits = {number: [other for other in needs[number] if other in seconds] for number in seconds}
-    ends: dict[int, float] = {}
+    finish: dict[int, float] = {}
     for number in TopologicalSorter(waits).static_order():
-        ends[number] = seconds[number] + max((ends[other] for other in waits[number]), default=0.0)
-    return max(sum(seconds.values()) / cores, max(ends.values(), default=0.0))
+        finish[number] = seconds[number] + max(
+            (finish[other] for other in waits[number]), default=0.0
+        )
+    return max(sum(seconds.values()) / cores, max(finish.values(), default=0.0))

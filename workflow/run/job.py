@@ -95,15 +95,15 @@ class Job:
 Settings = TypeVar("Settings", bound=BaseModel)
 
 
-def settings_from_job(kind: type[Settings], given: Mapping[str, Any]) -> Settings:
+def settings_from_job(kind: type[Settings], stated: Mapping[str, Any]) -> Settings:
     """Settings from a job's parameters, which hold every key: none falls back to its default.
 
     Raises
     ------
     KeyError : a key is missing.
     """
-    settings = kind.model_validate(dict(given))
-    if missing := _missing(given, settings.model_dump(mode="json")):
+    settings = kind.model_validate(dict(stated))
+    if missing := _missing(stated, settings.model_dump(mode="json")):
         raise KeyError(
             f"{kind.__name__} without {', '.join(missing)}: the rule must hand the whole section"
             " over"
@@ -111,11 +111,11 @@ def settings_from_job(kind: type[Settings], given: Mapping[str, Any]) -> Setting
     return settings
 
 
-def _missing(given: Mapping[str, Any], complete: Mapping[str, Any], place: str = "") -> list[str]:
-    missing = [place + key for key in complete if key not in given]
+def _missing(stated: Mapping[str, Any], complete: Mapping[str, Any], place: str = "") -> list[str]:
+    missing = [place + key for key in complete if key not in stated]
     for key, value in complete.items():
-        if isinstance(value, dict) and isinstance(given.get(key), Mapping):
-            missing += _missing(given[key], value, f"{place}{key}.")
+        if isinstance(value, dict) and isinstance(stated.get(key), Mapping):
+            missing += _missing(stated[key], value, f"{place}{key}.")
     return missing
 
 

@@ -52,12 +52,12 @@ def foreign_results(results: Path, is_made: Callable[[str], bool]) -> list[str]:
     before = [path for path in foreign if place_now(path.relative_to(results).as_posix())]
     folders = sorted({path.relative_to(results).parts[0] for path in before})
     lines = [f"{results / name} is `{STAGES[name]}` since {SINCE}; {REMOVE}" for name in folders]
-    others = [path for path in foreign if path not in before]
-    if not others:
+    unnamed = [path for path in foreign if path not in before]
+    if not unnamed:
         return lines
-    subject = f"{others[0]} is a result"
-    if len(others) > 1:
-        subject = f"{others[0]} and {len(others) - 1} more are results"
+    subject = f"{unnamed[0]} is a result"
+    if len(unnamed) > 1:
+        subject = f"{unnamed[0]} and {len(unnamed) - 1} more are results"
     return [
         *lines,
         f"{subject} of another version: nothing here reads or changes them; move away what you do"
@@ -80,5 +80,5 @@ def answer_words(results: Path, since: float, has_scans: bool) -> Iterator[str]:
         from workflow.report.available import results_in
         from workflow.report.verdict import verdict
 
-        if said := verdict(results_in(results)):
-            yield said.sentence
+        if answer := verdict(results_in(results)):
+            yield answer.sentence

@@ -169,9 +169,9 @@ def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
             f"{results}: these are results of {known}, not of {owner}; give one of them another"
             f" name (key `name`), or empty the file {note} if the scene has moved"
         )
-    if not note.is_file() and (others := sorted(set(os.listdir(results)) - {".lock", ".jobs"})):
+    if not note.is_file() and (strangers := sorted(set(os.listdir(results)) - {".lock", ".jobs"})):
         raise Refused(
-            f"{results}: holds {others[0]}, but no file .scene, so that no run made it; give the"
+            f"{results}: holds {strangers[0]}, but no file .scene, so that no run made it; give the"
             " scene another name (key `name`), or move the folder or its link away"
         )
     if write:

@@ -61,18 +61,18 @@ def write_solved(
     """
     groups: dict[str, dict[str, Dataset]] = {}
     attributes: dict[str, dict[str, Any]] = {}
-    for number, one in solved.items():
+    for number, solved_point in solved.items():
         name = f"point_{number:04d}"
-        groups[name] = {} if one.pad is None else _curves(one.pad.cells)
-        device = one.point.device.model_dump(mode="json", exclude={"spread"})
+        groups[name] = {} if solved_point.pad is None else _curves(solved_point.pad.cells)
+        device = solved_point.point.device.model_dump(mode="json", exclude={"spread"})
         attributes[name] = {
-            **(one.states.numbers if one.states else {}),
-            "halves_V": one.halves_V,
-            "refused": one.refused,
-            "inputs": one.point.values,
-            "gap_cutoff_nm": one.point.gap_cutoff_nm,
+            **(solved_point.states.numbers if solved_point.states else {}),
+            "halves_V": solved_point.halves_V,
+            "refused": solved_point.refused,
+            "inputs": solved_point.point.values,
+            "gap_cutoff_nm": solved_point.point.gap_cutoff_nm,
             "device": device,
-            **(asdict(one.pad.flats) if one.pad else {}),
+            **(asdict(solved_point.pad.flats) if solved_point.pad else {}),
         }
     if design is not None:
         drawn = Dataset(
@@ -146,7 +146,7 @@ def _check(where: str, fits: bool | np.bool_, what: str) -> None:
         raise UnfitModel(f"{where}: {what}; delete the file and run again")
 
 
-def _check_solved(where: str, said: Mapping[str, Any]) -> None:
+def _check_solved(where: str, stated: Mapping[str, Any]) -> None:
     """See that a point has either a reason or all states, each in its range.
 
     Raises
@@ -154,19 +154,19 @@ def _check_solved(where: str, said: Mapping[str, Any]) -> None:
     UnfitModel
     """
     for name in ("halves_V", "refused"):
-        _check(where, name in said, f"no attribute {name}")
-    halves = np.asarray(said["halves_V"])
+        _check(where, name in stated, f"no attribute {name}")
+    halves = np.asarray(stated["halves_V"])
     _check(
         where,
         halves.shape == (2,) and halves.dtype.kind == "f" and not (halves < 0.0).any(),
         "halves_V: no two V",
     )
-    _check(where, isinstance(said["refused"], str), "refused: no text")
+    _check(where, isinstance(stated["refused"], str), "refused: no text")
     for name in STATES:
-        if said["refused"]:
-            _check(where, name not in said, f"{name} of a point without an answer")
+        if stated["refused"]:
+            _check(where, name not in stated, f"{name} of a point without an answer")
             continue
-        value = np.asarray(said.get(name, np.nan))
+        value = np.asarray(stated.get(name, np.nan))
         number = (
             value.shape == ()
             and value.dtype.kind in "fiu"
@@ -174,11 +174,13 @@ def _check_solved(where: str, said: Mapping[str, Any]) -> None:
             and 0.0 <= value <= 1e9
         )
         _check(
-            where, bool(number), f"{name} = {said.get(name)!r:.40}: accepted is a number from 0 on"
+            where,
+            bool(number),
+            f"{name} = {stated.get(name)!r:.40}: accepted is a number from 0 on",
         )
 
 
-def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.ndarray]) -> None:
+def _check_curves(where: str, stated: Mapping[str, Any], curves: Mapping[str, np.ndarray]) -> None:
     """See that the curves of a pad have the shapes and ranges in which they are written.
 
     Raises
@@ -201,7 +203,8 @@ def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.n
                 size == sizes.setdefault(dim, size) and size > 0,
                 f"{name}: {size} along {dim}",
             )
-    separation, depth = curves["separation_nm"], curves["depth"]
+    separation = curves["separation_nm"]
+    depth = curves["depth"]
     finite = [np.isfinite(curves[name]).all() for name in CURVES if name != "opening_GPa"]
     _check(
         where,
@@ -231,12 +234,14 @@ def _check_curves(where: str, said: Mapping[str, Any], curves: Mapping[str, np.n
         signs = not (repulsive < -nothing).any() and not (attractive > nothing).any()
         _check(where, signs, f"{name}: repulsion is positive and attraction negative")
     for name in ("hamaker", "offset_nm"):
-        value = np.asarray(said.get(name, np.nan))
+        value = np.asarray(stated.get(name, np.nan))
         number = (
             value.shape == () and value.dtype.kind in "fiu" and np.isfinite(value) and value >= 0.0
         )
         _check(
-            where, bool(number), f"{name} = {said.get(name)!r:.40}: accepted is a number from 0 on"
+            where,
+            bool(number),
+            f"{name} = {stated.get(name)!r:.40}: accepted is a number from 0 on",
         )
 
 
@@ -255,20 +260,22 @@ def load_model(paths: Sequence[str], points: ScenePoints) -> PadModel:
 
 def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solved]]:
     groups, _, attributes = load_h5(path)
-    for name, said in attributes.items():
+    for name, stated in attributes.items():
         if not name.startswith("point_"):
             continue
-        digits, pad, where = name.removeprefix("point_"), None, f"{path}: {name}"
+        digits = name.removeprefix("point_")
+        pad = None
+        where = f"{path}: {name}"
         _check(
             where,
             digits.isascii() and digits.isdigit() and int(digits) in points,
             "no point of this scene",
         )
         number = int(digits)
-        _check_solved(where, said)
-        _check(where, name in groups or bool(said["refused"]), "no curves")
+        _check_solved(where, stated)
+        _check(where, name in groups or bool(stated["refused"]), "no curves")
         if name in groups:
-            _check_curves(where, said, groups[name])
+            _check_curves(where, stated, groups[name])
             curves = groups[name]
             cells = PadCells(
                 PadGrid(curves["separation_nm"], curves["depth"]),
@@ -279,21 +286,21 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
                 curves["opening_GPa"],
                 curves["settled"].astype(bool),
             )
-            pad = Pad(cells, Flats(float(said["hamaker"]), float(said["offset_nm"])))
+            pad = Pad(cells, Flats(float(stated["hamaker"]), float(stated["offset_nm"])))
         states = None
-        if not said["refused"]:
-            pull_in_V, release_V, capacitance_fF, deepened = (float(said[key]) for key in STATES)
+        if not stated["refused"]:
+            pull_in_V, release_V, capacitance_fF, deepened = (float(stated[key]) for key in STATES)
             states = States(pull_in_V, release_V, capacitance_fF, bool(deepened))
-        first, second = (float(value) for value in said["halves_V"])
-        yield number, Solved(points[number], pad, states, (first, second), str(said["refused"]))
+        first, second = (float(value) for value in stated["halves_V"])
+        yield number, Solved(points[number], pad, states, (first, second), str(stated["refused"]))
 
 
 def population_of_job(snakemake: Any) -> tuple[Population, float]:
     """All switches of a job that also has section `failure` of its scene, and the share of them
     that may fail.
     """
-    asked = settings_from_job(FailureSettings, snakemake.params.failure)
-    assert asked.probability is not None, "rules refuse scenes without it"
+    failure_settings = settings_from_job(FailureSettings, snakemake.params.failure)
+    assert failure_settings.probability is not None, "rules refuse scenes without it"
     points, pad = points_of_job(snakemake)
     model = load_model([snakemake.input.model], points)
 
@@ -301,9 +308,9 @@ def population_of_job(snakemake: Any) -> tuple[Population, float]:
         surfaces = surfaces_of(100_000 + number)  # beyond those of the points of an answer
         return press_pad(point, points.on_grid, times * pad.point_cells, surfaces)
 
-    pads = {k: one.pad for k, one in enumerate(model.points) if one.pad}
+    pads = {k: solved_point.pad for k, solved_point in enumerate(model.points) if solved_point.pad}
     known = points.design.probability[np.array(list(pads), int)], list(pads.values())
     population = Population(
-        points.table, points.device, points.cutoffs_nm, asked.release_V, press, known
+        points.table, points.device, points.cutoffs_nm, failure_settings.release_V, press, known
     )
-    return population, asked.probability
+    return population, failure_settings.probability

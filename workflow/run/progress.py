@@ -64,7 +64,8 @@ class Terminal(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print what a message of Snakemake means for the user."""
-        event, about = getattr(record, "event", None), record.__dict__
+        event = getattr(record, "event", None)
+        about = record.__dict__
         if event == "run_info" and not self._planned:
             self._planned = True
             self._plan()
@@ -110,7 +111,7 @@ class Terminal(logging.Handler):
             counts = Counter(job.rule.name for job in self._left.values())
             rows = [
                 ("job", "count", "one core"),
-                *((rule, str(counts[rule]), duration(of)) for rule, of in seconds.items()),
+                *((rule, str(counts[rule]), duration(press)) for rule, press in seconds.items()),
             ]
             width = max(len(row[0]) for row in rows)
             _say(
@@ -137,8 +138,8 @@ class Terminal(logging.Handler):
         needs = self._needs()
 
         def cost(numbers: Collection[int]) -> str:
-            part = {number: seconds[number] for number in numbers}
-            return f"about {duration(wall_seconds(part, needs, self._cores))}"
+            chosen = {number: seconds[number] for number in numbers}
+            return f"about {duration(wall_seconds(chosen, needs, self._cores))}"
 
         yield from change_lines(changed, needs, rules, cost)
 
@@ -181,18 +182,25 @@ class Terminal(logging.Handler):
         took = time.monotonic() - started
         if self._workflow.local_exec:  # on a cluster jobs wait
             self._costs.learn(job.rule.name, dict(job.wildcards_dict), took)
-        rest = f", {duration(self._wall_s())} left" if self._left else ""
+        remaining = f", {duration(self._wall_s())} left" if self._left else ""
         start = f"{time.strftime('%H:%M')}  {self._done:>{len(str(self._jobs))}} of {self._jobs}  "
-        end = f" ({duration(took)}){rest}"
+        end = f" ({duration(took)}){remaining}"
         _say(
             start
             + textwrap.shorten(message, COLUMNS - len(start) - len(end), placeholder=" …")
             + end
         )
         if job.rule.name == "press_pads":
-            pressed = [of for of in self._workflow.dag.jobs if of.rule.name == "press_pads"]
+            pressed = [
+                press for press in self._workflow.dag.jobs if press.rule.name == "press_pads"
+            ]
             for line in release_so_far(
-                [file for of in pressed if of.jobid not in self._left for file in of.output]
+                [
+                    file
+                    for press in pressed
+                    if press.jobid not in self._left
+                    for file in press.output
+                ]
             ):
                 _say(line)
 
@@ -222,7 +230,8 @@ def release_so_far(files: Iterable[str]) -> Iterator[str]:
     solved = [value for value in release_V if np.isfinite(value)]
     if solved:
         low, middle, high = (
-            f"{of:.3g} V" if of else "sticks" for of in np.quantile(solved, (0.05, 0.5, 0.95))
+            f"{press:.3g} V" if press else "sticks"
+            for press in np.quantile(solved, (0.05, 0.5, 0.95))
         )
         stuck = np.mean(np.equal(solved, 0.0))
         yield (

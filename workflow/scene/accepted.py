@@ -88,10 +88,10 @@ def field_at(location: tuple[Any, ...]) -> FieldInfo | None:
     """The deepest settings field on the way to `location`."""
     model: type[BaseModel] | None = Scene
     field = None
-    for part in location:
-        if model is None or part not in model.model_fields:
+    for step in location:
+        if model is None or step not in model.model_fields:
             return field
-        field = model.model_fields[part]
+        field = model.model_fields[step]
         model = _as_model(field.annotation)
     return field
 

@@ -55,11 +55,11 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
             "inputs.t_film = 0: without a film take inputs.hardness: paper, and null for all"
             " numbers of the film"
         )
-    bodies, (least, most) = scene.contact.bodies, spans.get("e_star", (0.0, math.inf))
-    if bodies and not least / 1.25 <= (bases := base_modulus(bodies)) <= 1.25 * most:
+    bodies, (lowest, highest) = scene.contact.bodies, spans.get("e_star", (0.0, math.inf))
+    if bodies and not lowest / 1.25 <= (bases := base_modulus(bodies)) <= 1.25 * highest:
         yield (
             f"contact.bodies: their bases have E* = {bases:.4g} GPa, inputs.e_star reaches from"
-            f" {least:g} to {most:g}; e_star is that of the bases: correct one of them"
+            f" {lowest:g} to {highest:g}; e_star is that of the bases: correct one of them"
         )
     side, nyquist = scene.contact.length_nm, scene.contact.nyquist_per_nm
     low, high = spans.get("q0", (math.inf, 0.0))
@@ -75,7 +75,7 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
             " pi contact.pixels / contact.length_nm); take more pixels, a smaller side or a"
             " smaller q0"
         )
-    if scene.contact.mechanics == "adhesive" and math.isfinite(least):
+    if scene.contact.mechanics == "adhesive" and math.isfinite(lowest):
         cutoff, _ = spans.get("gap_cutoff", (scene.contact.gap_cutoff_nm, math.inf))
         _, hamaker = spans.get("hamaker", (0.0, 0.0))
         # one site yields by 4 ln(1 + sqrt 2) / pi of its side over E*; the attraction changes by 3
@@ -86,7 +86,7 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
             * side
             * 4
             * math.log(1 + math.sqrt(2))
-            / (math.pi * least)
+            / (math.pi * lowest)
         )
         if needed > scene.contact.pixels:
             yield (
@@ -97,7 +97,8 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
 
 
 def _stages(scene: Scene) -> Iterator[str]:
-    uncertainty, needed = scene.uncertainty, 2 * len(scene.inputs.rows())
+    uncertainty = scene.uncertainty
+    needed = 2 * len(scene.inputs.rows())
     if uncertainty.direct_runs < needed:
         yield (
             f"uncertainty.direct_runs = {uncertainty.direct_runs}: a regression over {needed // 2}"
@@ -108,7 +109,8 @@ def _stages(scene: Scene) -> Iterator[str]:
             f"contact.model = {scene.contact.model} with history.cycles = {scene.history.cycles}:"
             " only plastic contacts have a history; choose contact.model: plastic"
         )
-    device, side_um = scene.device, scene.contact.length_nm / 1000
+    device = scene.device
+    side_um = scene.contact.length_nm / 1000
     yield from _too_few_points(scene)
     if line := _no_such_air(scene):
         yield line
@@ -153,11 +155,9 @@ def _no_such_air(scene: Scene) -> str:
     """One line on vapour of more pressure than the gas around the switch has; empty where it has
     less.
     """
-    row, air, gas = (
-        scene.inputs.rows().get("humidity"),
-        scene.contact.air or AirSettings(),
-        scene.device.gas_kPa,
-    )
+    row = scene.inputs.rows().get("humidity")
+    air = scene.contact.air or AirSettings()
+    gas = scene.device.gas_kPa
     humidity = (row.reaches or 0.0) if row else air.humidity
     if (
         air.surface_tension_mN_m is not None
@@ -172,8 +172,8 @@ def _no_such_air(scene: Scene) -> str:
 
 def _no_switch(device: DeviceSettings) -> str:
     """One line on a device that is no switch; empty where nothing is known against it."""
-    parts = {"electrode", "contact"}
-    unusual = parts | {
+    shares = {"electrode", "contact"}
+    unusual = shares | {
         "hold_voltage_V",
         "residual_stress_MPa",
         "temperature_C",
@@ -195,7 +195,9 @@ def _no_switch(device: DeviceSettings) -> str:
 
 
 def _machine(scene: Scene) -> Iterator[str]:
-    pixels, needed, present = scene.contact.pixels, contact_MB(scene.contact), machine_MB()
+    pixels = scene.contact.pixels
+    needed = contact_MB(scene.contact)
+    present = machine_MB()
     if needed > present:
         yield (
             f"contact.pixels = {pixels}: a contact needs {needed / 1000:.1f} GB of memory, this"

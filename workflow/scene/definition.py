@@ -102,11 +102,11 @@ class Scene(Settings):
     @model_validator(mode="after")
     def _cutoff_on_the_grid(self) -> "Scene":
         resolved = self.contact.nyquist_per_nm
-        wanted = {"contact.q1_per_nm": self.contact.q1_per_nm}
+        cut_offs = {"contact.q1_per_nm": self.contact.q1_per_nm}
         row = self.inputs.rows().get("q1")
         if row is not None and row.origin == "literature":
-            wanted["inputs.q1"] = row.reaches
-        for key, q1 in wanted.items():
+            cut_offs["inputs.q1"] = row.reaches
+        for key, q1 in cut_offs.items():
             if q1 is not None and q1 > resolved * (1 + 1e-9):
                 raise ValueError(
                     f"{key} reaches {q1:g} 1/nm: beyond what contact.pixels = {self.contact.pixels}"

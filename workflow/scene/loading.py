@@ -160,7 +160,8 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
         or characters that
         do not print; one line per file.
     """
-    files, mistakes = [], []
+    files = []
+    mistakes = []
     beside = _folders_of(scene)
     for name in names:
         places = [name, *(os.path.normpath(folder / name) for folder in beside)]
@@ -239,8 +240,8 @@ def _cut(text: str) -> str:
 
 def _explain(path: Path, error: Any) -> str:
     """One line for one pydantic error."""
-    location = tuple(part for part in error["loc"] if part != "__root__")
-    key = ".".join(_cut(str(part)) for part in location)
+    location = tuple(step for step in error["loc"] if step != "__root__")
+    key = ".".join(_cut(str(step)) for step in location)
     if error["type"] == "extra_forbidden":
         owner = model_at(location[:-1])
         known = list(owner.model_fields) if owner else []

@@ -19,16 +19,16 @@ column `unit`. A file that does not fit its table is refused.
 
 def page() -> str:
     """The page, one table per kind of file."""
-    parts = [INTRODUCTION]
+    sections = [INTRODUCTION]
     for stage, tables in STAGES.items():
-        parts.append(f"\n## {stage}\n")
-        parts += [_section(table) for table in tables]
-    return "".join(parts)
+        sections.append(f"\n## {stage}\n")
+        sections += [_section(table) for table in tables]
+    return "".join(sections)
 
 
 def _section(table: Table) -> str:
-    first, *others = table.paths
-    also = f" The same: {', '.join(f'`{path}`' for path in others)}." if others else ""
+    first, *further = table.paths
+    also = f" The same: {', '.join(f'`{path}`' for path in further)}." if further else ""
     lines = [
         "| column | type | unit | meaning |",
         "| --- | --- | --- | --- |",

@@ -39,9 +39,11 @@ TABLES = (
         (
             number("voltage_V", "V", "voltage"),
             *(
-                number(f"{way}_{name}_fF", "fF", f"capacitance on the way {way}, {of}")
-                for way in ("up", "down")
-                for name, of in (
+                number(
+                    f"{direction}_{name}_fF", "fF", f"capacitance on the way {direction}, {meaning}"
+                )
+                for direction in ("up", "down")
+                for name, meaning in (
                     ("central", "central switch"),
                     ("q05", "5 % of the draws"),
                     ("q95", "95 % of the draws"),

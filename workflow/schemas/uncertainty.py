@@ -28,13 +28,13 @@ def _in_unit(name: str, meaning: str, empty: bool = False) -> Column:
     return number(name, "`unit`", meaning, empty)
 
 
-def _with_ends(column: Column, ends: str) -> tuple[Column, ...]:
+def _with_ends(column: Column, bounds: str) -> tuple[Column, ...]:
     """A number with the ends of its interval."""
-    low = number(f"{column.name}_low", column.unit, f"lower end of its {ends}", column.empty)
+    low = number(f"{column.name}_low", column.unit, f"lower end of its {bounds}", column.empty)
     return (
         column,
         low,
-        number(f"{column.name}_high", column.unit, f"upper end of its {ends}", column.empty),
+        number(f"{column.name}_high", column.unit, f"upper end of its {bounds}", column.empty),
     )
 
 

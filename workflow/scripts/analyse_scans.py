@@ -15,7 +15,8 @@ from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = settings_from_job(TopographySettings, snakemake.params.settings)
-    groups, attributes = {}, {}
+    groups = {}
+    attributes = {}
     files = list(snakemake.input.scans)
     for number, path in enumerate(files):
         stem = Path(path).stem

@@ -14,13 +14,13 @@ from workflow.run.contact_settings import contact_settings
 from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
-    given = copy.deepcopy(snakemake.params.settings)
+    stated = copy.deepcopy(snakemake.params.settings)
     results = dict(snakemake.input.items())
     for name in [name for name in results if name.startswith("samples_")]:
-        given[name.removeprefix("samples_")]["values"] = results.pop(
+        stated[name.removeprefix("samples_")]["values"] = results.pop(
             name
         )  # found beside the scene, perhaps
-    settings = settings_from_job(InputsSettings, given)
+    settings = settings_from_job(InputsSettings, stated)
     stages = {stage: load_json(path) for stage, path in results.items()}
     files = {stage: "/".join(path.split("/")[-2:]) for stage, path in results.items()}
     contact = contact_settings(snakemake.params.contact, snakemake)

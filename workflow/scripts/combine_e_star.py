@@ -23,10 +23,8 @@ with job(snakemake) as run:
     ]
     reports = [load_json(path) for path in snakemake.input.structures]
     quenches = [len(load_csv(path)) for path in snakemake.input.attempts]
-    material, counter_body = (
-        load_material(snakemake.input.material),
-        load_material(snakemake.input.counter_body),
-    )
+    material = load_material(snakemake.input.material)
+    counter_body = load_material(snakemake.input.counter_body)
     summary, samples = effective_modulus(
         trusted_moduli(fits, reports), material, counter_body, settings
     )

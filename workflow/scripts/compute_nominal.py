@@ -22,7 +22,9 @@ from workflow.run.job import job
 with job(snakemake) as run:
     middle = medians(load_csv(snakemake.input.inputs))
     inputs, settings = contact_of(middle, contact_settings(snakemake.params.settings, snakemake))
-    groups, attributes, cycles = {}, {}, []
+    groups = {}
+    attributes = {}
+    cycles = []
     for name, chosen, force, cycle in nominal_cycles(inputs, settings, run.progress):
         cycles.append((force, cycle))
         attributes[name] = {

@@ -17,7 +17,8 @@ with job(snakemake) as run:
     contact = contact_settings(snakemake.params.contact, snakemake)
     table = from_rows(load_csv(snakemake.input.inputs))
     runs = collocation_runs(table, *snakemake.params.bounds)
-    groups, attributes = {}, {}
+    groups = {}
+    attributes = {}
     for item, cycle in compute_all(runs, contact, run.progress):
         name = f"run_{item.index:04d}"
         about_run = {"run": item.index, "node": item.node, "seed": item.seed, **item.values}

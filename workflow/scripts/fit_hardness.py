@@ -21,29 +21,30 @@ from workflow.files.results import load_csv, load_json, load_numbers, write_csv,
 from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
-    given, params = snakemake.input, snakemake.params
-    summaries = {summary["run"]: summary for summary in map(load_json, given.summaries)}
+    inputs, params = snakemake.input, snakemake.params
+    summaries = {summary["run"]: summary for summary in map(load_json, inputs.summaries)}
     curves, witnesses = (
         dict(zip(summaries, map(load_numbers, files), strict=True))
-        for files in (given.curves, given.witnesses)
+        for files in (inputs.curves, inputs.witnesses)
     )
     rows = [
         point(curves[name], witnesses[name], summaries[name], params.potential)
         for name in summaries
     ]
     write_csv(snakemake.output.points, rows)
-    points, glasses = load_csv(snakemake.output.points), [load_json(path) for path in given.glasses]
-    area_error = calibrated(load_potential(given.potential))
-    measured = load_material(given.material).part("oxide_glass").indentation_GPa
-    if given.base_material:
+    points = load_csv(snakemake.output.points)
+    glasses = [load_json(path) for path in inputs.glasses]
+    area_error = calibrated(load_potential(inputs.potential))
+    measured = load_material(inputs.material).part("oxide_glass").indentation_GPa
+    if inputs.base_material:
         area_error = max(
-            area_error, load_material(given.base_material).part("film_base").area_error
+            area_error, load_material(inputs.base_material).part("film_base").area_error
         )
         fit = fit_films(points, curves, glasses, area_error, params.energies, measured)
     else:
         row = settings_from_job(InputRow, params.h_macro)
-        if given.h_macro:
-            row = row.model_copy(update={"values": str(given.h_macro)})
+        if inputs.h_macro:
+            row = row.model_copy(update={"values": str(inputs.h_macro)})
         h_macro = stated_distribution("h_macro", row).quantile
         fit = fit_size_effect(points, glasses, area_error, h_macro, params.energies, measured)
     used = {

@@ -16,7 +16,8 @@ with job(snakemake) as run:
     settings = settings_from_job(HistorySettings, snakemake.params.settings)
     contact = contact_settings(snakemake.params.contact, snakemake)
     inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), contact)
-    cycles, dwell = [], []
+    cycles = []
+    dwell = []
     for seed, held in follow_all(inputs, contact, settings, run.progress):
         cycles.append(cycle_row(seed, held))
         dwell += dwell_rows(seed, held, contact, settings)

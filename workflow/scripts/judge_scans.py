@@ -19,10 +19,11 @@ from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = settings_from_job(TopographySettings, snakemake.params.settings)
-    groups, attributes = {}, {}
+    groups = {}
+    attributes = {}
     for path in snakemake.input.chunks:
-        part, _, described = load_h5(path)
-        groups |= part
+        judgement, _, described = load_h5(path)
+        groups |= judgement
         attributes |= described
     alike = copies(in_order(groups, attributes), attributes)
     spectra = [

@@ -18,9 +18,9 @@ with job(snakemake) as run:
     settings = settings_from_job(NitrideGlassSettings, snakemake.params.glass)
     number = int(snakemake.wildcards.amorphous[1:])
     seed = int(np.random.SeedSequence([snakemake.params.seed, number]).generate_state(1)[0])
-    others = {Path(path).stem: load_structure(path) for path in snakemake.input.others}
+    structures = {Path(path).stem: load_structure(path) for path in snakemake.input.others}
     atoms, attempts = make_glass(
-        material, settings, seed, Path(snakemake.params.work), run.progress, others
+        material, settings, seed, Path(snakemake.params.work), run.progress, structures
     )
     write_csv(
         snakemake.output.attempts,

@@ -14,7 +14,8 @@ from workflow.files.results import atomic_path
 from workflow.run.job import job
 
 with job(snakemake) as run:
-    base, params = base_of(load_material(snakemake.input.material)), snakemake.params
+    base = base_of(load_material(snakemake.input.material))
+    params = snakemake.params
     edge_A = float(load_data(snakemake.input.glass, ()).cell_A[0])
     cell = base.make(edge_A, params.tiles, params.seed, Path(params.work), run.progress)
     with atomic_path(snakemake.output.atoms) as path:

@@ -28,10 +28,8 @@ with job(snakemake) as run:
     write_json(snakemake.output.summary, {"lumps": asdict(errors)}, run.provenance)
     write_csv(snakemake.output.table, [switch.row for switch in spread])
     for switch in (central, *spread):
-        lumps, path = (
-            lumps_of(switch.settings, errors.lumps),
-            Path(snakemake.output.models) / switch.row["switch"],
-        )
+        lumps = lumps_of(switch.settings, errors.lumps)
+        path = Path(snakemake.output.models) / switch.row["switch"]
         netlist = spice_switch(lumps, errors, switch.pad, pad.cells.count, switch.row["pull_in_V"])
         write_text(path.with_suffix(".sub"), netlist)
         write_text(path.with_suffix(".va"), verilog_lump(lumps, switch.pad, pad.cells.count))

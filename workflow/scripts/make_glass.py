@@ -16,7 +16,8 @@ from workflow.files.results import atomic_path, write_json
 from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
-    material, seed = load_material(snakemake.input.material), int(snakemake.params.seed)
+    material = load_material(snakemake.input.material)
+    seed = int(snakemake.params.seed)
     settings = settings_from_job(GlassSettings, snakemake.params.glass)
     potential = load_potential(snakemake.input.potential)
     started = time.perf_counter()

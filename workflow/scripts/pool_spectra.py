@@ -18,7 +18,8 @@ from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = settings_from_job(TopographySettings, snakemake.params.settings)
-    arrays, attributes = {}, {}
+    arrays = {}
+    attributes = {}
     for path in snakemake.input.chunks:
         groups, _, group_attributes = load_h5(path)
         arrays.update(groups)
@@ -30,9 +31,11 @@ with job(snakemake) as run:
         known = truth["truth"]
         typical = RoughSpectrum.from_rms(known["rms_nm"], known["q0"], known["slope"], known["q1"])
 
-    given = snakemake.params
-    room_nm = given.electrode_nm or math.inf
-    pooled = pool(arrays, attributes, settings, given.cell_nm, given.cut_off, room_nm, given.pixels)
+    params = snakemake.params
+    room_nm = params.electrode_nm or math.inf
+    pooled = pool(
+        arrays, attributes, settings, params.cell_nm, params.cut_off, room_nm, params.pixels
+    )
     curves = result_curves(pooled, typical)
     groups = {
         group: {name: Dataset(values, *CURVES[name], ("q",)) for name, values in content.items()}

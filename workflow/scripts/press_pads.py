@@ -12,7 +12,9 @@ from workflow.run.pads import points_of_job, write_solved
 
 with job(snakemake) as run:
     points, pad = points_of_job(snakemake)
-    numbers, solved, follows = range(*snakemake.params.bounds), {}, False
+    numbers = range(*snakemake.params.bounds)
+    solved = {}
+    follows = False
     if 0 in numbers:
         solved[0] = solve_point(
             points.by_number[0], points.on_grid, pad.cells, surfaces_of(0), run.progress
@@ -22,11 +24,11 @@ with job(snakemake) as run:
             f"at central inputs {solved[0].outcome}{'; its interval follows' if follows else ''}"
         )
     else:
-        asked = [(number, points.by_number[number]) for number in numbers]
-        for number, one in zip(
-            numbers, solve_points(asked, points.on_grid, pad.point_cells), strict=True
+        points_here = [(number, points.by_number[number]) for number in numbers]
+        for number, result in zip(
+            numbers, solve_points(points_here, points.on_grid, pad.point_cells), strict=True
         ):
-            solved[number] = one
+            solved[number] = result
             run.progress(len(solved) / len(numbers), f"{len(solved)} of {len(numbers)} points")
     write_solved(snakemake.output[0], solved, run.provenance)
     if follows and snakemake.rule.endswith(
@@ -34,11 +36,13 @@ with job(snakemake) as run:
     ):  # not where a calibration presses pads of the prior
         from workflow.report.early import early_page  # the other jobs draw nothing
 
-        root, central = Path(snakemake.output[0]).parents[2], PadModel(solved[0], points.design, ())
+        root = Path(snakemake.output[0]).parents[2]
+        central = PadModel(solved[0], points.design, ())
         spectra = [
             path.replace("parameters.json", "spectra.h5") for path in snakemake.input
         ]  # of the same job
-        files, area = sorted({*snakemake.input, *spectra}), points.contact.length_nm**2
+        files = sorted({*snakemake.input, *spectra})
+        area = points.contact.length_nm**2
         write_text(
             root / "report.html", early_page(root, files, central, area, dict(snakemake.params))
         )

@@ -38,7 +38,8 @@ with job(snakemake) as run:
     most_GPa = snakemake.params.max_force_nN / snakemake.params.length_nm**2  # 1 GPa nm^2 = 1 nN
     constants = {"rho_a_nm": Law.rho_a_nm, "alpha_nm": Law.shield_nm, "most_GPa": most_GPa}
     write_json(snakemake.output.surrogate, surrogate_json(result, table, constants), run.provenance)
-    names, values = [*table.names, *FITTED], np.hstack([result.samples, result.outputs])
+    names = [*table.names, *FITTED]
+    values = np.hstack([result.samples, result.outputs])
     write_csv(
         snakemake.output.samples, (dict(zip(names, line, strict=True)) for line in values.tolist())
     )

@@ -26,6 +26,6 @@ with job(snakemake) as run:
         snakemake.output.record,
         yaml.safe_dump(record, sort_keys=False, allow_unicode=True, width=100),
     )
-    shown = [path for path in snakemake.input if path not in set(snakemake.input.style)]
-    shown += [snakemake.output.record, *snakemake.params.studies]
-    write_text(snakemake.output.page, render(Results(root, shown, scene["name"])))
+    results = [path for path in snakemake.input if path not in set(snakemake.input.style)]
+    results += [snakemake.output.record, *snakemake.params.studies]
+    write_text(snakemake.output.page, render(Results(root, results, scene["name"])))

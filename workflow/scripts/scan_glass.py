@@ -15,7 +15,8 @@ from workflow.files.structures import ScfStore, load_structure, structure_text
 from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
-    material, name = load_material(snakemake.input.material), snakemake.wildcards.amorphous
+    material = load_material(snakemake.input.material)
+    name = snakemake.wildcards.amorphous
     dft = settings_from_job(DftSettings, snakemake.params.dft)
     store = ScfStore(Path(snakemake.params.store))
     quenched = load_structure(snakemake.input.structure)
@@ -29,7 +30,8 @@ with job(snakemake) as run:
         "" if status == "accepted" else status.removeprefix("rejected: "),
         run.progress,
     )
-    start, rejected = getattr(relaxed.calculator, "history", [])[-1:], "; ".join(relaxed.reasons)
+    start = getattr(relaxed.calculator, "history", [])[-1:]
+    rejected = "; ".join(relaxed.reasons)
     scans = [
         scan_rows(name, relaxed.atoms, xc, dft, store, start, rejected, run.progress)
         for xc in snakemake.params.functionals

@@ -5,6 +5,7 @@ twice its sides, where its copies do not reach it (Hockney; doi:10.1016/S0043-16
 
 import math
 from abc import ABC, abstractmethod
+from functools import cached_property
 
 import numpy as np
 from scipy import fft
@@ -16,15 +17,14 @@ Array = np.ndarray
 
 
 class Base(ABC):
-    """A half-space below nx x ny square sites.
+    """A half-space below nx x ny square sites; what its transforms need is made at the first one.
 
     Attributes
     ----------
+    repeats : whether the map does.
     shape : sites (nx, ny).
     spacing : of the sites, nm.
     e_star : effective modulus, GPa.
-    compliance : of the waves of the transformed grid, nm/GPa.
-    table : displacement of a site by the unit pressure on another, nm/GPa.
     transforms : how many there were, there and back.
     """
 
@@ -35,14 +35,14 @@ class Base(ABC):
         self.spacing = spacing
         self.e_star = e_star
         self.transforms = 0
-        self.compliance, self.table = self._influences()
-        self.single_compliance = self.compliance.astype(np.float32)
-        self.room = np.empty(self.compliance.size, np.complex64)
-        self.rows = np.arange(shape[0])
 
     @abstractmethod
-    def _influences(self) -> tuple[Array, Array]:
-        """`compliance` and `table`."""
+    def compliance(self) -> Array:
+        """Compliance (nm/GPa) of the waves of the transformed grid; made anew, for its memory."""
+
+    @abstractmethod
+    def near(self) -> Array:
+        """Displacement (nm/GPa) of a site by the pressure on another, 0 to 2 sites away, (3, 3)."""
 
     @abstractmethod
     def coarser(self, shape: tuple[int, int]) -> "Base":
@@ -57,28 +57,42 @@ class Base(ABC):
         """Of a site, nm^2."""
         return self.spacing**2
 
-    @property
+    @cached_property
     def spring(self) -> float:
         """Displacement of a site by its own pressure, nm/GPa."""
-        return float(self.table[0, 0])
+        return float(self.near()[0, 0])
 
-    @property
+    @cached_property
     def stencil(self) -> Array:
         """Pressures (GPa) on nine sites that move the middle one alone by 1 nm, shape (9,)."""
-        return half_space.stiffness_between_neighbours(self.table)
+        return half_space.stiffness_between_neighbours(self.near())
+
+    @cached_property
+    def single_compliance(self) -> Array:
+        """`compliance` in single precision."""
+        return self.compliance().astype(np.float32)
+
+    @cached_property
+    def room(self) -> Array:
+        """For spectra in single precision."""
+        return np.empty(self.single_compliance.size, np.complex64)
 
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) of all sites by their pressures (GPa), shape (nx, ny), in the
         precision of the pressures.
         """
         self.transforms += 1
-        single = pressure.dtype == np.float32
-        compliance = self.single_compliance if single else self.compliance
-        room = self.room if single else np.empty(compliance.size, np.complex128)
+        if pressure.dtype == np.float32:
+            compliance = self.single_compliance
+            room = self.room
+        else:
+            compliance = self.compliance()
+            room = np.empty(compliance.size, np.complex128)
         columns = len(compliance)
+        rows = np.arange(self.shape[0])
         if columns > self.shape[1]:
             pressure = np.pad(pressure, ((0, 0), (0, columns - self.shape[1])))
-        moved = half_space.convolve(pressure, self.rows, compliance, room, self.rows)
+        moved = half_space.convolve(pressure, rows, compliance, room, rows)
         return np.ascontiguousarray(moved[:, : self.shape[1]])
 
 
@@ -102,14 +116,25 @@ class Repeated(Base):
         """Side of the map, nm."""
         return self.spacing * self.shape[0]
 
-    def _influences(self) -> tuple[Array, Array]:
+    def compliance(self) -> Array:
+        """Of the waves of the map."""
         pixels = self.shape[0]
-        scale = self.length / self.e_star
-        number = half_space.wave_numbers(pixels)
-        number[0, 0] = np.inf
-        softness = half_space.softness(pixels, self.length, self.bodies)
-        compliance = (scale / math.pi) * softness / number
-        return compliance, scale * half_space.influence(pixels, self.length, self.bodies)
+        compliance = half_space.wave_numbers(pixels)
+        compliance[0, 0] = np.inf
+        np.divide(self.length / (math.pi * self.e_star), compliance, out=compliance)
+        if self.bodies:
+            compliance *= half_space.softness(pixels, self.length, self.bodies)
+        return compliance
+
+    def near(self) -> Array:
+        """From the sum of the waves at nine sites."""
+        compliance = self.compliance()
+        pixels = self.shape[0]
+        compliance[:, 1 : (pixels + 1) // 2] *= 2.0  # the other half of the waves
+        angle = 2.0 * np.pi / pixels * np.arange(3)
+        row_waves = np.cos(angle[:, None] * np.arange(pixels))
+        column_waves = np.cos(angle[:, None] * np.arange(pixels // 2 + 1))
+        return row_waves @ compliance @ column_waves.T / pixels**2
 
     def coarser(self, shape: tuple[int, int]) -> "Repeated":
         """The same side with fewer sites."""
@@ -118,7 +143,7 @@ class Repeated(Base):
     def long_waves(self, shape: tuple[int, int]) -> Array:
         """Those of the grid itself."""
         rows = np.fft.fftfreq(shape[0], 1.0 / shape[0]).astype(int)
-        return self.compliance[rows, : shape[1] // 2 + 1]
+        return self.single_compliance[rows, : shape[1] // 2 + 1]
 
 
 class Alone(Base):
@@ -126,13 +151,19 @@ class Alone(Base):
 
     repeats = False
 
-    def _influences(self) -> tuple[Array, Array]:
+    def compliance(self) -> Array:
+        """Of the waves of twice the map; its even table has a cosine transform."""
         side: int = fft.next_fast_len(max(self.shape), real=True)  # pyright: ignore[reportAssignmentType]
         pixels = 2 * side
-        table = (pixels * self.spacing / self.e_star) * free.free_influence(pixels)
-        distance = np.minimum(np.arange(pixels), pixels - np.arange(pixels))
-        compliance = np.real(np.asarray(fft.rfft2(table[np.ix_(distance, distance)])))
-        return compliance, table
+        table = free.free_influence(pixels)
+        table *= pixels * self.spacing / self.e_star
+        waves = np.asarray(fft.dctn(table, type=1, overwrite_x=True))
+        return waves[np.minimum(np.arange(pixels), pixels - np.arange(pixels))]
+
+    def near(self) -> Array:
+        """Love's pressed square; its influence knows no size of a grid."""
+        few = 4
+        return few * self.spacing / self.e_star * free.free_influence(few)
 
     def coarser(self, shape: tuple[int, int]) -> "Alone":
         """Every second site."""

@@ -56,11 +56,10 @@ def press(heights: Array, load_nN: float, base: Base) -> Pressed:
     """Press a map (nx, ny) in nm, contact at the lowest, with a force."""
 
     def search(level: Array, below: Base, guess: Array | None) -> Search:
-        if guess is None or not guess.any():
-            guess = np.maximum(level.mean() - level, 0.0)
-        if not guess.any():
-            guess = np.ones(level.shape)
-        return OneLoad(level, load_nN, below, guess)
+        pressed = guess if guess is not None else np.maximum(level.mean() - level, 0.0)
+        if not pressed.any():
+            pressed = np.ones(level.shape)
+        return OneLoad(level, load_nN, below, pressed)
 
     return _nested(heights, base, search)
 
@@ -85,10 +84,12 @@ def _nested(
         maps.append(coarser(maps[-1]))
         bases.append(bases[-1].coarser(maps[-1].shape))
     pressure = None
-    for level in reversed(range(1, len(maps))):
-        coarse = search(maps[level], bases[level], pressure)
+    while len(maps) > 1:
+        coarse = search(maps.pop(), bases.pop(), pressure)
         coarse.solve(COARSE_TOLERANCE)
-        pressure = finer(coarse.pressure.reshape(coarse.shape), maps[level - 1].shape, base)
+        field = coarse.pressure.reshape(coarse.shape).astype(np.float32)  # for its memory
+        pressure = finer(field, maps[-1].shape, base)
+        del coarse
     contact = search(heights, base, pressure)
     settled = contact.solve(TOLERANCE)
     return contact.pressed(settled)
@@ -109,7 +110,7 @@ def finer(field: Array, shape: tuple[int, int], base: Base) -> Array:
         if base.repeats:
             after %= field.shape[axis]
         after = np.minimum(after, field.shape[axis] - 1)
-        weight = np.expand_dims(place - before, 1 - axis)
+        weight = np.expand_dims(place - before, 1 - axis).astype(field.dtype)
         low = field.take(before, axis)
         field = low + weight * (field.take(after, axis) - low)
     return field
@@ -136,8 +137,6 @@ class Search(ABC):
         self.separation = 0.0
         self.pressure = pressure.reshape(-1)
         self.follow()
-        sites = heights.size
-        self.change, self.misfit, self.closing = (np.zeros(sites, np.float32) for _ in range(3))
 
     @abstractmethod
     def separate(self) -> None:
@@ -165,9 +164,12 @@ class Search(ABC):
 
     def follow(self) -> None:
         """Take the gaps by the pressures in double precision."""
+        self.gap = self.change = self.misfit = np.empty(0, np.float32)  # frees their memory
         moved = self.base.displacement(self.pressure.reshape(self.shape))
         moved += self.heights
         self.gap = moved.reshape(-1)
+        self.change = np.zeros(self.gap.size, np.float32)
+        self.misfit = np.zeros(self.gap.size, np.float32)
         self.drift = 0.0  # changes since, over the load: how far single precision has come
 
     def _moved(self, change: Array) -> Array:
@@ -204,9 +206,9 @@ class Search(ABC):
         """Let a change at the bounds go on as the next step will, at no further transform."""
         self.misfit[:] = 0.0
         unit = take_misfit(sites, self.gap, self.closed(sites), self.misfit)
-        self.stiffness.close(sites, self.misfit, self.closing)
-        self.level(sites, self.closing)
-        join(sites, length * unit, self.closing, self.change, self.pressure)
+        closing = self.stiffness.close(sites, self.misfit)
+        self.level(sites, closing)
+        join(sites, length * unit, closing, self.change, self.pressure)
 
     def _close_gaps(self, sites: Array, goal: float, share: float) -> float:
         """Change the pressures of free sites until their gaps close.
@@ -214,7 +216,6 @@ class Search(ABC):
         Returns the length of the last step.
         """
         misfit = self.misfit
-        closing = self.closing
         change = self.change
         misfit[:] = 0.0
         change[:] = 0.0
@@ -225,9 +226,9 @@ class Search(ABC):
         for _ in range(FACE_STEPS):
             if left <= max(goal / max(unit, goal), share):
                 break
-            self.stiffness.close(sites, misfit, closing)
+            closing = self.stiffness.close(sites, misfit)
             self.level(sites, closing)
-            gained = product(sites, misfit, closing)
+            gained = gain(sites, misfit, closing)
             turn(sites, closing, gained / last, change)
             last = gained
             moved = self._moved(change)
@@ -262,7 +263,8 @@ class OneLoad(Search):
     def __init__(self, heights: Array, load_nN: float, base: Base, guess: Array):
         self.load = load_nN / base.site_area
         self.lifting = (np.empty(0, np.int32), np.empty(0, np.float32))
-        super().__init__(heights, base, guess * (self.load / guess.sum()))
+        share = self.load / guess.sum(dtype=float)
+        super().__init__(heights, base, guess.astype(float) * share)
 
     def separate(self) -> None:
         """The mean gap of the pressed sites is 0."""
@@ -283,12 +285,12 @@ class OneLoad(Search):
     def level(self, sites: Array, closing: Array) -> None:
         """Take the load off a step, by pressures that lift all sites alike."""
         if self.lifting[0] is not sites:
-            everywhere = np.zeros_like(closing)
+            everywhere = np.zeros(self.gap.size, np.float32)
             everywhere[sites] = 1.0
-            lifting = np.zeros_like(closing)
-            self.stiffness.close(sites, everywhere, lifting)
-            self.lifting = (sites, lifting[sites])
-        level(sites, self.lifting[1], closing)
+            self.lifting = (sites, self.stiffness.close(sites, everywhere))
+        lifting = self.lifting[1]
+        share = closing.sum(dtype=float) / lifting.sum(dtype=float)
+        closing -= np.float32(share) * lifting
 
     def exact(self) -> bool:
         """Scale the pressures to the load."""
@@ -301,7 +303,7 @@ class OneSeparation(Search):
     """A map at a separation: its load is what comes."""
 
     def __init__(self, heights: Array, separation: float, base: Base, guess: Array):
-        super().__init__(heights, base, guess)
+        super().__init__(heights, base, guess.astype(float))
         self.separation = separation
 
     def separate(self) -> None:
@@ -404,33 +406,29 @@ def take_misfit(sites, gap, closed, misfit):
 
 
 @njit(cache=True)
-def level(sites, uniform, closing):
-    """Take the load off some pressures, by those that lift all sites alike."""
-    excess = 0.0
-    lifted = 0.0
+def join(sites, length, closing, change, pressure):
+    """Add a step to a change of the pressures, and to these."""
     for k in range(sites.size):
-        excess += closing[sites[k]]
-        lifted += uniform[k]
-    share = np.float32(excess / lifted)
-    for k in range(sites.size):
-        closing[sites[k]] -= share * uniform[k]
+        step = length * closing[k]
+        change[sites[k]] += step
+        pressure[sites[k]] += step
 
 
 @njit(cache=True)
-def join(sites, length, closing, change, pressure):
-    """Add a step to a change of the pressures, and to these."""
-    for site in sites:
-        step = length * closing[site]
-        change[site] += step
-        pressure[site] += step
+def gain(sites, misfit, closing):
+    """Work of pressures that close gaps by these."""
+    total = 0.0
+    for k in range(sites.size):
+        total += misfit[sites[k]] * closing[k]
+    return total
 
 
 @njit(cache=True)
 def turn(sites, closing, factor, change):
     """Next direction of the pressures."""
     share = np.float32(factor)
-    for site in sites:
-        change[site] = share * change[site] + closing[site]
+    for k in range(sites.size):
+        change[sites[k]] = share * change[sites[k]] + closing[k]
 
 
 @njit(cache=True)

@@ -42,14 +42,14 @@ class Stiffness:
         share = math.prod(self.shape) / math.prod(base.shape)
         return (share * (1.0 / soft - near)).astype(np.float32)
 
-    def close(self, sites: Array, gap: Array, pressure: Array) -> None:
+    def close(self, sites: Array, gap: Array) -> Array:
         """Pressures of some sites from the gaps of all (nx * ny,), which are 0 elsewhere."""
         long = np.zeros(self.shape, np.float32)
         pool(sites, gap, *self.rows, *self.columns, long)
         spectrum = np.asarray(fft.rfft2(long))
         spectrum *= self.excess
         long = np.asarray(fft.irfft2(spectrum, s=long.shape, overwrite_x=True))
-        spread(sites, gap, self.stencil, *self.rows, *self.columns, long, pressure)
+        return spread(sites, gap, self.stencil, *self.rows, *self.columns, long)
 
 
 def _between(sites: int, coarse: int) -> tuple[Array, Array]:
@@ -80,11 +80,13 @@ def pool(sites, gap, row_before, down_share, column_before, over_share, long):
 
 
 @njit(cache=True, fastmath=dense.FAST)
-def spread(sites, gap, stencil, row_before, down_share, column_before, over_share, long, pressure):
+def spread(sites, gap, stencil, row_before, down_share, column_before, over_share, long):
     """Pressures of sites from the gaps of their neighbours and from the coarse sites around."""
     rows = row_before.size
     columns = column_before.size
-    for site in sites:
+    pressure = np.empty(sites.size, np.float32)
+    for k in range(sites.size):
+        site = sites[k]
         row = site // columns
         column = site - row * columns
         before = dense.wrapped(column - 1, columns)
@@ -102,4 +104,5 @@ def spread(sites, gap, stencil, row_before, down_share, column_before, over_shar
         over = over_share[column]
         upper = long[low, left] + over * (long[low, right] - long[low, left])
         lower = long[high, left] + over * (long[high, right] - long[high, left])
-        pressure[site] = total + upper + down_share[row] * (lower - upper)
+        pressure[k] = total + upper + down_share[row] * (lower - upper)
+    return pressure

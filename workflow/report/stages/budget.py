@@ -83,7 +83,8 @@ def _by_humidity(results: Results) -> CsvRow:
     rows = results.rows("humidity/humidity.csv")
     if len(solved := [row for row in rows if row["release_V"]]) < 2:
         return {}
-    release, humidity = column(solved, "release_V"), column(solved, "humidity")
+    release = column(solved, "release_V")
+    humidity = column(solved, "humidity")
     about = (
         f"{humidity.min():.0%} to {humidity.max():.0%}, menisci either"
         f" way{'; it may stick' * (0.0 in release)}"
@@ -124,12 +125,12 @@ LEFT_OUT = {
 def _caption(results: Results, rows: list[CsvRow]) -> str:
     """What the interval holds, in quadrature, beside its width."""
     held = [number(row["volts"]) for row in rows if row["held"] == "True"]
-    said = (
+    held_words = (
         "What the interval holds: volts by which each, from its 5 to its 95 %, moves the release"
         f" at central inputs. Together they are {show(float(np.sqrt(np.nansum(np.square(held)))))}"
         " V, added in quadrature"
     )
     if answer := results.json("answer/pad_switch.json").get("answer"):
-        ends = [answer["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]
-        return f"{said}; the interval is {show(ends[1] - ends[0])} V wide"
-    return said
+        ends_V = [answer["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]
+        return f"{held_words}; the interval is {show(ends_V[1] - ends_V[0])} V wide"
+    return held_words

@@ -20,7 +20,8 @@ from workflow.report.verdict import volts
 )
 def describe(results: Results) -> Iterator[Block]:
     """C-V loop with its band, and failure rate; pull-in and release of the corners."""
-    circuit, rows = results.json("circuit/circuit.json"), results.csv("circuit/circuit.csv")
+    circuit = results.json("circuit/circuit.json")
+    rows = results.csv("circuit/circuit.csv")
     errors = circuit["lumps"]
     corners = [row for row in rows if float(row["deviations"]) > 0]
     yield (
@@ -48,14 +49,17 @@ def describe(results: Results) -> Iterator[Block]:
 
 
 def _figure(results: Results) -> str:
-    loop, failing = results.csv("circuit/loop.csv"), results.csv("failure/failure.csv")
+    loop = results.csv("circuit/loop.csv")
+    failing = results.csv("failure/failure.csv")
 
     def plot(slow, rare):
         voltage = column(loop, "voltage_V")
-        for way, color in (("up", BLUE), ("down", ORANGE)):
-            low, high = (column(loop, f"{way}_{end}_fF") / 1e3 for end in ("q05", "q95"))
+        for direction, color in (("up", BLUE), ("down", ORANGE)):
+            low, high = (column(loop, f"{direction}_{end}_fF") / 1e3 for end in ("q05", "q95"))
             slow.fill_between(voltage, low, high, color=color, alpha=0.2, linewidth=0)
-            slow.plot(voltage, column(loop, f"{way}_central_fF") / 1e3, color=color, label=way)
+            slow.plot(
+                voltage, column(loop, f"{direction}_central_fF") / 1e3, color=color, label=direction
+            )
         slow.set(xlabel="voltage (V)", ylabel="capacitance (pF)", title="slow loop")
         slow.legend()
         usual = [row for row in failing if np.isclose(float(row["attraction"]), 1.0)]

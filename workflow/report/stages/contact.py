@@ -55,8 +55,11 @@ def spots(results: Results) -> str | None:
     if not results.has("contact/spots.h5"):
         return None
     groups, attributes, _ = results.h5("contact/spots.h5")
-    steps, side = groups["spots"], float(attributes["length_nm"])
-    heights, step, load = steps["towards_flat_nm"], steps["step"], steps["repulsive_nN"] / 1e3
+    steps = groups["spots"]
+    side = float(attributes["length_nm"])
+    heights = steps["towards_flat_nm"]
+    step = steps["step"]
+    load = steps["repulsive_nN"] / 1e3
     shades = matplotlib.colormaps["gray"]((heights - heights.min()) / (np.ptp(heights) or 1.0))
     colors = matplotlib.colormaps["autumn_r"](np.linspace(0.0, 1.0, load.size))
     shades[step >= 0] = colors[step[step >= 0]]

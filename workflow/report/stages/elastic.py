@@ -55,25 +55,25 @@ def elastic_distribution(results: Results) -> str | None:
     )
     glasses = {
         *summary.get("structures_used", []),
-        *(kept["structure"] for kept in summary.get("kept_out", [])),
+        *(left_out["structure"] for left_out in summary.get("kept_out", [])),
     }
     trusted = [
         row for row in rows if not row.get("flags") and np.isfinite(number(row.get("B_GPa")))
     ]
 
     def plot(axis, other):
-        every = column(trusted, "B_GPa")
+        moduli = column(trusted, "B_GPa")
         bins = (
-            np.linspace(every.min() - 5, every.max() + 5, 12)
-            if every.size
+            np.linspace(moduli.min() - 5, moduli.max() + 5, 12)
+            if moduli.size
             else np.linspace(0, 1, 2)
         )
         for xc, color in zip(sorted({row["xc"] for row in rows}), SERIES, strict=False):
             kind = [row for row in trusted if row["xc"] == xc]
-            part = column([row for row in kind if row["structure"] in glasses], "B_GPa")
-            if part.size:
+            of_glasses = column([row for row in kind if row["structure"] in glasses], "B_GPa")
+            if of_glasses.size:
                 axis.hist(
-                    part,
+                    of_glasses,
                     bins=bins,
                     color=color,
                     alpha=0.5,

@@ -84,8 +84,8 @@ def _twin_notes(fit: dict[str, Any]) -> Iterator[str]:
             f" runs are {row['pairs']}; the 68 % interval is from the 11 % by which runs of one"
             " kind scatter."
         )
-    for way, words in (("measured", "bounded by indentation"), ("scales", "as run, both alike")):
-        if quantiles := fit.get("hardness_GPa", {}).get(way):
+    for rule, words in (("measured", "bounded by indentation"), ("scales", "as run, both alike")):
+        if quantiles := fit.get("hardness_GPa", {}).get(rule):
             span = (
                 f"{show(quantiles['median'])} [{show(quantiles['low'])},"
                 f" {show(quantiles['high'])}] GPa"
@@ -112,7 +112,8 @@ def contact_stress(results: Results) -> str | None:
         highest = 1.0
         for name in runs:
             rows = results.csv(name)
-            length, stress = column(rows, "contact_length_nm"), column(rows, "contact_stress_GPa")
+            length = column(rows, "contact_length_nm")
+            stress = column(rows, "contact_stress_GPa")
             run = name.rpartition("/")[2].removesuffix(".csv")
             point = points.get(run, {})
             _, color, _ = _scale(point)
@@ -121,9 +122,10 @@ def contact_stress(results: Results) -> str | None:
                 continue
             axis.plot(length[use], stress[use], color=color, linewidth=0.8, alpha=0.7)
             highest = max(highest, float(np.quantile(stress[use], 0.98)))
-            at, hardness = number(point.get("contact_length_nm")), number(point.get("hardness_GPa"))
-            if point.get("status") == "yield" and np.isfinite(at):
-                axis.plot(at, hardness, "D", color=color, markeredgecolor=INK, markersize=6)
+            contact_nm = number(point.get("contact_length_nm"))
+            hardness = number(point.get("hardness_GPa"))
+            if point.get("status") == "yield" and np.isfinite(contact_nm):
+                axis.plot(contact_nm, hardness, "D", color=color, markeredgecolor=INK, markersize=6)
                 onset = number(point.get("onset_length_nm"))
                 if np.isfinite(onset):
                     then = np.argmin(np.abs(length[use] - onset))
@@ -161,10 +163,12 @@ def hardness_size(results: Results) -> str | None:
 
     def plot(axis):
         for key, (label, color, marker) in SCALES.items():
-            part = [row for row in points if _key(row) == key and row.get("status") == "yield"]
-            if part:
-                length, hardness = column(part, "contact_length_nm"), column(part, "hardness_GPa")
-                low, high = column(part, "hardness_lo"), column(part, "hardness_hi")
+            of_key = [row for row in points if _key(row) == key and row.get("status") == "yield"]
+            if of_key:
+                length = column(of_key, "contact_length_nm")
+                hardness = column(of_key, "hardness_GPa")
+                low = column(of_key, "hardness_lo")
+                high = column(of_key, "hardness_hi")
                 bars = np.nan_to_num(np.clip([hardness - low, high - hardness], 0, None))
                 face = color if key == "1.0" else "none"
                 axis.errorbar(
@@ -188,14 +192,14 @@ def hardness_size(results: Results) -> str | None:
             )
         if _as_paper(results):
             lengths = np.geomspace(1.0, longest, 60)
-            least, most = (
+            smallest, largest = (
                 macro + prime / np.sqrt(lengths)
                 for macro, prime in zip(
                     TABLE_1["H_macro_GPa"], TABLE_1["H_prime_GPa_nm0.5"], strict=True
                 )
             )
             axis.fill_between(
-                lengths, least, most, color=SOFT, alpha=0.15, linewidth=0, label="Table 1"
+                lengths, smallest, largest, color=SOFT, alpha=0.15, linewidth=0, label="Table 1"
             )
             axis.plot(*zip(*PAPER_VALUES, strict=True), "x", color=INK, label="paper, in its text")
         axis.set(

@@ -49,17 +49,17 @@ def history_drift(results: Results) -> str:
     def plot(energy, sunk):
         for place, seed in enumerate(seeds):
             color = SERIES[place % len(SERIES)]
-            part = [row for row in cycles if row["seed"] == seed]
-            lost = column(part, "dissipated_nN_nm")
+            of_seed = [row for row in cycles if row["seed"] == seed]
+            lost = column(of_seed, "dissipated_nN_nm")
             some = lost > 0  # an elastic cycle loses nothing but rounding
-            energy.plot(column(part, "cycle")[some], lost[some], "o-", color=color, markersize=3)
+            energy.plot(column(of_seed, "cycle")[some], lost[some], "o-", color=color, markersize=3)
             held = [row for row in dwell if row["seed"] == seed]
             x, depth = (
                 (column(held, "held_s"), "separation_nm")
                 if held
-                else (column(part, "cycle"), "closed_nm")
+                else (column(of_seed, "cycle"), "closed_nm")
             )
-            closed = column(held or part, depth)
+            closed = column(held or of_seed, depth)
             sunk.plot(x, closed[0] - closed, "-", color=color)
         energy.set(xscale="log", yscale="log", xlabel="cycle", ylabel="energy lost (nN nm)")
         sunk.set(
@@ -83,7 +83,8 @@ def _shakedown(rows: list[CsvRow]) -> str:
         n: column([row for row in rows if int(row["cycle"]) == n], "dissipated_nN_nm").mean()
         for n in {min(numbers), max(numbers)}
     }
-    first, last = by_cycle[min(by_cycle)], by_cycle[max(by_cycle)]
+    first = by_cycle[min(by_cycle)]
+    last = by_cycle[max(by_cycle)]
     if len(by_cycle) < 2 or not np.isfinite(first) or first <= 0:
         return ""
     return (

@@ -53,7 +53,7 @@ def describe(results: Results) -> Iterator[Block]:
 
 def begins_to_stick(rows: list[CsvRow]) -> str:
     """From which humidity on the switch sticks, for each limit of opening."""
-    parts = []
+    sentences = []
     for opening, (_, label) in OPENINGS.items():
         known = [row for row in rows if row["opening"] == opening and row["release_V"]]
         stuck = [float(row["humidity"]) for row in known if float(row["release_V"]) == 0.0]
@@ -63,10 +63,12 @@ def begins_to_stick(rows: list[CsvRow]) -> str:
             if not stuck or float(row["humidity"]) < stuck[0]
         ]
         if stuck and free:
-            parts.append(f"from between {free[-1]:.1%} and {stuck[0]:.1%} humidity on ({label})")
+            sentences.append(
+                f"from between {free[-1]:.1%} and {stuck[0]:.1%} humidity on ({label})"
+            )
         elif known:
-            parts.append(f"at {'all' if stuck else 'none'} of these humidities ({label})")
-    return f"At central inputs the switch sticks {'; '.join(parts)}." if parts else ""
+            sentences.append(f"at {'all' if stuck else 'none'} of these humidities ({label})")
+    return f"At central inputs the switch sticks {'; '.join(sentences)}." if sentences else ""
 
 
 def _release(row: CsvRow) -> str:
@@ -81,16 +83,18 @@ def against_humidity(rows: list[CsvRow]) -> str:
 
     def plot(release, stuck):
         for opening, (color, label) in OPENINGS.items():
-            part = [row for row in rows if row["opening"] == opening and row["release_V"]]
-            if part:
-                percent = 100.0 * column(part, "humidity")
-                release.plot(percent, column(part, "release_V"), "o-", color=color, label=label)
+            of_rows = [row for row in rows if row["opening"] == opening and row["release_V"]]
+            if of_rows:
+                percent = 100.0 * column(of_rows, "humidity")
+                release.plot(percent, column(of_rows, "release_V"), "o-", color=color, label=label)
         release.set(ylabel="release (V)", ylim=(-0.03 * top, 1.1 * top))
         release.legend()
-        part = [row for row in rows if row["stuck"]]
-        if part:
-            share, low, high = (column(part, name) for name in ("stuck", "stuck_low", "stuck_high"))
-            percent = 100.0 * column(part, "humidity")
+        of_rows = [row for row in rows if row["stuck"]]
+        if of_rows:
+            share, low, high = (
+                column(of_rows, name) for name in ("stuck", "stuck_low", "stuck_high")
+            )
+            percent = 100.0 * column(of_rows, "humidity")
             stuck.errorbar(percent, share, yerr=[share - low, high - share], fmt="o", color=BLUE)
         stuck.set(ylabel="share that sticks", ylim=(-0.03, 1.03))
         for axis in (release, stuck):

@@ -51,21 +51,32 @@ def stated_beside_computed(results: Results) -> Iterator[tuple[str, str, str, st
     """Inputs that the scene states and one of its stages computes, with what the choice does to the
     answer.
     """
-    for row, given in zip(
+    for row, distribution in zip(
         results.csv("inputs.csv"), from_rows(results.csv("inputs.csv")).rows, strict=True
     ):
         for file in ("hardness/fit.json", "elastic/e_star.json", "topography/parameters.json"):
             entry = (
-                results.json(file).get("inputs", {}).get(given.name) if results.has(file) else None
+                results.json(file).get("inputs", {}).get(distribution.name)
+                if results.has(file)
+                else None
             )
-            if given.origin == "literature" and BY_NAME[given.name].stage != "literature" and entry:
+            if (
+                distribution.origin == "literature"
+                and BY_NAME[distribution.name].stage != "literature"
+                and entry
+            ):
                 computed = distribution_of(entry, file)
-                effect = _effect_V(results, given.name, given.distribution, computed)
-                yield in_words(row["parameter"]), _span(given.distribution), _span(computed), effect
+                effect = _effect_V(results, distribution.name, distribution.distribution, computed)
+                yield (
+                    in_words(row["parameter"]),
+                    _span(distribution.distribution),
+                    _span(computed),
+                    effect,
+                )
 
 
-def _span(given: Distribution) -> str:
-    low, median, high = given.quantile([0.05, 0.5, 0.95])
+def _span(distribution: Distribution) -> str:
+    low, median, high = distribution.quantile([0.05, 0.5, 0.95])
     return f"{show(float(median))} [{show(float(low))}, {show(float(high))}]"
 
 
@@ -92,7 +103,8 @@ def _distribution(row: CsvRow) -> str:
         return f"samples, median {show(median)}, 5 to 95 %: {show(low)} to {show(high)}"
     if row["distribution"] == "fixed":
         return f"fixed at {number(row['a']):.4g}"
-    a, b = f"{number(row['a']):.4g}", f"{number(row['b']):.4g}"
+    a = f"{number(row['a']):.4g}"
+    b = f"{number(row['b']):.4g}"
     if kind == "fixed":
         return f"fixed at {a}"
     if "uniform" in kind:

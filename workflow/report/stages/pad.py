@@ -61,7 +61,8 @@ def describe(results: Results) -> Iterator[Block]:
 def _answer(answer: dict[str, Any]) -> Iterator[Block]:
     """What the answer is made of, and which input to measure better."""
     errors = answer["quantile_error_V"]
-    solved, refused = answer["points"], len(answer["refused"])
+    solved = answer["points"]
+    refused = len(answer["refused"])
     rows = [
         ("pull-in (V)", spread(answer["pull_in_V"]["quantiles"], "0.5", "0.05", "0.95")),
         (
@@ -107,29 +108,34 @@ def pad_curves(results: Results) -> str:
         for depth in depths
     }
     deepest = opened[depths[0]]
-    shown = depths[:: max(1, len(depths) // 4)]
+    drawn = depths[:: max(1, len(depths) // 4)]
 
-    def plot(whole, well):
+    def plot(range_axis, well):
         closing = [row for row in rows if row["branch"] == "closing"]
-        _line(whole, closing, 1e-3, BLUE, "closing")
-        for depth in shown:
+        _line(range_axis, closing, 1e-3, BLUE, "closing")
+        for depth in drawn:
             _line(
-                whole, opened[depth], 1e-3, ORANGE, "opening" if depth == shown[0] else None, "--"
+                range_axis,
+                opened[depth],
+                1e-3,
+                ORANGE,
+                "opening" if depth == drawn[0] else None,
+                "--",
             )
         top = max(column(closing, "net_kPa")) * 1e-3
-        whole.set(
+        range_axis.set(
             yscale="log",
             ylim=(1e-4 * top, 2 * top),
             xlim=(depths[0] - 1, _last_contact(deepest) + 12),
         )
-        whole.set(
+        range_axis.set(
             xlabel="separation (nm)",
             ylabel="net pressure (MPa)",
             title="closing, and opening from each depth",
         )
-        whole.legend()
+        range_axis.legend()
         lowest = 0.0
-        for place, depth in enumerate(shown):
+        for place, depth in enumerate(drawn):
             line = opened[depth]
             s, net, error = (
                 column(line, name) for name in ("separation_nm", "net_kPa", "standard_error_kPa")

@@ -11,21 +11,21 @@ from workflow.report.page import Block, PageTable, stage
 @stage("What matters for the law of one cell", "uncertainty/sensitivity.csv")
 def describe(results: Results) -> Iterator[Block]:
     """Table 3."""
-    paper, faint = results.beside_paper, faint_outputs(results)
+    paper = results.beside_paper
+    faint = faint_outputs(results)
     rows = results.csv("uncertainty/sensitivity.csv")
     names = list(dict.fromkeys(row["input"] for row in rows))
-    part = {(row["output"], row["input"]): row for row in rows}
-    lines, grey = [], []
+    by_pair = {(row["output"], row["input"]): row for row in rows}
+    lines = []
+    grey = []
     for output, (symbol, unit, factor) in OUTPUTS.items():
         if not any(row["output"] == output for row in rows):
             continue
         cells = [f"{symbol} ({unit})"]
         for name in names:
-            row = part.get((output, name), {})
-            ours, theirs = (
-                number(row.get("mu_star")) * factor,
-                number(row.get("paper_mu_star")) * factor,
-            )
+            row = by_pair.get((output, name), {})
+            ours = number(row.get("mu_star")) * factor
+            theirs = number(row.get("paper_mu_star")) * factor
             cells.append(f"{show(ours, 2)} ({show(theirs, 2)})" if paper else show(ours, 2))
         lines.append(cells)
         grey += [cells[0]] if output in faint else []

@@ -95,16 +95,18 @@ def maps(results: Results) -> str | None:
     short = short_names([name.removeprefix("scans/") for name in names])
     # one of each size first, then more up to six
     names.sort(key=lambda name: (float(scan_attributes[name].get("length_x_nm", 0)), name))
-    shown = names if len(names) <= 6 else names[:3] + names[-3:]
-    columns = min(3, len(shown))
-    rows = -(-len(shown) // columns)
-    last_map = next((name for name in reversed(shown) if "heights" in groups[name]), "")
+    named = names if len(names) <= 6 else names[:3] + names[-3:]
+    columns = min(3, len(named))
+    rows = -(-len(named) // columns)
+    last_map = next((name for name in reversed(named) if "heights" in groups[name]), "")
 
     def plot(*axes):
-        for axis, name in zip(axes, shown, strict=False):
-            size, unit = float(scan_attributes[name]["length_x_nm"]), "nm"
+        for axis, name in zip(axes, named, strict=False):
+            size = float(scan_attributes[name]["length_x_nm"])
+            unit = "nm"
             if size >= 1000:
-                size, unit = size / 1e3, "µm"
+                size = size / 1e3
+                unit = "µm"
             rms = float(scan_attributes[name].get("rms_nm", np.nan))
             title = short[name.removeprefix("scans/")]
             title = title if len(title) <= 32 else f"…{title[-32:]}"
@@ -125,7 +127,7 @@ def maps(results: Results) -> str | None:
             )
             bar.outline.set_visible(False)
             axis.grid(False)
-        for axis in axes[len(shown) :]:
+        for axis in axes[len(named) :]:
             axis.set_visible(False)
 
     return draw(
@@ -157,7 +159,8 @@ def spectra(results: Results) -> str | None:
     def plot(axis):
         lowest, highest = np.inf, 0.0
         for name in sorted(names):
-            q, psd = groups[name]["q"], groups[name]["psd"]
+            q = groups[name]["q"]
+            psd = groups[name]["psd"]
             low, high = (
                 float(scan_attributes[name].get(key, end))
                 for key, end in (("trusted_low", 0), ("trusted_high", np.inf))
@@ -166,7 +169,8 @@ def spectra(results: Results) -> str | None:
             axis.loglog(q, psd, color=SOFT, linewidth=0.5, alpha=0.6, zorder=1)
             axis.loglog(q[trusted], psd[trusted], color=SKY, linewidth=0.9, alpha=0.7, zorder=2)
             axis.plot(q[trusted][-1:], psd[trusted][-1:], "|", color=INK, markersize=7, zorder=4)
-            lowest, highest = min(lowest, psd[psd > 0].min()), max(highest, psd.max())
+            lowest = min(lowest, psd[psd > 0].min())
+            highest = max(highest, psd.max())
         kind = "synthetic " if attributes.get("synthetic") else ""
         axis.plot([], [], color=SKY, label=f"{len(names)} {kind}scans, trusted part")
         axis.plot(
@@ -196,8 +200,8 @@ def spectra(results: Results) -> str | None:
     return draw("fig10", "Power spectra of the scans with fits", plot, (5.0, 4.2))
 
 
-def _thin(heights: np.ndarray, most: int = 128) -> np.ndarray:
-    step = max(1, -(-max(heights.shape) // most))
+def _thin(heights: np.ndarray, pixels: int = 128) -> np.ndarray:
+    step = max(1, -(-max(heights.shape) // pixels))
     return heights[::step, ::step]
 
 

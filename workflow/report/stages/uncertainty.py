@@ -55,10 +55,10 @@ def band(results: Results) -> str:
     highest = results.fitted_MPa
     spread = {}
     for name in COLORS:
-        part = [row for row in rows if row["branch"] == name]
+        of_branch = [row for row in rows if row["branch"] == name]
         spread[name] = (
-            column(part, "gap_nm"),
-            *(column(part, f"pressure_q{q}_GPa") * 1e3 for q in ("05", "50", "95")),
+            column(of_branch, "gap_nm"),
+            *(column(of_branch, f"pressure_q{q}_GPa") * 1e3 for q in ("05", "50", "95")),
         )
     # separations between the largest pressure and the last contact
     reach = max(float(gap[high > 0].max(initial=0)) for gap, _, _, high in spread.values())
@@ -98,30 +98,31 @@ def _table2(results: Results) -> PageTable:
         "their scatter",
         "the response explains, of what inputs can",
     )
-    lines, faint = [], []
+    lines = []
+    faint = []
     for name, (symbol, unit, factor) in OUTPUTS.items():
         if name not in rows:
             continue
         row: CsvRow = rows[name]
-        shown = {
+        panels = {
             key: show(number(value) * factor)
             for key, value in row.items()
             if key not in ("output", "unit")
         }
-        cells = [f"{symbol} ({unit})", f"{shown['response_mean']} ± {shown['response_dev']}"]
+        cells = [f"{symbol} ({unit})", f"{panels['response_mean']} ± {panels['response_dev']}"]
         if paper:
-            exchanged = f"{shown['paper_mean_exchanged']} ± {shown['paper_dev_exchanged']}"
-            printed = f"{shown['paper_mean']} ± {shown['paper_dev']}"
+            exchanged = f"{panels['paper_mean_exchanged']} ± {panels['paper_dev_exchanged']}"
+            printed = f"{panels['paper_mean']} ± {panels['paper_dev']}"
             cells += [
-                f"{shown['mean']} ± {shown['dev']}",
+                f"{panels['mean']} ± {panels['dev']}",
                 printed,
                 exchanged if exchanged != printed else "–",
             ]
             cells.append(show(row["mean_difference_in_seed_sd"]))
         share = explained.get(name, np.nan)
         cells += [
-            shown["centre"],
-            shown["centre_seed_sd"],
+            panels["centre"],
+            panels["centre_seed_sd"],
             f"{max(share, 0):.0%}" if np.isfinite(share) else "–",
         ]
         lines.append(tuple(cells))
