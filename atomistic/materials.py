@@ -4,11 +4,11 @@ A file holds what the stages need of it: `oxide_glass` for the hardness stage, `
 the body that the elastic stage computes, `polycrystal` for the body it is pressed against,
 `crystals` as anchors."""
 
+import operator
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from asperity.guards.errors import InputError
@@ -24,6 +24,13 @@ def _rising(values: tuple[float, float]) -> tuple[float, float]:
             f"must rise: the low value {values[0]:g} is not below the high one {values[1]:g}"
         )
     return values
+
+
+def _determinant(rows: list[tuple[int, int, int]]) -> int:
+    """Of three rows of three, which is the volume that they span."""
+    first, (a, b, c), (d, e, f) = rows
+    cross = (b * f - c * e, c * d - a * f, a * e - b * d)
+    return sum(map(operator.mul, first, cross))
 
 
 Positive = Annotated[float, Field(gt=0)]
@@ -79,7 +86,8 @@ class Crystal(_Section):
     def _has_volume(self) -> "Crystal":
         if max(self.cell[3:]) >= 180:
             raise ValueError(f"cell: angles must be below 180 degrees, got {max(self.cell[3:]):g}")
-        if np.ndim(self.supercell) == 2 and np.linalg.det(np.array(self.supercell, float)) < 0.5:
+        rows = [row for row in self.supercell if not isinstance(row, int)]
+        if rows and _determinant(rows) < 1:
             raise ValueError("supercell: its rows must span a right-handed cell of whole cells")
         return self
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
+from mesoscale.memory import SITE_MB
 
 MIN_ROUGHNESS, MAX_ROUGHNESS = 1e-9, 1e5
 """RMS height over side beyond which the two are in different units: a factor of 1e9 misses any real
@@ -21,13 +22,6 @@ FEWEST_PERIODIC = 4
 TILTED = 3.0
 """Tilt of a map from edge to edge, over its roughness: a wave as long as the map seems tilted by
 4.3 of it, but has no cliff at its edge; of maps that were levelled, tilts are 0."""
-SITE_MB = {
-    "asperity": 62e-6,
-    "coupled": 140e-6,
-    "adhesive": 260e-6,
-    "one load": 62e-6,
-    "one load on a map alone": 140e-6,
-}  # 4096^2 sites take 1.1 GB, 1024^2 323 and 515 MB
 
 
 def check_number(

@@ -1,13 +1,15 @@
 """Settings of the switch."""
 
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from pydantic import model_validator
 
 from asperity.guards.settings import Settings, key
 from mesoscale.settings.inputs import DistributionRow
+
+if TYPE_CHECKING:  # rules read settings, and are linted where Snakemake is alone
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
 
 REFERENCE_C = 20.0
 """Temperature at which stress and shape at rest are stated."""
@@ -221,17 +223,21 @@ class DeviceSettings(Settings):
         strain = 1e-6 * self.excess_expansion_ppm_C * (self.temperature_C - REFERENCE_C)
         return -1e3 * self.youngs_modulus_GPa * strain
 
-    def shape_at_rest_nm(self, share: ArrayLike) -> NDArray[np.float64]:
+    def shape_at_rest_nm(self, share: "ArrayLike") -> "NDArray[np.float64]":
         """Height of the bending electrode at rest over its flat place (nm), at shares of its length
         from one end.
         """
+        import numpy as np
+
         x = np.asarray(share, float)
         if self.ends == "cantilever":
             return self.bow_nm * x**2 + self.tilt_nm * x
         return self.bow_nm * 0.5 * (1.0 - np.cos(2.0 * np.pi * x)) + self.tilt_nm * (x - 0.5)
 
-    def slope_at_rest_nm(self, share: ArrayLike) -> NDArray[np.float64]:
+    def slope_at_rest_nm(self, share: "ArrayLike") -> "NDArray[np.float64]":
         """Derivative of `shape_at_rest_nm` by the share."""
+        import numpy as np
+
         x = np.asarray(share, float)
         if self.ends == "cantilever":
             return 2.0 * self.bow_nm * x + self.tilt_nm
@@ -240,6 +246,8 @@ class DeviceSettings(Settings):
     @property
     def touching_at_rest(self) -> str:
         """One line on a bending electrode that touches at rest; empty where it does not."""
+        import numpy as np
+
         shares = np.linspace(0.0, 1.0, 1001)
         height = 1e3 * self.gap_um + self.shape_at_rest_nm(shares)
         within = (self.contact[0] <= shares) & (shares <= self.contact[1])

@@ -14,7 +14,7 @@ if {"release", "pull_in", "sticking"} & set(MEASUREMENT_FILES):
     }
 PRIORS = SCENE.inputs.priors()
 if (
-    workflow.is_main_process and MEASUREMENT_FILES
+    IS_CHECKED_HERE and MEASUREMENT_FILES
 ):  # a table that cannot be used is told before the first cycle
     from mesoscale.calibration.measurements import load_measurements
     from mesoscale.calibration.surfaces import check_points

@@ -1,16 +1,25 @@
-# What the rule files share: the scene, where its results go, and how it is refused
+# Shared by all rule files - the scene, where its results go, and what several of them ask
 
 import os
 from pathlib import Path
 
+from asperity.guards.bundle import ROOT, bind_workflow
+
+bind_workflow()  # a host workflow may have a package of this name
+
+from workflow.run.process import prepare_process
+
+prepare_process()  # before anything imports numba
+
 from asperity.guards.foreign_text import from_word
 from asperity.guards.errors import InputError
 from atomistic.materials import load_materials, oxide_glasses
+from workflow.run.installed import missing_packages
 from workflow.run.refuse import refuse
+from workflow.run.whole import Run
 from workflow.scene.memory import contact_MB, propagation_MB
 from workflow.files.checksums import content_checksums
 from workflow.scene import SceneError, files_of, load_scene, locate
-from asperity.guards.bundle import ROOT
 
 # one thread a process: jobs fill the cores, and results do not depend on their number
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
@@ -44,8 +53,15 @@ writable = next(
 if not (writable.is_dir() and os.access(writable, os.W_OK)):
     refuse(f"{RESULTS}: cannot write to {writable}; run in a folder you may write to")
 
+# a job reads what the main process has checked; with Snakemake alone rules are only linted
+IS_CHECKED_HERE = workflow.is_main_process and not missing_packages()
 CONTACT_MB = contact_MB(SCENE.contact)
 PROPAGATION_MB = propagation_MB(SCENE.uncertainty)
+
+
+# with --sdm apptainer: the image of workflow/Containerfile in the working folder (docs/cluster.md)
+container: "asperity.sif"
+
 
 CONFIG = ROOT / "config"  # data files that ship with the project
 try:
@@ -109,3 +125,64 @@ def required(is_there, words):
 def needed(stage):
     """Does the report of this scene need `stage` (hardness, elastic or topography) computed?"""
     return stage in SCENE.stages()
+
+
+def of_run(pattern):
+    """The file of every closing run."""
+    return [f"{RESULTS}/hardness/{pattern.format(run=run)}" for run in CLOSINGS]
+
+
+def base_files(run):
+    """Files of what lies below the film of a closing run."""
+    return [] if run.asperity.film_nm is None else [BASE]
+
+
+def of_base(run):
+    """As named inputs: what lies below a film, and the cell of it that fits the asperity."""
+    if run.asperity.film_nm is None:
+        return {}
+    return {
+        "base": f"{RESULTS}/hardness/base/{run.seed}_{run.asperity.tiles}.data",
+        "base_material": BASE,
+    }
+
+
+def measured(*scans):
+    """Those of these scans that no job makes."""
+    return scans if TOPOGRAPHY.scans else []
+
+
+def scan_files():
+    """The scans to analyse: the user's own, or the synthetic ones that the workflow writes."""
+    if not TOPOGRAPHY.scans:
+        synthetic = TOPOGRAPHY.synthetic
+        names = [f"small_{k + 1:02d}" for k in range(synthetic.small_scans)]
+        names += [f"large_{k + 1:02d}" for k in range(synthetic.large_scans)]
+        return [f"{SCAN_FOLDER}/{name}.gwy" for name in names]
+    try:
+        return named_files("topography.scans", *files_of(SCENE_GIVEN, TOPOGRAPHY.scans))
+    except SceneError as error:
+        refuse(error)
+
+
+def studies_of(kind):
+    """The tables of a kind of study: those of the stages that the scene uses."""
+    return [f"{RESULTS}/{kind}/{stage}.csv" for stage, (_, used) in OF_STAGE.items() if used]
+
+
+def files_of_study(wildcards):
+    """As named inputs: what a study reads; a stage that the scene does not use is refused."""
+    files, used = OF_STAGE[wildcards.stage]
+    words = (
+        f"target accuracy or stability: the scene does not use the stage {wildcards.stage};"
+        " nothing to study"
+    )
+    return {
+        "used": required(used, words),
+        **files,
+        **ALSO_READ.get(f"{wildcards.kind}/{wildcards.stage}", {}),
+    }
+
+
+RUN = Run(workflow, SCENE_GIVEN, SCENE, RESULTS, config)
+RUN.look()

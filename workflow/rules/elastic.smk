@@ -1,6 +1,7 @@
 ELASTIC = settings("elastic")
 GLASSES = [f"a{k:02d}" for k in range(1, ELASTIC["structures"] + 1)]
-WITH_LDA = GLASSES[: max(1, len(GLASSES) // 2)]
+WITH_LDA = GLASSES[: max(1, len(GLASSES) // 2)]  # enough for the shift between functionals
+FUNCTIONALS = {name: ["GGA", "LDA"] if name in WITH_LDA else ["GGA"] for name in GLASSES}
 CRYSTALS = {
     name: material_path(material) for material in MATERIALS.values() for name in material.crystals
 }
@@ -31,27 +32,14 @@ wildcard_constraints:
     crystal="|".join(CRYSTALS),
 
 
-def quenched_before(wildcards):
-    """Cells that a quench must not make once more: they are made one after the other.
-
-    That costs nothing beside their DFT.
-    """
-    return [
-        f"{RESULTS}/elastic/quenched/a{k:02d}.xyz" for k in range(1, int(wildcards.amorphous[1:]))
-    ]
-
-
-def functionals_of(cell):
-    """Both functionals for half of the cells, which gives the shift between them."""
-    if cell in WITH_LDA:
-        return ["GGA", "LDA"]
-    return ["GGA"]
-
-
 rule make_amorphous:
     input:
         material=MATERIAL,
-        others=quenched_before,
+        # those that this quench must not make once more: it costs nothing beside their DFT
+        others=lambda wildcards: [
+            f"{RESULTS}/elastic/quenched/a{k:02d}.xyz"
+            for k in range(1, int(wildcards.amorphous[1:]))
+        ],
     output:
         structure=f"{RESULTS}/elastic/quenched/{{amorphous}}.xyz",
         attempts=f"{RESULTS}/elastic/quenched/{{amorphous}}.csv",
@@ -84,7 +72,7 @@ rule scan_glass:
     params:
         contents=contents(MATERIAL),
         dft=ELASTIC["dft"],
-        functionals=lambda wildcards: functionals_of(wildcards.amorphous),
+        functionals=lambda wildcards: FUNCTIONALS[wildcards.amorphous],
         store=f"{RESULTS}/work/scf/{{amorphous}}",
     message:
         "relax amorphous cell {wildcards.amorphous} and scan its E(V)"

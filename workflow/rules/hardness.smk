@@ -10,7 +10,7 @@ try:
     BODIES = hardness_files(
         SCENE.hardness, MATERIALS, CONFIG, lambda path: named_files("hardness.potential", path)[0]
     )
-    if workflow.is_main_process:
+    if IS_CHECKED_HERE:
         CLOSING_S = check_bodies(SCENE.hardness, BODIES, MATERIALS)
 except InputError as error:
     UNFIT = str(error)
@@ -22,26 +22,6 @@ H_MACRO = SCENE.inputs.priors().h_macro  # the runs give H' beside it
 H_MACRO_FILE = (
     named_files("inputs.h_macro.values", H_MACRO.values) if isinstance(H_MACRO.values, str) else []
 )
-
-
-def of_run(pattern):
-    """The file of every closing run."""
-    return [f"{RESULTS}/hardness/{pattern.format(run=run)}" for run in CLOSINGS]
-
-
-def base_files(run):
-    """Files of what lies below the film of a closing run."""
-    return [] if run.asperity.film_nm is None else [BASE]
-
-
-def of_base(run):
-    """As named inputs: what lies below a film, and the cell of it that fits the asperity."""
-    if run.asperity.film_nm is None:
-        return {}
-    return {
-        "base": f"{RESULTS}/hardness/base/{run.seed}_{run.asperity.tiles}.data",
-        "base_material": BASE,
-    }
 
 
 BODY_FILES = [BODIES.material, BODIES.potential]

@@ -12,7 +12,7 @@ SAMPLES = {
     for name, row in SCENE.inputs.rows().items()
     if isinstance(row.values, str)
 }
-if workflow.is_main_process:
+if IS_CHECKED_HERE:
     from workflow.scene.checks import mistakes  # takes half a second: not in every job
 
     found = {name.removeprefix("samples_"): path for name, path in SAMPLES.items()}

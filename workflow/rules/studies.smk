@@ -42,25 +42,6 @@ ALSO_READ = {  # by one study alone
 }
 
 
-def studies_of(kind):
-    """The tables of a kind of study: those of the stages that the scene uses."""
-    return [f"{RESULTS}/{kind}/{stage}.csv" for stage, (_, used) in OF_STAGE.items() if used]
-
-
-def files_of_study(wildcards):
-    """As named inputs: what a study reads; a stage that the scene does not use is refused."""
-    files, used = OF_STAGE[wildcards.stage]
-    words = (
-        f"target accuracy or stability: the scene does not use the stage {wildcards.stage};"
-        " nothing to study"
-    )
-    return {
-        "used": required(used, words),
-        **files,
-        **ALSO_READ.get(f"{wildcards.kind}/{wildcards.stage}", {}),
-    }
-
-
 ACCURACY = studies_of("accuracy")
 STABILITY = studies_of("stability")
 

@@ -4,24 +4,6 @@ TOPOGRAPHY = SCENE.topography
 SCAN_FOLDER = f"{RESULTS}/topography/scans"
 
 
-def measured(*scans):
-    """Those of these scans that no job makes."""
-    return scans if TOPOGRAPHY.scans else []
-
-
-def scan_files():
-    """The scans to analyse: the user's own, or the synthetic ones that the workflow writes."""
-    if not TOPOGRAPHY.scans:
-        synthetic = TOPOGRAPHY.synthetic
-        names = [f"small_{k + 1:02d}" for k in range(synthetic.small_scans)]
-        names += [f"large_{k + 1:02d}" for k in range(synthetic.large_scans)]
-        return [f"{SCAN_FOLDER}/{name}.gwy" for name in names]
-    try:
-        return named_files("topography.scans", *files_of(SCENE_GIVEN, TOPOGRAPHY.scans))
-    except SceneError as error:
-        refuse(error)
-
-
 SCAN_FILES = (
     scan_files() if needed("topography") or not TOPOGRAPHY.scans else list(TOPOGRAPHY.scans)
 )

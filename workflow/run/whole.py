@@ -14,7 +14,7 @@ from asperity.guards.foreign_text import shown, wrapped
 from workflow.files.checksums import remove_unfinished
 from workflow.run import ownership
 from workflow.run.damage import renew_damaged
-from workflow.run.job import failures
+from workflow.run.installed import missing_packages
 from workflow.run.last_words import answer_words, foreign_results, where_results_are
 from workflow.run.process import obey_signals
 from workflow.run.refuse import refuse
@@ -78,7 +78,7 @@ class Run:
         """
         self._studies = studies
         is_ours = Path(self._workflow.main_snakefile) in OWN_SNAKEFILES
-        if not (self._workflow.is_main_process and is_ours):
+        if not (self._workflow.is_main_process and is_ours) or missing_packages():
             return
         from workflow.run.cost import LONGEST_RUN_H, Costs  # takes a second: not in every job
         from workflow.run.progress import speak
@@ -95,6 +95,11 @@ class Run:
 
     def start(self) -> None:
         """Take the folder of results, before the first job."""
+        if missing := missing_packages():
+            refuse(
+                f"{', '.join(missing)}: not installed; running a scene needs pip install"
+                " 'asperity-contact[run]'"
+            )
         if self._terminal is not None and self._terminal.refusal:
             refuse(f"{self._scene_given}: {self._terminal.refusal}")
         self._results.mkdir(parents=True, exist_ok=True)
@@ -115,6 +120,8 @@ class Run:
 
     def fail(self) -> None:
         """Repeat why jobs failed at the very end, where a person looks first."""
+        from workflow.run.job import failures  # with the schemas of all tables
+
         lines = map(shown, failures(self._results / "logs", self._started))
         print("\n".join(["", *lines]), file=sys.stderr)
 

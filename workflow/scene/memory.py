@@ -1,6 +1,6 @@
 """Memory that a contact needs, and that this machine has.  Imports little: every job reads it."""
 
-from mesoscale.checks import SITE_MB
+from mesoscale.memory import SITE_MB
 from mesoscale.settings import HistorySettings, SceneContact, UncertaintySettings
 from mesoscale.settings.history import DWELL_STEPS, SURFACES
 from mesoscale.settings.uncertainty import RESAMPLES

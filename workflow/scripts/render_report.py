@@ -4,6 +4,8 @@ depends on.
 In: result files of all stages that the scene needs. Out: report.html, self-contained; scene.yaml
 with the resolved settings, package versions, git commit."""
 
+from pathlib import Path
+
 import yaml
 
 from asperity.guards.bundle import ROOT
@@ -13,7 +15,8 @@ from workflow.report.render import render
 from workflow.run.job import job, own_commit, package_versions
 
 with job(snakemake) as run:
-    scene, root = snakemake.params.scene, snakemake.params.root
+    scene = snakemake.params.scene
+    root = Path(snakemake.output.page).parent
     record = {
         "scene": scene,
         "versions": package_versions(),
