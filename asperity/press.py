@@ -124,8 +124,9 @@ class PressedMap(Shown):
         Sites that touch at an edge or a corner are one spot; spots do not go on across the edges of
         the map.
         """
-        spots, count = ndimage.label(self.pressure_GPa[load] > 0.0, np.ones((3, 3)))
-        sizes = np.bincount(spots.ravel(), minlength=count + 1)[1:]
+        spots = np.zeros(self.pressure_GPa.shape[1:], int)  # number of the spot at each site
+        ndimage.label(self.pressure_GPa[load] > 0.0, np.ones((3, 3)), spots)
+        sizes = np.bincount(spots.ravel())[1:]
         site_nm2 = np.prod(self.lengths_nm) / spots.size
         return np.sort(sizes)[::-1] * site_nm2
 

@@ -15,7 +15,7 @@ import yaml
 
 import asperity as asp
 from asperity.__main__ import main
-from asperity.door import NUMBERS_OF_DEVICE
+from asperity.words import SCALAR_KEYS
 from mesoscale.topography.measurements.loading import load_measurements, write_gwy
 from mesoscale.topography.measurements.opening import write_channels
 from workflow.scene import load_scene
@@ -101,7 +101,7 @@ def test_options_on_a_file_reach_its_scene(scans, started, tmp_path, monkeypatch
     assert (instrument.size, instrument.unit, instrument.height_unit) == ((2.5, 2.5), "um", "nm")
     assert (scene.topography.detrend, scene.topography.channel) == ("none", "Default")
     text = Path("bare.yaml").read_text(encoding="utf-8")
-    for name in NUMBERS_OF_DEVICE:
+    for name in SCALAR_KEYS:
         assert f"\n  {name}: " in text
     assert main(["bare.txt", *words[:-2]]) == 1  # the scene of other words stays
 

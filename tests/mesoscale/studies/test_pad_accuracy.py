@@ -8,7 +8,7 @@ from mesoscale.answer.points import central_point, plan_points
 from mesoscale.answer.switches import PadModel, solve_point, solve_points, surfaces_of
 from mesoscale.contact.surface import random_surface, shared_wave
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
-from mesoscale.pad.grid import DEPTHS, PadGrid, usual_step_nm
+from mesoscale.pad.grid import DEPTHS, LONGEST_STEP_NM, STEP_RMS, PadGrid
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.studies.pad_accuracy import (
     BY_DEPTHS,
@@ -57,7 +57,7 @@ def test_every_choice_has_errors_with_their_own_and_the_value_in_use(rows):
         assert np.isfinite([row["error"], row["own_error"], row["cpu_s"]]).all()
         assert row["release_V"] == row["error"]
     in_use = {row["knob"]: row["value"] for row in rows if row["shipped"]}
-    step = usual_step_nm(POINT.values["rms"])
+    step = min(STEP_RMS * POINT.values["rms"], LONGEST_STEP_NM)
     assert in_use == {CELLS: 2, STEPS: step, BY_DEPTHS: DEPTHS, SITES: 2.0, POINTS: 32}
 
 
