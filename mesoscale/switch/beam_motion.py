@@ -37,6 +37,12 @@ STEPS_DOWN = 81
 """Separations of the way down, from rest to touch."""
 NEWTON_STEPS = 30
 """At most, to each of them."""
+FREE_STEPS = 12
+"""At least, to the balance of a free beam from that of the voltage before."""
+MOST_FREE_STEPS = 100
+"""At most; near pull-in the steps converge slowly."""
+STILL_NM = 1e-3
+"""Last step of a free beam that has settled: of a gap of 3 um it moves the capacitance by 1e-6."""
 UNHELD_SHARE = 0.05
 """Of the hold voltage: a beam that is still closed at less is tried without any."""
 MOST_V = 1e4
@@ -160,11 +166,23 @@ class MovingBeam:
         _, per_V2 = self.beam.step(self.nodal, lambda s: self.load(s, 0.0), 0.0, self._pull_Pa())
         return int(np.argmin(per_V2[:, 0]))
 
-    def relax(self, voltage: float, steps: int) -> None:
-        """So many plain steps towards the balance at a voltage."""
-        for _ in range(steps):
+    def relax(self, voltage: float) -> None:
+        """Plain Newton steps to the balance at a voltage, from the state at hand.
+
+        Raises
+        ------
+        NotComputed : they do not settle, as just below pull-in.
+        """
+        moved_nm = np.inf
+        for step in range(MOST_FREE_STEPS):
+            if step >= FREE_STEPS and moved_nm < STILL_NM:
+                return
             change, _ = self.beam.step(self.nodal, lambda s: self.load(s, voltage**2))
             self.nodal = self.nodal + change
+            moved_nm = float(np.abs(change[:, 0]).max()) / NM
+        raise NotComputed(
+            f"device: the free beam does not settle at {voltage:.6g} V, too near its pull-in"
+        )
 
     def snap_V(self) -> float:
         """Pull-in, the largest voltage on the way down; the beam is left just beyond, from where it

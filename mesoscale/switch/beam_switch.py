@@ -21,8 +21,6 @@ FREE_ELEMENTS = 64
 """Of a beam without a pad, which pulls in the same with half as many."""
 RELEASE_TOLERANCE = 1e-3
 """Relative error of a release."""
-FREE_STEPS = 12
-"""Steps to the balance of a free beam, each from that of the voltage before."""
 
 
 @dataclass(frozen=True)
@@ -160,7 +158,7 @@ class BeamSwitch(Switch):
         rising = []
         for voltage in volts.tolist():
             if voltage < pull_in_V:
-                free.relax(voltage, FREE_STEPS)
+                free.relax(voltage)
                 rising.append(free.capacitance_fF())
             else:
                 closing.creep(voltage)

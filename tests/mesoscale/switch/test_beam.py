@@ -13,6 +13,7 @@ from mesoscale.studies.answer_stability import made_up_pad
 from mesoscale.switch import switch_of
 from mesoscale.switch.beam import beam_of, euler_MPa, rests_as_stated
 from mesoscale.switch.beam_kernels import elongation
+from mesoscale.switch.beam_motion import MovingBeam
 from mesoscale.switch.beam_switch import BeamSwitch
 from mesoscale.units import VACUUM_PERMITTIVITY
 
@@ -383,3 +384,12 @@ def test_a_pad_that_was_hardly_closed_is_refused_with_what_helps():
         NotComputed, match=r"carries 6.3e-07 MPa at 15 nm, where its curves end; raise pad\.cells"
     ):
         BeamSwitch(DEFAULT).states_on(law)
+
+
+def test_a_free_beam_that_does_not_settle_is_refused_with_its_voltage():
+    """Beyond pull-in there is no balance; twelve steps ended somewhere, without a word."""
+    switch = BeamSwitch(DeviceSettings())
+    moving = MovingBeam(switch.beam, DeviceSettings())
+    moving.relax(0.5 * switch.pull_in_V)
+    with pytest.raises(NotComputed, match="the free beam does not settle at"):
+        moving.relax(1.05 * switch.pull_in_V)
