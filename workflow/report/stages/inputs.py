@@ -51,28 +51,21 @@ def stated_beside_computed(results: Results) -> Iterator[tuple[str, str, str, st
     """Inputs that the scene states and one of its stages computes, with what the choice does to the
     answer.
     """
-    for row, distribution in zip(
-        results.csv("inputs.csv"), from_rows(results.csv("inputs.csv")).rows, strict=True
-    ):
+    inputs = from_rows(results.csv("inputs.csv")).rows
+    for item in inputs:
+        computable = BY_NAME[item.name].stage != "literature"
+        if item.origin != "literature" or not computable:
+            continue
         for file in ("hardness/fit.json", "elastic/e_star.json", "topography/parameters.json"):
-            entry = (
-                results.json(file).get("inputs", {}).get(distribution.name)
-                if results.has(file)
-                else None
-            )
-            if (
-                distribution.origin == "literature"
-                and BY_NAME[distribution.name].stage != "literature"
-                and entry
-            ):
-                computed = distribution_of(entry, file)
-                effect = _effect_V(results, distribution.name, distribution.distribution, computed)
-                yield (
-                    in_words(row["parameter"]),
-                    _span(distribution.distribution),
-                    _span(computed),
-                    effect,
-                )
+            if not results.has(file):
+                continue
+            entry = results.json(file).get("inputs", {}).get(item.name)
+            if not entry:
+                continue
+            stated = item.distribution
+            computed = distribution_of(entry, file)
+            effect = _effect_V(results, item.name, stated, computed)
+            yield in_words(item.name), _span(stated), _span(computed), effect
 
 
 def _span(distribution: Distribution) -> str:
