@@ -223,7 +223,8 @@ def press(
         update={"pixels": len(surface), "length_nm": spacing * len(surface)}
     )
     check_hardness(inputs, settings)
-    offset, lowest = float(surface.mean()), float(surface.min())
+    offset = float(surface.mean())
+    lowest = float(surface.min())
     if few:
         states = _each(surface, periodic, steps, by_load, inputs, settings)
     else:
@@ -245,7 +246,8 @@ def press(
             if attraction is not None:
                 pulls[number] = _pull(attraction, gaps[number], pressures[number], spacing**2)
     sides = (spacing * surface.shape[0], spacing * surface.shape[1])
-    from_mean, approach = separations + offset, -lowest - separations
+    from_mean = separations + offset
+    approach = -lowest - separations
     return PressedMap(
         forces,
         from_mean,

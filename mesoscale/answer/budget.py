@@ -263,7 +263,8 @@ def _moved_V(
     device = pressed.device
     release = pressed.states.release_V
     if effect.hardness is not None:
-        usual, other = by_hardness[1.0], by_hardness[effect.hardness]
+        usual = by_hardness[1.0]
+        other = by_hardness[effect.hardness]
         if not np.isfinite(usual - other):
             return None, "; no answer"
         return abs(other - usual), "; it may stick" * (other == 0.0)

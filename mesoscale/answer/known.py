@@ -150,7 +150,8 @@ def known(
     coefficients = np.vstack([fit.coefficients, chosen])
     unknown = coefficients[:, of_common] @ columns[:, of_common].T
     between = coefficients[:, ~of_common] @ columns[:, ~of_common].T
-    rest, noise = np.sqrt(max(fit.missed**2 - cells**2, 0.0)), rng.normal(size=draws)
+    rest = np.sqrt(max(fit.missed**2 - cells**2, 0.0))
+    noise = rng.normal(size=draws)
     devices = between.std(axis=1)[:, None]
     with np.errstate(
         divide="ignore", invalid="ignore"

@@ -89,12 +89,14 @@ def answer(model: PadModel) -> Answer:
     ------
     InputError : too few of them have an answer.
     """
-    solved, refused = [model.points[k] for k in model.solved], model.refused
+    solved = [model.points[k] for k in model.solved]
+    refused = model.refused
     if len(solved) < SOLVED_SHARE * len(model.points):
         raise InputError(
             f"device: {len(refused)} of {len(model.points)} switches cannot be solved: {refused[0]}"
         )
-    release, stuck = model.states("release_V"), model.states("release_V") == 0.0
+    release = model.states("release_V")
+    stuck = model.states("release_V") == 0.0
     errors = np.array([point.error_V for point in solved])
     error_V = (
         float(np.sqrt(np.mean(errors[np.isfinite(errors)] ** 2)))
@@ -169,7 +171,8 @@ def _probability(stuck: int, solved: int, refused: int) -> dict[str, float]:
     and once as stuck.
     """
     total = solved + refused
-    least, most = probability(stuck, total), probability(stuck + refused, total)
+    least = probability(stuck, total)
+    most = probability(stuck + refused, total)
     return {"value": stuck / solved, "low": least["low"], "high": most["high"]}
 
 
@@ -181,7 +184,8 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
     said, status = None, "the scene asks for no points (pad.points: 0)"
     if model.points:
         try:
-            said, status = asdict(answer(model)), "ok"
+            said = asdict(answer(model))
+            status = "ok"
         except InputError as error:
             status = str(error)
     return {
@@ -215,7 +219,8 @@ def _reasons(central: Solved) -> list[str]:
     """Why the switch at central inputs is not to be trusted; nothing where it is."""
     if central.refused or central.pad is None:
         return [central.refused]
-    reasons, cells = [], central.pad.cells
+    reasons = []
+    cells = central.pad.cells
     if unsettled := int((~cells.settled).sum()):
         reasons.append(f"{unsettled} cells in which flow did not come to rest")
     if min(central.halves_V) == 0.0 < max(central.halves_V):

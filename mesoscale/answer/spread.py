@@ -68,7 +68,8 @@ def check_spread(settings: DeviceSettings) -> None:
     InputError : a property leaves what is accepted for it; samples that cannot be read.
     """
     for row in departures(settings).rows:
-        stated, relative = getattr(settings, row.name), getattr(settings.spread, row.name).relative
+        stated = getattr(settings, row.name)
+        relative = getattr(settings.spread, row.name).relative
         for moved in row.distribution.span():
             value = stated * (1.0 + moved) if relative else stated + moved
             try:

@@ -108,11 +108,13 @@ def _paired_stiffness(beam: Beam) -> tuple[Array, Array]:
     Slopes follow the displacements as they do at rest, without what stretches the beam.
     """
     _, bends, pulled, *_ = beam.mechanics
-    drawn, free = assembled(pulled)[2:-2, 2:-2], assembled(bends)[2:-2, 2:-2]
+    drawn = assembled(pulled)[2:-2, 2:-2]
+    free = assembled(bends)[2:-2, 2:-2]
     free = free + beam.tension_N * drawn
     follow = -np.linalg.solve(free[1::2, 1::2], free[1::2, ::2])
     whole = np.empty((len(free), len(follow)))
-    whole[::2], whole[1::2] = np.eye(len(follow)), follow
+    whole[::2] = np.eye(len(follow))
+    whole[1::2] = follow
     half = len(follow) // 2
     paired = whole @ np.vstack([np.eye(half), np.eye(half)[::-1]])
     stiffness, folded = (paired.T @ of @ paired for of in (free, drawn))
@@ -146,7 +148,8 @@ def choose_lumps(settings: DeviceSettings, pad: PadCurves) -> LumpErrors:
     elements = CIRCUIT.reference_elements
     half = BeamSwitch(settings, beam_of(settings, elements // 2)).states_on(pad)
     exact = BeamSwitch(settings, beam_of(settings, elements)).states_on(pad)
-    count, errors = 0, (1.0, 1.0, 1.0)
+    count = 0
+    errors = (1.0, 1.0, 1.0)
     for count in CIRCUIT.lump_counts:
         lumped = BeamSwitch(settings.level, lumped_beam(settings.level, count))
         errors = _errors(lumped.states_on(pad), exact)

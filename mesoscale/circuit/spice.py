@@ -30,7 +30,8 @@ def spice_switch(
     """SPICE netlist (ngspice) of the subcircuits `rough_switch`, `rough_lump` and `rough_pad`."""
     force, slope = CIRCUIT.force_A, CIRCUIT.slope_per_V
     springs = force * lumps.stiffness_N_m * NM / lumps.area_m2[:, None]
-    drawn, heights = lumps.drawn_m * NM / slope, lumps.height_nm
+    drawn = lumps.drawn_m * NM / slope
+    heights = lumps.height_nm
     sloped = force * lumps.stretching_N_m * NM * slope / lumps.area_m2
     body = []
     for k in range(lumps.count):
@@ -115,9 +116,11 @@ def spice_pad(pad: PadCurves, cells: int) -> str:
     # corner for ngspice
     repels = pad.separation_nm[pad.closing[0] > 0.0]
     start = CIRCUIT.begins * float(repels.max(initial=depths[-1] + CIRCUIT.fade_nm))
-    deepest, far = f"{start:g} - V(near)", [piece.y[-1] for piece in tables.closing]
+    deepest = f"{start:g} - V(near)"
+    far = [piece.y[-1] for piece in tables.closing]
     push, pull = (Piece(piece.x, piece.y - piece.y[-1]) for piece in tables.closing)
-    weights, places = [], np.append(depths, depths[-1] + CIRCUIT.fade_nm)
+    weights = []
+    places = np.append(depths, depths[-1] + CIRCUIT.fade_nm)
     for k in range(depths.size):
         at = places[max(k - 1, 0) : k + 2]
         weights.append(_pwl(deepest, Piece(at, (at == depths[k]).astype(float))))

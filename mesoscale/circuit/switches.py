@@ -87,7 +87,8 @@ def spread_switches(
         raise InputError(
             f"device: only {len(solved)} of {len(model.points)} points of the switch can be solved"
         )
-    z, corners = ndtri(design.probability[solved]), []
+    z = ndtri(design.probability[solved])
+    corners = []
     plane = np.column_stack([np.ones(len(z)), z])
     for number, (name, (state, sign)) in enumerate(CORNERS.items()):
         slope = np.linalg.lstsq(plane, model.states(state), rcond=None)[0][1:]

@@ -72,7 +72,8 @@ def tables_of(pad: PadCurves, cubic: bool, looser: float = 1.0) -> Tables:
         x: Array, values: Array, at_nm: Array, start: Array, well: float, nodes: Sequence[int] = ()
     ) -> tuple[tuple[Piece, Piece], float, float]:
         flats = pad.flats.pull_GPa(at_nm) + floor
-        push, pull = np.exp(values[0]) - faint, flats * np.exp(values[1])
+        push = np.exp(values[0]) - faint
+        pull = flats * np.exp(values[1])
         net = push - pull
 
         def missed(made: Array) -> Array:
@@ -85,7 +86,8 @@ def tables_of(pad: PadCurves, cubic: bool, looser: float = 1.0) -> Tables:
         )
         at, made = _nodes(x, values, lambda made: missed(made) / (looser * allowed), nodes, cubic)
         near = abs(net) < CIRCUIT.near_wells * well
-        of_well, of_net = missed(made) / well, missed(made) / np.maximum(abs(net), faint)
+        of_well = missed(made) / well
+        of_net = missed(made) / np.maximum(abs(net), faint)
         first, second = (
             Piece(x[at], row[at] - shift) for row, shift in zip(values, start, strict=True)
         )
@@ -99,7 +101,8 @@ def tables_of(pad: PadCurves, cubic: bool, looser: float = 1.0) -> Tables:
     closing, _, of_closing = fitted(
         s, logarithms(pad.closing, s), s, np.zeros(2), float(wells.min()) or faint, at_depths
     )
-    opening, errors = [], []
+    opening = []
+    errors = []
     for depth, opened, well in zip(pad.depth_nm, pad.opening, wells, strict=True):
         known = np.isfinite(opened[0])
         values = logarithms(opened[:, known], s[known])

@@ -62,7 +62,8 @@ def verilog_pressure(tables: Tables) -> str:
     ]
     for k, (push, pull) in enumerate(tables.opening):
         functions += [_function(f"repel{k}", push), _function(f"attract{k}", pull)]
-    depths, last = tables.depth_nm, tables.depth_nm.size - 1
+    depths = tables.depth_nm
+    last = tables.depth_nm.size - 1
     between = [
         f"""if (deepest < {depths[k + 1]:.7g}) begin
                 share = max((deepest - {depths[k]:.7g}) / {depths[k + 1] - depths[k]:.7g}, 0.0);
@@ -124,7 +125,8 @@ def _function(name: str, piece: Piece) -> str:
 
 def verilog_lump(lumps: Lumps, pad: PadCurves, cells: int) -> str:
     """Verilog-A module `rough_lump`."""
-    tables, width = tables_of(pad, cubic=True), f"{lumps.width_m:.9g}"
+    tables = tables_of(pad, cubic=True)
+    width = f"{lumps.width_m:.9g}"
     names = LUMP.replace(" ", ", ")
     return f"""// A pair of lumps of an electrostatic switch on a rough contact (Asperity, docs/circuit.md).
 // {note(tables, cells)}

@@ -136,7 +136,8 @@ class Attracted:
         """Logarithm of the factor on the attraction with which the switch just fails, known to half
         a step.
         """
-        low, high = np.log(FAILURE.least_times), np.log(FAILURE.most_times)
+        low = np.log(FAILURE.least_times)
+        high = np.log(FAILURE.most_times)
         while high - low > step:
             middle = 0.5 * (low + high)
             try:

@@ -127,7 +127,8 @@ def learn(
     first = qmc.LatinHypercube(population.dimension, rng=rng).random(FAILURE.first)
     z = ndtri(first) * np.where(np.arange(FAILURE.first) % 2, 1.0, FAILURE.wide)[:, None]
     units, pads = population.solved
-    known_z, hold_V = ndtri(units), population.hold_V
+    known_z = ndtri(units)
+    hold_V = population.hold_V
     columns = population.columns(known_z, np.full(len(known_z), hold_V))
     reserves = population.reserves(known_z, hold_V, pads)
     batches = [
@@ -142,7 +143,8 @@ def learn(
             )
             reserves = np.concatenate([reserves, population.reserves(part, hold_V)])
         # a switch that fails with the least attraction says nothing of where others begin to
-        within, known = np.isfinite(reserves), reserves > np.log(FAILURE.least_times) + FAILURE.step
+        within = np.isfinite(reserves)
+        known = reserves > np.log(FAILURE.least_times) + FAILURE.step
         if within.sum() < FAILURE.fewest:
             raise InputError(
                 f"failure: {within.sum()} of {len(reserves)} switches can be solved; accepted are"
@@ -158,7 +160,8 @@ def learn(
         response = ReserveResponse(population, Process(*learned), len(reserves), *learned)
         if number == FAILURE.rounds:
             return response
-        hold_V, times = float(rng.uniform(low, high)), WORKS[number % len(WORKS)]
+        hold_V = float(rng.uniform(low, high))
+        times = WORKS[number % len(WORKS)]
         likely = response.sample(times, hold_V, seed + number).points
         number += 1
         batches = [(likely[rng.permutation(len(likely))[: FAILURE.batch]], hold_V)]
@@ -221,7 +224,8 @@ def least_rms_nm(
 
 def just_allowed(response: ReserveResponse, hold_V: float, allowed: float) -> float:
     """Factor on the attraction with which just as many as allowed fail by the response."""
-    low, high = float(np.log(FAILURE.least_times)), float(np.log(FAILURE.most_times))
+    low = float(np.log(FAILURE.least_times))
+    high = float(np.log(FAILURE.most_times))
     while high - low > FAILURE.near:
         middle = 0.5 * (low + high)
         more = response.sample(float(np.exp(middle)), hold_V, 0).probability > allowed
@@ -279,7 +283,8 @@ def failure_rate(
     ------
     InputError : no switch of the population can be solved, or none lets go above the asked voltage.
     """
-    hold, response = population.hold_V, learn(population, tell)
+    hold = population.hold_V
+    response = learn(population, tell)
     given = {
         (volts, times): response.rates(times, volts)
         for volts in voltages(population).tolist()
@@ -298,7 +303,8 @@ def failure_rate(
     laws = []
     likely = response.sample(just_allowed(response, hold, allowed), hold, 0)
     for number, times in enumerate(WORKS):
-        law, step = f"{times:.2g} times the attraction", 0.8 / len(WORKS)
+        law = f"{times:.2g} times the attraction"
+        step = 0.8 / len(WORKS)
         tell(0.2 + number * step, law)
         share = np.array([row["failing_sure"] for row in rows if row["attraction"] == times])
         allowed_V = furthest_allowed(voltages(population), share, allowed)

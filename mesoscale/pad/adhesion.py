@@ -36,11 +36,13 @@ def adhesion_of(pad: PadCurves) -> list[Adhesion]:
     rows = []
     for depth, opened in zip(pad.depth_nm.tolist(), pad.opening, strict=True):
         way = np.isfinite(opened[0])
-        separation, net = pad.separation_nm[way], opened[:, way].sum(axis=0)
+        separation = pad.separation_nm[way]
+        net = opened[:, way].sum(axis=0)
         first = int(np.argmax(net < 0.0))
         if first > 0:
             zero = np.interp(0.0, -net[first - 1 : first + 1], separation[first - 1 : first + 1])
-            separation, net = np.insert(separation[first:], 0, zero), np.insert(net[first:], 0, 0.0)
+            separation = np.insert(separation[first:], 0, zero)
+            net = np.insert(net[first:], 0, 0.0)
         energy = pad.flats.energy_J_m2(separation[-1]) - np.trapezoid(net, separation)
         rows.append(
             Adhesion(

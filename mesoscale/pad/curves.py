@@ -98,7 +98,8 @@ class PadCurves:
         ------
         NotComputed : a depth that was not computed; the message has the range.
         """
-        low, high = float(self.depth_nm[0]), float(self.depth_nm[-1])
+        low = float(self.depth_nm[0])
+        high = float(self.depth_nm[-1])
         if not low <= deepest_nm <= high:
             raise NotComputed(
                 f"deepest closing {deepest_nm:.4g} nm: the pad was computed for {low:.4g} .."

@@ -74,7 +74,8 @@ class LocalPad:
         """Pressure and slope, of the shape (e, p) of both; continued in a line below the computed
         closing.
         """
-        pressure, slope = np.empty_like(separation_nm), np.empty_like(separation_nm)
+        pressure = np.empty_like(separation_nm)
+        slope = np.empty_like(separation_nm)
         pad_pressure(separation_nm, deepest_nm, pressure, slope, *self.tables)
         return pressure, slope
 
@@ -109,19 +110,20 @@ def pad_pressure(
     own; all (e, p).
     """
     last = at_nm.size - 1
-    depth_step, rise_step = (
-        max(depth_nm[1] - depth_nm[0], 1e-9),
-        rise_nm[1] - rise_nm[0],
-    )  # 1e-9: a pad of one depth
+    depth_step = max(depth_nm[1] - depth_nm[0], 1e-9)  # 1e-9: a pad of one depth
+    rise_step = rise_nm[1] - rise_nm[0]
     for e in range(separation_nm.shape[0]):
         for g in range(separation_nm.shape[1]):
-            s, deep = separation_nm[e, g], deepest_nm[e, g]
+            s = separation_nm[e, g]
+            deep = deepest_nm[e, g]
             risen = s - deep
             if risen > 0.0 and deep <= depth_nm[-1] and risen < rise_nm[-1]:
                 x = min(max((deep - depth_nm[0]) / depth_step, 0.0), depth_nm.size - 1 - 1e-9)
                 y = min(max(risen / rise_step, 0.0), rise_nm.size - 1 - 1e-9)
-                i, j = int(x), int(y)
-                share, part = x - i, y - j
+                i = int(x)
+                j = int(y)
+                share = x - i
+                part = y - j
                 low = (1 - share) * opening[i, j] + share * opening[i + 1, j]
                 high = (1 - share) * opening[i, j + 1] + share * opening[i + 1, j + 1]
                 # opening starts where closing ended, to the last digit: a step there would never

@@ -110,7 +110,8 @@ def _energy_gain(cycle: Cycle) -> tuple[float, float]:
 
 def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case]:
     """The cases around the inputs and settings of a scene."""
-    n, area = settings.pixels, settings.length_nm**2
+    n = settings.pixels
+    area = settings.length_nm**2
     carried = inputs.hardness.pressure(area) * area
     x = (np.arange(n) - n // 2) * settings.length_nm / n
     with_ = partial(replace, inputs)

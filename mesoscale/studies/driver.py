@@ -202,7 +202,8 @@ def root_mean_square(deviations: ArrayLike) -> tuple[Array, Array]:
 def timed(compute: Callable[[], T]) -> tuple[T, Cost]:
     """What is computed, and what it cost this process and its children."""
     _forget_peak()
-    started, worked = time.perf_counter(), _processor_s()
+    started = time.perf_counter()
+    worked = _processor_s()
     result = compute()
     return result, Cost(time.perf_counter() - started, _processor_s() - worked, _peak_MB())
 

@@ -237,7 +237,8 @@ def violations(pad: PadCells) -> list[str]:
     largest = pad.closing[:, 0].max(axis=1)
     for number, depth in enumerate(pad.grid.depths):
         way = slice(0, depth + 1)
-        closing, opening = pad.closing[:, :, way], pad.opening[:, number, :, way]
+        closing = pad.closing[:, :, way]
+        opening = pad.opening[:, number, :, way]
         where = f"from {pad.grid.separation_nm[depth]:.4g} nm"
         if not np.isfinite(opening).all():
             broken.append(f"opening {where} not finite")

@@ -63,7 +63,8 @@ def _text(
 def _uneven(folder: Path) -> list[Path]:
     paths = []
     for seed in range(6):
-        line, rng = _line(seed), np.random.default_rng(seed)
+        line = _line(seed)
+        rng = np.random.default_rng(seed)
         kept = np.sort(rng.choice(POINTS, POINTS // 2, replace=False))
         paths.append(folder / f"line_{seed}.csv")
         np.savetxt(paths[-1], line[kept], delimiter=",", header="x (nm), z (nm)", comments="")
@@ -200,7 +201,8 @@ def check_files(case: FileCase) -> tuple[bool, str]:
     settings = TopographySettings(scans=("files",), instruments=(instrument,))
     with tempfile.TemporaryDirectory() as name:
         try:
-            arrays, attributes = {}, {}
+            arrays = {}
+            attributes = {}
             for path in case.write(Path(name)):
                 for measured in load_measurements(path, settings=settings):
                     label = measured.data.name

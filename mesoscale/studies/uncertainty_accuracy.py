@@ -117,7 +117,8 @@ def _runs(
         deviations = []
         for _ in range(SPLITS):
             picked = rng.permutation(len(x))[:count]
-            first, second = picked[: count // 2], picked[count // 2 :]
+            first = picked[: count // 2]
+            second = picked[count // 2 :]
             deviations.append(100 * 0.5 * (mean(first) - mean(second)) / deviation)
         _, fit = timed(partial(mean, np.arange(count)))
         return Errors(*root_mean_square(deviations), cycle.times(count) + fit)

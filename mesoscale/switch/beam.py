@@ -149,7 +149,8 @@ class Beam:
         Bending 384 EI s / b L^4 (cantilever 8 EI s / b L^4), and 8 N s / b L^2 of the axial force
         N, that at rest and that of a parabola of sag s, which is 8 s^2 / 3 L longer. Compression
         counts as no force: a beam about to buckle is not without a scale."""
-        sag, length = float(self.rest_m.max()), self.length_m
+        sag = float(self.rest_m.max())
+        length = self.length_m
         stretched_N = self.stretching_N_m * 8.0 * sag**2 / (3.0 * length)
         axial_N = max(self.tension_N, 0.0) + stretched_N
         bent = (8.0 if self.cantilever else 384.0) * self.bending_N_m2 / length**2
@@ -234,7 +235,8 @@ def _beam(settings: DeviceSettings, sizes: Array, within: Array, weights: Array)
     width, thickness, length = (
         1e-6 * of for of in (settings.width_um, settings.thickness_um, settings.length_um)
     )
-    section, cantilever = width * thickness, settings.ends == "cantilever"
+    section = width * thickness
+    cantilever = settings.ends == "cantilever"
     ends = np.concatenate([[0.0], np.cumsum(sizes)])
     flat = Beam(
         width,
@@ -317,10 +319,8 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
     _, bending, pulled, _, _, _, stretching, rest, unknowns = stated.mechanics
     freedoms = slice(2, 2 + unknowns)
     bends, pulls = (assembled(parts)[freedoms, freedoms] for parts in (bending, pulled))
-    z0, share = (
-        rest.ravel()[freedoms],
-        np.concatenate([[0.0], np.cumsum(stated.sizes_m)]) / stated.length_m,
-    )
+    z0 = rest.ravel()[freedoms]
+    share = np.concatenate([[0.0], np.cumsum(stated.sizes_m)]) / stated.length_m
     beyond = -(stated.tension_N + heat) - euler_MPa(settings) * newton_MPa
     u = np.zeros(unknowns)
     if beyond > 0.0:  # on the side of the height that a flat beam would have

@@ -72,27 +72,33 @@ def solve_beam_matrix(blocks, coupling, right, stretching):
     coupling : blocks of a node (rows) and the next (columns), shape (nodes, 2, 2).
     right : right sides, of which the last is the column of stretching, shape (nodes, sides + 1, 2).
     """
-    nodes, sides = len(blocks), right.shape[1] - 1
-    corner, below = -1.0, np.zeros(sides)
+    nodes = len(blocks)
+    sides = right.shape[1] - 1
+    corner = -1.0
+    below = np.zeros(sides)
     solved = np.empty((sides + 1, 2))
     for k in range(nodes - 1):
-        a, b, d = blocks[k, 0, 0], blocks[k, 1, 0], blocks[k, 1, 1]
+        a = blocks[k, 0, 0]
+        b = blocks[k, 1, 0]
+        d = blocks[k, 1, 1]
         scale = 1.0 / (a * d - b * b)
-        p, q, r, t = coupling[k, 0, 0], coupling[k, 0, 1], coupling[k, 1, 0], coupling[k, 1, 1]
+        p = coupling[k, 0, 0]
+        q = coupling[k, 0, 1]
+        r = coupling[k, 1, 0]
+        t = coupling[k, 1, 1]
         # inverse of the node's block times that to the next
-        u, v, w, x = (
-            scale * (d * p - b * r),
-            scale * (d * q - b * t),
-            scale * (a * r - b * p),
-            scale * (a * t - b * q),
-        )
+        u = scale * (d * p - b * r)
+        v = scale * (d * q - b * t)
+        w = scale * (a * r - b * p)
+        x = scale * (a * t - b * q)
         blocks[k + 1, 0, 0] -= p * u + r * w
         blocks[k + 1, 1, 0] -= q * u + t * w
         blocks[k + 1, 1, 1] -= q * v + t * x
         coupling[k, 0, 0], coupling[k, 0, 1], coupling[k, 1, 0], coupling[k, 1, 1] = u, v, w, x
         for side in range(sides + 1):
             y, z = right[k, side]
-            solved[side, 0], solved[side, 1] = scale * (d * y - b * z), scale * (a * z - b * y)
+            solved[side, 0] = scale * (d * y - b * z)
+            solved[side, 1] = scale * (a * z - b * y)
             right[k + 1, side, 0] -= u * y + w * z
             right[k + 1, side, 1] -= v * y + x * z
         y, z = right[k, sides]
@@ -100,12 +106,17 @@ def solve_beam_matrix(blocks, coupling, right, stretching):
         for side in range(sides):
             below[side] -= stretching * (y * solved[side, 0] + z * solved[side, 1])
         right[k] = solved
-    a, b, d = blocks[-1, 0, 0], blocks[-1, 1, 0], blocks[-1, 1, 1]
+    a = blocks[-1, 0, 0]
+    b = blocks[-1, 1, 0]
+    d = blocks[-1, 1, 1]
     y, z = right[-1, sides]
-    m, n = stretching * y, stretching * z
+    m = stretching * y
+    n = stretching * z
     whole = determinant(a, b, y, b, d, z, m, n, corner)
     for side in range(sides):
-        f, g, h = right[-1, side, 0], right[-1, side, 1], below[side]
+        f = right[-1, side, 0]
+        g = right[-1, side, 1]
+        h = below[side]
         right[-1, side, 0] = determinant(f, b, y, g, d, z, h, n, corner) / whole
         right[-1, side, 1] = determinant(a, f, y, b, g, z, m, h, corner) / whole
         force = determinant(a, b, f, b, d, g, m, n, h) / whole
@@ -161,15 +172,14 @@ def newton_step(
     """
     elements, points = pressure_Pa.shape
     nodes = unknowns // 2
-    blocks, coupling, right = (
-        np.zeros((nodes, 2, 2)),
-        np.zeros((nodes, 2, 2)),
-        np.zeros((nodes, 3, 2)),
-    )
+    blocks = np.zeros((nodes, 2, 2))
+    coupling = np.zeros((nodes, 2, 2))
+    right = np.zeros((nodes, 3, 2))
     more = stretching * elongation(nodal, pulled, rest)
     for e in range(elements):
         for i in range(4):
-            node, turned = e + i // 2 - 1, i % 2
+            node = e + i // 2 - 1
+            turned = i % 2
             if node < 0 or node >= nodes:
                 continue
             pushed, other = 0.0, 0.0
@@ -179,7 +189,8 @@ def newton_step(
                 other += other_Pa[e, g] * share
             right[node, 1, turned] += other
             for j in range(4):
-                moved, at_rest = nodal[e + j // 2, j % 2], rest[e + j // 2, j % 2]
+                moved = nodal[e + j // 2, j % 2]
+                at_rest = rest[e + j // 2, j % 2]
                 drawn = pulled[e, i, j]
                 pushed -= bends[e, i, j] * moved + drawn * (
                     tension * moved + more * (moved + at_rest)
@@ -197,7 +208,9 @@ def newton_step(
             right[node, 0, turned] += pushed
     force = right[:, 0].copy()
     solve_beam_matrix(blocks, coupling, right, stretching)
-    change, answer, work = np.zeros((elements + 1, 2)), np.zeros((elements + 1, 2)), 0.0
+    change = np.zeros((elements + 1, 2))
+    answer = np.zeros((elements + 1, 2))
+    work = 0.0
     # in loops: what numba brings for assigning a part of an array takes seconds to compile
     for node in range(nodes):
         for turned in range(2):
@@ -251,10 +264,13 @@ def creep(
     """
     # stiffnesses (Pa/m) that hold the beam back: where it begins and after a turn, the least, and
     # that of a step which is gone whatever it does: 1e9, 1e6 and 1e25 of the default switch
-    begun, weakest, strongest = 6.6e4 * spring_Pa, 66.0 * spring_Pa, 6.6e20 * spring_Pa
+    begun = 6.6e4 * spring_Pa
+    weakest = 66.0 * spring_Pa
+    strongest = 6.6e20 * spring_Pa
     inertia, least, turns, lowest = begun, 0.0, 0, np.inf
     last = np.zeros(nodal.shape[0])
-    pressure, slope = np.empty_like(rest_m), np.empty_like(rest_m)
+    pressure = np.empty_like(rest_m)
+    slope = np.empty_like(rest_m)
     nothing = np.zeros_like(rest_m)
     _, lands, dimple_nm, stopper_nm, _ = places
     s = (rest_m + deflect(nodal, beam[0])) / NM

@@ -90,7 +90,8 @@ class AdhesiveContact(CoupledContact):
         super().__init__(surface, inputs, settings, numerics)
         self._check_range()
         self.unknown_work = numerics.unknown_work
-        law, gap = self.adhesion, self.heights + self.touching_separation
+        law = self.adhesion
+        gap = self.heights + self.touching_separation
         self.parting = (
             -0.5 * law.cutoff * law.deformed(gap, np.ones_like(gap)) if law else 0.0
         )  # nN nm, roughly
@@ -177,7 +178,8 @@ class AdhesiveContact(CoupledContact):
         Both nN nm. Up to a third of abs(F2 - F1) step / 2 may be the curvature of F (a parabola),
         with either sign; beyond half of it the contact has jumped. Flow loses energy by itself, so
         steps that flow tell nothing."""
-        was, now = self.saved[0], self.now
+        was = self.saved[0]
+        now = self.now
         step = now.separation - was.separation
         if not math.isfinite(step) or (with_flow and now.flowing > 0.0):
             return 0.0, 0.0
@@ -189,14 +191,19 @@ class AdhesiveContact(CoupledContact):
         undone state.
         """
         super()._expect(separation)
-        now, other, share = self.now, self.last, self._share(separation)
+        now = self.now
+        other = self.last
+        share = self._share(separation)
         if self.undone is not None and (towards := self._undone_share(separation)):
-            other, share = self.undone, -towards
-        pull, moved = now.pull - other.pull, now.moved - other.moved
+            other = self.undone
+            share = -towards
+        pull = now.pull - other.pull
+        moved = now.moved - other.moved
         for change, start in ((pull, now.pull), (moved, now.moved)):
             change *= share
             change += start
-        self.last, self.now = now, now._replace(separation=separation, pull=pull, moved=moved)
+        self.last = now
+        self.now = now._replace(separation=separation, pull=pull, moved=moved)
 
     def _share(self, separation: float) -> float:
         return 0.0 if self._undone_share(separation) else min(super()._share(separation), 1.0)
@@ -306,18 +313,19 @@ class AdhesiveContact(CoupledContact):
         law, strongest = self.adhesion, self.strongest
         changes = (self.CHANGE * strongest, self.MIXED_PULL * strongest)
         wanted = safe = self.now.pull
-        moved, before = self.now.moved, self._moved_by_pressure()
-        mixed, reached = np.empty(0, int), np.zeros(self.heights.size, np.float32)
+        moved = self.now.moved
+        before = self._moved_by_pressure()
+        mixed = np.empty(0, int)
+        reached = np.zeros(self.heights.size, np.float32)
         steps: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=self.MIXED)
         lowest, settled, some, many, rounds = math.inf, False, 0, 0, 1
         for _ in range(self.STEPS):
-            pressure, sites = self.pressure.copy(), self.sites
+            pressure = self.pressure.copy()
+            sites = self.sites
             shift = moved.copy()
             shift[sites] -= before
-            self.now, self.highest_shift = (
-                self.now._replace(pull=wanted, shift=shift),
-                -float(shift.min()),
-            )
+            self.now = self.now._replace(pull=wanted, shift=shift)
+            self.highest_shift = -float(shift.min())
             settled = super()._solve()
             if self.sites is not sites:  # more can touch: once more, with what moves them
                 moved = self._bent(np.negative(wanted, dtype=np.float32), self.pressure)
@@ -330,10 +338,14 @@ class AdhesiveContact(CoupledContact):
                 moved += self._bent(np.zeros(moved.size, np.float32), self.pressure - pressure)
             before = self.displacement.copy()
             moved[sites] = shift[sites] + before
-            energy, total, some, many = 0.5 * float(self.pressure @ moved[self.sites]), 0.0, 0, 0
+            energy = 0.5 * float(self.pressure @ moved[self.sites])
+            total = 0.0
+            some = 0
+            many = 0
             if law is not None:
                 walls = (law.least, law.offset, law.rate, law.reach_nm)
-                reached, law_of = np.empty_like(reached), (self.hamaker, walls, self.liquid_law)
+                reached = np.empty_like(reached)
+                law_of = (self.hamaker, walls, self.liquid_law)
                 gained, total, some, many = attract(
                     self.heights, self.separation, moved, wanted, *law_of, changes, reached
                 )
@@ -349,7 +361,8 @@ class AdhesiveContact(CoupledContact):
                 total=total * self.site_area,
             )
             if self.bounded and rounds < self.ROUNDS and self._hardens(rounds):
-                rounds, lowest = rounds + 1, math.inf
+                rounds = rounds + 1
+                lowest = math.inf
             elif not some:
                 break
             if wanted is not safe and energy > lowest and many:

@@ -24,7 +24,8 @@ def label(sites, place, pressure, pixels, number):
         while end > 0:
             end -= 1
             site = sites[waiting[end]]
-            row, col = site // pixels, site % pixels
+            row = site // pixels
+            col = site % pixels
             for rows in range(-1, 2):
                 for cols in range(-1, 2):
                     other = place[
@@ -47,14 +48,17 @@ def displace(table, scale, pixels, sites, pressure, others, displacement):
     count = 0
     for k in range(sites.size):
         if pressure[k] != 0.0:
-            rows[count], cols[count] = sites[k] // pixels, sites[k] % pixels
+            rows[count] = sites[k] // pixels
+            cols[count] = sites[k] % pixels
             value[count] = scale * pressure[k]
             count += 1
     for m in range(others.size):
-        row, col = others[m] // pixels, others[m] % pixels
+        row = others[m] // pixels
+        col = others[m] % pixels
         total = 0.0
         for k in range(count):
-            dr, dc = abs(row - rows[k]), abs(col - cols[k])
+            dr = abs(row - rows[k])
+            dc = abs(col - cols[k])
             total += (
                 value[k] * table[np.uint64(min(dr, pixels - dr)), np.uint64(min(dc, pixels - dc))]
             )

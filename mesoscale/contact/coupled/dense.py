@@ -32,10 +32,12 @@ def wrapped(index, pixels):
 @njit(cache=True)
 def extend(matrix, table, scale, sites, old, new, pixels):
     """Fill the rows and columns of the sites old .. new - 1 into the matrix of influences."""
-    row, col = sites[:new] // pixels, sites[:new] % pixels
+    row = sites[:new] // pixels
+    col = sites[:new] % pixels
     for k in range(old, new):
         for j in range(k + 1):
-            rows, cols = abs(row[k] - row[j]), abs(col[k] - col[j])
+            rows = abs(row[k] - row[j])
+            cols = abs(col[k] - col[j])
             value = scale * table[min(rows, pixels - rows), min(cols, pixels - cols)]
             matrix[k, j] = value
             matrix[j, k] = value
@@ -145,7 +147,8 @@ def neighbours(sites, place, pixels, places, number):
     """
     around = np.full((places.size, 9), -1, np.int32)
     for m in range(places.size):
-        row, col = sites[places[m]] // pixels, sites[places[m]] % pixels
+        row = sites[places[m]] // pixels
+        col = sites[places[m]] % pixels
         for i in range(3):
             start = wrapped(row + i - 1, pixels) * pixels
             for j in range(3):
@@ -226,7 +229,8 @@ def solve(matrix, cell, gap, limit, tolerance, pressure, displacement):
     state = np.full(n, 1, np.int8)
     change = np.zeros(n)
     moves = np.empty(n)
-    block, around = np.empty((0, 0), np.float32), np.empty((0, 9), np.int32)
+    block = np.empty((0, 0), np.float32)
+    around = np.empty((0, 9), np.int32)
     number = np.empty(n, np.int32)
     for step in range(NEWTON_STEPS):
         moved = classify(gap, pressure, displacement, limit, stiffness, n, state) > 0 or step == 0

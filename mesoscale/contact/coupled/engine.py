@@ -42,7 +42,8 @@ class CoupledContact(Contact):
     # Bounds of the sites that a dense matrix holds: over the pixels of a side, and times these.
     # Beyond, transforms of the whole grid cost less: pads of 128^2 sites take 0.8 of the time with
     # 4 or 8 per pixel instead of 16.
-    DENSE_PER_PIXEL, DENSE_TIMES_PIXELS = 8, 2**18
+    DENSE_PER_PIXEL = 8
+    DENSE_TIMES_PIXELS = 2**18
     LONGEST_GUESS = 2.0  # over the last step: so far pressures are taken to go on as in it
     # D0, and largest displacements: sites nearer than both count with their displacement in the
     # attraction, the others without. Errs by at most 1.2 % at a single step (128^2 and 256^2,
@@ -69,7 +70,8 @@ class CoupledContact(Contact):
     ):
         super().__init__(surface, inputs, settings, numerics)
         self.e_star = float(inputs.e_star)
-        self.hamaker, self.settings = float(inputs.hamaker), settings
+        self.hamaker = float(inputs.hamaker)
+        self.settings = settings
         self.bodies = settings.bodies
         self.table = half_space.influence(self.n, self.length, self.bodies)
         self.scale = self.length / self.e_star
@@ -140,7 +142,8 @@ class CoupledContact(Contact):
         elif kept.field is None:
             self.displacement = self.grid.displace(self.sites, self.pressure)
         else:
-            self.grid.field, self.grid.under = kept.field, (kept.sites, kept.pressure)
+            self.grid.field = kept.field
+            self.grid.under = (kept.sites, kept.pressure)
             self.displacement = kept.field[self.sites]
 
     def move_to(self, separation: float, with_flow: bool) -> State:
@@ -173,7 +176,8 @@ class CoupledContact(Contact):
         """Take the pressures for those at a separation if they go on as in the last step: a first
         guess.
         """
-        before, share = self.earlier, self._share(separation)
+        before = self.earlier
+        share = self._share(separation)
         if share:
             change = self.before.pressure.copy()
             change[self.place[before.sites]] -= before.pressure
@@ -318,7 +322,8 @@ class CoupledContact(Contact):
         """
         while True:
             self._know(self._pressed)
-            gap, limit = self._open_gap(), self._bounds()
+            gap = self._open_gap()
+            limit = self._bounds()
             if self.grid is None:
                 cell = (self.sites, self.place, self.n, self.stencil)
                 solution = (coarser * self.TOLERANCE, self.pressure, self.displacement)
@@ -371,17 +376,17 @@ class CoupledContact(Contact):
 
     def _add(self, new: np.ndarray) -> None:
         """Make further sites known; where they are many, for a grid, in the order of the cell."""
-        old, count = self.sites.size, self.sites.size + new.size
+        old = self.sites.size
+        count = self.sites.size + new.size
         if self.grid is None and count > self.dense:
             self.matrix = self.matrix[:0, :0].copy()  # frees its memory
             self.grid = self.whole
             self.grid.split.forget()
             self.displacement = self.grid.displace(self.sites, self.pressure)
-        sites, pressure = np.append(self.sites, new), np.append(self.pressure, np.zeros(new.size))
-        limit, displacement = (
-            np.append(self.limit, np.full(new.size, self._fresh_limit)),
-            np.zeros(count),
-        )
+        sites = np.append(self.sites, new)
+        pressure = np.append(self.pressure, np.zeros(new.size))
+        limit = np.append(self.limit, np.full(new.size, self._fresh_limit))
+        displacement = np.zeros(count)
         displacement[:old] = self.displacement
         if self.grid is not None:
             if self.guessed:

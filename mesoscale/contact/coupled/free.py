@@ -32,7 +32,8 @@ class FreeContact(CoupledContact):
             inputs,
             settings.model_copy(update={"pixels": pixels, "length_nm": pixels * spacing}),
         )
-        self.map_shape, self.rms = surface.shape, float(surface.std())
+        self.map_shape = surface.shape
+        self.rms = float(surface.std())
         self.table = free_influence(pixels)
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
         self.rise = 0.0  # pressures only lower a free surface
@@ -71,6 +72,7 @@ def free_influence(pixels: int) -> np.ndarray:
     Shape (pixels // 2 + 1, pixels // 2 + 1), as `half_space.influence` of a periodic cell.
     """
     edge = np.arange(pixels // 2 + 2) - 0.5
-    x, y = edge[:, None], edge[None, :]
+    x = edge[:, None]
+    y = edge[None, :]
     corners = x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))
     return np.ascontiguousarray(np.diff(np.diff(corners, axis=0), axis=1)) / (math.pi * pixels)

@@ -51,7 +51,8 @@ class Grid:
     """
 
     def __init__(self, pixels: int, length: float, e_star: float, bodies: tuple[Body, ...] = ()):
-        self.shape, self.scale = (pixels, pixels), length / e_star
+        self.shape = (pixels, pixels)
+        self.scale = length / e_star
         number = half_space.wave_numbers(pixels) / half_space.softness(pixels, length, bodies)
         number[0, 0] = np.inf
         self.compliance = (length / (np.pi * e_star)) / number
@@ -67,7 +68,8 @@ class Grid:
         self.room = np.empty(self.compliance.size, np.complex128)
         self.table = half_space.influence(pixels, length, bodies)
         self.drifted = False  # whether displacements at hand are by `split`
-        self.block, self.block_sites = np.empty((0, 0), np.float32), np.empty(0, np.int32)
+        self.block = np.empty((0, 0), np.float32)
+        self.block_sites = np.empty(0, np.int32)
 
     @cached_property
     def split(self) -> Split:
@@ -87,7 +89,8 @@ class Grid:
 
     def _between(self, pressure: Array, rows: Array, wanted: Array) -> Array:
         """The same of some rows of the cell by the pressures of some; the other rows have none."""
-        compliance, of_rows = self._compliance(pressure), pressure.reshape(-1, self.shape[1])
+        compliance = self._compliance(pressure)
+        of_rows = pressure.reshape(-1, self.shape[1])
         return half_space.convolve(of_rows, rows, compliance, self.room, wanted).reshape(-1)
 
     def _compliance(self, pressure: Array) -> Array:
@@ -138,7 +141,9 @@ class Grid:
     def displace(self, sites: Array, pressure: Array) -> Array:
         """The same; that of all sites is kept in `field`, which nothing changes in place."""
         self.field = self.displacement_by(sites, pressure)
-        self.under, self.rounded, self.drifted = (sites, pressure.copy()), 0.0, False
+        self.under = (sites, pressure.copy())
+        self.rounded = 0.0
+        self.drifted = False
         return self.field[sites]
 
     def follow(self, sites: Array, place: Array, pressure: Array, keep: bool) -> Array:
@@ -149,10 +154,8 @@ class Grid:
         change = pressure.copy()
         change[place[before]] -= pressed
         size = np.abs(change)
-        largest, rounded = (
-            float(size.max()),
-            self.rounded + float(size.sum()) / max(float(pressure.sum()), 1e-300),
-        )
+        largest = float(size.max())
+        rounded = self.rounded + float(size.sum()) / max(float(pressure.sum()), 1e-300)
         if largest == 0.0 or (keep and rounded > SMALL):
             return self.displace(sites, pressure)
         self.drifted = False
@@ -161,7 +164,9 @@ class Grid:
             return self.field[sites] + largest * self.displacement_at(sites, unit)
         moved = self.displacement_by(sites, unit)
         moved *= np.float32(largest)
-        self.field, self.under, self.rounded = self.field + moved, (sites, pressure.copy()), rounded
+        self.field = self.field + moved
+        self.under = (sites, pressure.copy())
+        self.rounded = rounded
         return self.field[sites]
 
 
@@ -184,17 +189,19 @@ def solve(
     -------
     Newton steps, and whether they settled. `grid.field` has the displacements of all sites.
     """
-    stiffness, stencil = 1.0 / (grid.scale * grid.table[0, 0]), grid.stencil
-    state, numbers = np.full(gap.size, 1, np.int8), np.arange(gap.size)
-    aim, coarse, error = tolerance, tolerance > COARSE, SPLIT_ERROR if grid.split.open else 0.0
+    stiffness = 1.0 / (grid.scale * grid.table[0, 0])
+    stencil = grid.stencil
+    state = np.full(gap.size, 1, np.int8)
+    numbers = np.arange(gap.size)
+    aim = tolerance
+    coarse = tolerance > COARSE
+    error = SPLIT_ERROR if grid.split.open else 0.0
     direct = min(max(DIRECT, DIRECT_PER_PIXEL * grid.shape[0]), grid.field.size - 1)
-    change, around, exact, corrected, solved = (
-        np.zeros(gap.size),
-        np.empty((0, 9), np.int32),
-        coarse,
-        True,
-        False,
-    )
+    change = np.zeros(gap.size)
+    around = np.empty((0, 9), np.int32)
+    exact = coarse
+    corrected = True
+    solved = False
     if grid.drifted and not coarse:
         displacement[:] = grid.follow(sites, place, pressure, False)
     for step in range(NEWTON_STEPS):
@@ -215,7 +222,9 @@ def solve(
             corrected, solved = True, False
             continue
         places = np.flatnonzero(state == 1)
-        exact, corrected, solved = coarse, False, 0 < places.size <= direct
+        exact = coarse
+        corrected = False
+        solved = 0 < places.size <= direct
         if solved:
             if not np.array_equal(grid.block_sites, sites[places]):
                 grid.block_sites = sites[places]
@@ -269,7 +278,8 @@ def _follow(
             grid.table, grid.scale, grid.shape[0], sites, change, sites[places], displacement
         )
         return
-    largest, small = float(size.max()), float(size.sum()) <= SMALL * float(pressure.sum())
+    largest = float(size.max())
+    small = float(size.sum()) <= SMALL * float(pressure.sum())
     unit = (change / largest).astype(np.float32)
     displacement += largest * (grid.nearly if small else grid.displacement_at)(sites, unit)[places]
 
@@ -295,7 +305,8 @@ def _close_gaps(
     goal = max(goal / largest, share, SINGLE_SHARE)
     r = (first / largest).astype(np.float32)
     x, u, d, z = (np.zeros_like(r) for _ in range(4))
-    stencil, last = (stencil / grid.scale).astype(np.float32), 1.0
+    stencil = (stencil / grid.scale).astype(np.float32)
+    last = 1.0
     for _ in range(FACE_STEPS):
         dense.stiffen(around, stencil, r, z)
         rz = _turn(z, r, free, last, d)
@@ -361,7 +372,8 @@ def project(
         if dense.residual(gap, pressure, displacement, limit, stiffness, gap.size) <= tolerance:
             return pressure, displacement, step, True
         gradient = gap + displacement
-        low, high = pressure <= 0.0, pressure >= limit
+        low = pressure <= 0.0
+        high = pressure >= limit
         free = np.where(low | high, 0.0, gradient)
         chopped = np.where(
             low, np.minimum(gradient, 0.0), np.where(high, np.maximum(gradient, 0.0), 0.0)

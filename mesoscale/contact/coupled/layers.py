@@ -55,10 +55,8 @@ def compliance(body: Body, q_per_nm: Array) -> Array:
     """
     *layers, _ = body
     unknown = 4 * len(layers) + 2
-    matrix, load = (
-        np.zeros((q_per_nm.size, unknown, unknown)),
-        np.zeros((q_per_nm.size, unknown, 1)),
-    )
+    matrix = np.zeros((q_per_nm.size, unknown, unknown))
+    load = np.zeros((q_per_nm.size, unknown, 1))
     load[:, 0] = 1.0  # at the surface f = 1 and f' = 0
     surface = np.empty((q_per_nm.size, 0))
     for i, material in enumerate(body):
@@ -68,7 +66,8 @@ def compliance(body: Body, q_per_nm: Array) -> Array:
             :, :, : waves.stop - waves.start
         ]
         if i == 0:
-            matrix[:, :2, waves], surface = top[:, :2], top[:, 3]
+            matrix[:, :2, waves] = top[:, :2]
+            surface = top[:, 3]
         else:
             matrix[:, 4 * i - 2 : 4 * i + 2, waves] = -top
         if thickness is not None:

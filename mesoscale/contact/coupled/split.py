@@ -67,14 +67,16 @@ class Split:
 
     def forget(self) -> None:
         """Know no site."""
-        self.open, self.first = True, np.zeros(1, np.int64)
+        self.open = True
+        self.first = np.zeros(1, np.int64)
         self.rows, self.cols = np.empty((2, 0), np.int32)
 
     def know(self, sites: Array, place: Array) -> bool:
         """Take in further sites at the end of the known ones; whether there are few enough
         pairs.
         """
-        old, new = self.rows.size, sites.size - self.rows.size
+        old = self.rows.size
+        new = sites.size - self.rows.size
         if self.open and new:
             self.rows, self.cols = (
                 index.astype(np.int32) for index in np.divmod(sites, self.pixels)
@@ -99,10 +101,8 @@ class Split:
 
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) of the known sites by their pressures (GPa), in single precision."""
-        coarse, moved = (
-            np.zeros((self.coarse_rows.size, self.coarse), np.float32),
-            np.empty_like(pressure),
-        )
+        coarse = np.zeros((self.coarse_rows.size, self.coarse), np.float32)
+        moved = np.empty_like(pressure)
         around = (self.rows, self.cols, self.row_nodes, self.nodes, self.weights)
         spread(around, pressure, coarse)
         coarse = half_space.convolve(
@@ -133,7 +133,8 @@ def pair(rows, cols, place, pixels, table, old, first, others, values):
                 if 0 <= other < k and i * i + j * j <= reach * reach:
                     if end == others.size:
                         return False
-                    others[end], values[end] = other, table[abs(i), abs(j)]
+                    others[end] = other
+                    values[end] = table[abs(i), abs(j)]
                     end += 1
         first[k + 1] = end
     return True

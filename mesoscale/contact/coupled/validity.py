@@ -66,8 +66,11 @@ def adhesion_numbers(
     w, which is A_H / (12 pi D0^2) offset and A_H / (4 pi D0^2) clamped, and the range w / s; the
     radius of a summit is 2 / h''. Liquid has the work p_c d_c and the range d_c: Tabor's parameter
     is that of the stronger, rims attract with both."""
-    law, cutoff, menisci = settings.attraction, settings.gap_cutoff_nm, menisci_of(settings.air)
-    work, reach = hamaker / (WORK_FACTOR[law] * math.pi * cutoff**2), RANGE_IN_D0[law] * cutoff
+    law = settings.attraction
+    cutoff = settings.gap_cutoff_nm
+    menisci = menisci_of(settings.air)
+    work = hamaker / (WORK_FACTOR[law] * math.pi * cutoff**2)
+    reach = RANGE_IN_D0[law] * cutoff
     parts = [(work, reach)]
     if menisci:
         parts = [
