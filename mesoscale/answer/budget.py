@@ -61,7 +61,7 @@ class Effect(Settings):
             self.hardness,
             self.changes or None,
         ]
-        if sum(way is not None for way in ways) != (self.how != "unknown"):
+        if sum(statement is not None for statement in ways) != (self.how != "unknown"):
             words = "volts, share, squared_V2, charge_e_cm2, hardness and changes"
             raise ValueError(f"state one of {words}; none of what is unknown")
         return self
@@ -152,7 +152,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
     """What the answer varies beside properties of the device, and what its own points tell of its
     errors.
     """
-    here = {"how": "computed", "source": HERE}
+    of_points = {"how": "computed", "source": HERE}
     by_law = [row["release_V"] for row in switch["by_attraction"] if row["release_V"] is not None]
     if by_law:
         yield {
@@ -164,7 +164,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
             ),
             "held": False,
             "settle": "pull-off of the contact (target calibration)",
-            **here,
+            **of_points,
         }
     if answer := switch["answer"]:
         wide = 2.0 * 1.645 * answer["release_V"]["std"]
@@ -179,7 +179,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
                 "about": "5 to 95 %" if seen else "5 to 95 %; or less",
                 "held": True,
                 "settle": SETTLE[row["varies"]],
-                **here,
+                **of_points,
             }
         yield {
             "effect": "number of cells",
@@ -187,7 +187,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
             "about": "5 to 95 %, of a point",
             "held": True,
             "settle": "more cells a point (pad.point_cells)",
-            **here,
+            **of_points,
         }
         yield {
             "effect": "number of switches",
@@ -195,7 +195,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
             "about": "standard error of the median",
             "held": False,
             "settle": "more switches (pad.points)",
-            **here,
+            **of_points,
         }
 
 

@@ -109,10 +109,13 @@ def _shares(model: PadModel, humidities: Array) -> list[dict[str, float]]:
     nearest = np.abs(at[:, None] - humidities).argmin(axis=1) if at.size else at.astype(int)
     shares = []
     for number in range(len(humidities)):
-        here = stuck[nearest == number]
-        said = probability(int(here.sum()), here.size) if here.size else {}
+        sticking_here = stuck[nearest == number]
+        said = (
+            probability(int(sticking_here.sum()), sticking_here.size) if sticking_here.size else {}
+        )
         names = {"value": "stuck", "low": "stuck_low", "high": "stuck_high"}
         shares.append(
-            {name: said[key] for key, name in names.items() if said} | {"points": here.size}
+            {name: said[key] for key, name in names.items() if said}
+            | {"points": sticking_here.size}
         )
     return shares

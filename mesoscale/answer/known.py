@@ -99,9 +99,9 @@ def _fit(units: Array, release_V: Array, power: int, degree: int) -> Additive:
     if free.min() > 1e-9:  # else a switch is needed for the fit: without it, it is not predicted
         left = (fit.values - columns @ fit.coefficients) / free
         explained = 1.0 - float(np.mean(left**2)) / (fit.values.var() or 1.0)
-    others = (0, terms - columns.shape[1])
-    coefficients = np.pad(fit.coefficients, others)
-    covariance = np.pad(fit.covariance, others)
+    padding = (0, terms - columns.shape[1])
+    coefficients = np.pad(fit.coefficients, padding)
+    covariance = np.pad(fit.covariance, padding)
     return Additive(power, degree, coefficients, covariance, fit.scatter, explained, fit.values)
 
 
@@ -150,29 +150,33 @@ def known(
     coefficients = np.vstack([fit.coefficients, chosen])
     unknown = coefficients[:, of_common] @ columns[:, of_common].T
     between = coefficients[:, ~of_common] @ columns[:, ~of_common].T
-    rest = np.sqrt(max(fit.missed**2 - cells**2, 0.0))
+    missed_beyond = np.sqrt(max(fit.missed**2 - cells**2, 0.0))
     noise = rng.normal(size=draws)
     devices = between.std(axis=1)[:, None]
     with np.errstate(
         divide="ignore", invalid="ignore"
     ):  # where no device differs, all stick or none
         by_rest = [
-            ndtr(np.nan_to_num(-unknown / np.hypot(devices, rest), nan=-np.inf)),
-            ndtr(np.nan_to_num(-(unknown + rest * noise) / devices, nan=-np.inf)),
+            ndtr(np.nan_to_num(-unknown / np.hypot(devices, missed_beyond), nan=-np.inf)),
+            ndtr(np.nan_to_num(-(unknown + missed_beyond * noise) / devices, nan=-np.inf)),
         ]
-    least = 1.0 / fit.values.size  # so many switches know no tail
-    ends = [np.quantile(np.maximum(rates, least), ENDS, axis=1) for rates in by_rest]
+    tellable = 1.0 / fit.values.size  # so many switches know no tail
+    quantiles = [np.quantile(np.maximum(rates, tellable), ENDS, axis=1) for rates in by_rest]
     low, high = (
-        np.quantile(np.hstack([part[:, 1:] for part in ends]), q, axis=1) for q in (0.05, 0.95)
+        np.quantile(np.hstack([part[:, 1:] for part in quantiles]), q, axis=1) for q in (0.05, 0.95)
     )
     middle = float(np.median(unknown[0]))
     slope = fit.power * max(float(fit.volts(np.array(middle))), 1e-9) ** (fit.power - 1)
     return {
         "unknown_V": _quantiles(fit.volts(unknown)),
         "between_V": _quantiles(fit.volts(np.median(unknown, axis=1)[:, None] + between)),
-        "rest_V": float(rest / slope),
+        "rest_V": float(missed_beyond / slope),
         "stuck_share": {
-            f"{q:g}": {"value": float(ends[0][k, 0]), "low": float(low[k]), "high": float(high[k])}
+            f"{q:g}": {
+                "value": float(quantiles[0][k, 0]),
+                "low": float(low[k]),
+                "high": float(high[k]),
+            }
             for k, q in enumerate(ENDS)
         },
     }
@@ -180,8 +184,8 @@ def known(
 
 def _quantiles(volts: Array) -> dict[str, dict[str, float]]:
     """Of the first row, with the scatter of the others as errors."""
-    ends = np.quantile(volts, ENDS, axis=1)
+    quantiles = np.quantile(volts, ENDS, axis=1)
     return {
         f"{q:g}": {"value": float(row[0]), "error": float(row[1:].std())}
-        for q, row in zip(ENDS, ends, strict=True)
+        for q, row in zip(ENDS, quantiles, strict=True)
     }

@@ -32,17 +32,17 @@ def release_by_key(device: DeviceSettings, pad: PadCurves) -> list[dict[str, Any
     curves are continued; `own` is the device itself. Without an answer of its own there is nothing
     to compare with, and no row."""
     try:
-        here = _voltages(device, pad)
+        voltages_here = _voltages(device, pad)
     except InputError:
         return []
     rows = []
     for key in device.designed:
-        value = value_of(device, key, here["pull_in_V"])
+        value = value_of(device, key, voltages_here["pull_in_V"])
         values = _other_values(key, value)
         below = [other for other in values if other < value]
         above = [other for other in values if other > value]
         rows += [*_outwards(device, pad, key, below[::-1])][::-1]
-        rows.append({"key": key, "value": value, **here, "own": True})
+        rows.append({"key": key, "value": value, **voltages_here, "own": True})
         rows += _outwards(device, pad, key, above)
     return rows
 

@@ -171,9 +171,9 @@ def _probability(stuck: int, solved: int, refused: int) -> dict[str, float]:
     and once as stuck.
     """
     total = solved + refused
-    least = probability(stuck, total)
-    most = probability(stuck + refused, total)
-    return {"value": stuck / solved, "low": least["low"], "high": most["high"]}
+    if_released = probability(stuck, total)
+    if_stuck = probability(stuck + refused, total)
+    return {"value": stuck / solved, "low": if_released["low"], "high": if_stuck["high"]}
 
 
 def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:

@@ -112,11 +112,11 @@ def _paired_stiffness(beam: Beam) -> tuple[Array, Array]:
     free = assembled(bends)[2:-2, 2:-2]
     free = free + beam.tension_N * drawn
     follow = -np.linalg.solve(free[1::2, 1::2], free[1::2, ::2])
-    whole = np.empty((len(free), len(follow)))
-    whole[::2] = np.eye(len(follow))
-    whole[1::2] = follow
+    joined = np.empty((len(free), len(follow)))
+    joined[::2] = np.eye(len(follow))
+    joined[1::2] = follow
     half = len(follow) // 2
-    paired = whole @ np.vstack([np.eye(half), np.eye(half)[::-1]])
+    paired = joined @ np.vstack([np.eye(half), np.eye(half)[::-1]])
     stiffness, folded = (paired.T @ of @ paired for of in (free, drawn))
     return 0.5 * (stiffness + stiffness.T), 0.5 * (folded + folded.T)
 

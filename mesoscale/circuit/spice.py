@@ -122,11 +122,13 @@ def spice_pad(pad: PadCurves, cells: int) -> str:
     weights = []
     places = np.append(depths, depths[-1] + CIRCUIT.fade_nm)
     for k in range(depths.size):
-        at = places[max(k - 1, 0) : k + 2]
-        weights.append(_pwl(deepest, Piece(at, (at == depths[k]).astype(float))))
+        depths_here = places[max(k - 1, 0) : k + 2]
+        weights.append(_pwl(deepest, Piece(depths_here, (depths_here == depths[k]).astype(float))))
     sums = []
-    for way, closed in enumerate((_pwl(deepest, push, CIRCUIT.reach_nm), _pwl(deepest, pull))):
-        rises = (_pwl("V(risen)", pieces[way]) for pieces in tables.opening)
+    for force_kind, closed in enumerate(
+        (_pwl(deepest, push, CIRCUIT.reach_nm), _pwl(deepest, pull))
+    ):
+        rises = (_pwl("V(risen)", pieces[force_kind]) for pieces in tables.opening)
         terms = [
             f"({weight} > 0 ? {weight}*{rise} : 0)"
             for weight, rise in zip(weights, rises, strict=True)

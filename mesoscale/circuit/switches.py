@@ -150,9 +150,9 @@ def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, 
         {
             "voltage_V": float(voltage),
             **{
-                f"{way}_{name}_fF": float(of[place, k])
+                f"{way}_{name}_fF": float(curve[place, k])
                 for place, way in enumerate(("up", "down"))
-                for name, of in (("central", curves[0]), ("q05", low), ("q95", high))
+                for name, curve in (("central", curves[0]), ("q05", low), ("q95", high))
             },
         }
         for k, voltage in enumerate(volts)

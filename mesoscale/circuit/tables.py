@@ -84,12 +84,15 @@ def tables_of(pad: PadCurves, cubic: bool, looser: float = 1.0) -> Tables:
             + CIRCUIT.of_net * abs(net)
             + floor
         )
-        at, made = _nodes(x, values, lambda made: missed(made) / (looser * allowed), nodes, cubic)
+        node_places, made = _nodes(
+            x, values, lambda made: missed(made) / (looser * allowed), nodes, cubic
+        )
         near = abs(net) < CIRCUIT.near_wells * well
         of_well = missed(made) / well
         of_net = missed(made) / np.maximum(abs(net), faint)
         first, second = (
-            Piece(x[at], row[at] - shift) for row, shift in zip(values, start, strict=True)
+            Piece(x[node_places], row[node_places] - shift)
+            for row, shift in zip(values, start, strict=True)
         )
         return (
             (first, second),
@@ -123,16 +126,16 @@ def _nodes(
     """
     chosen = {0, x.size // 2, x.size - 1, *nodes}
     while True:
-        at = sorted(chosen)
+        node_places = sorted(chosen)
         made = (
-            PchipInterpolator(x[at], values[:, at], axis=1)(x)
+            PchipInterpolator(x[node_places], values[:, node_places], axis=1)(x)
             if cubic
-            else rows_at(x, x[at], values[:, at])
+            else rows_at(x, x[node_places], values[:, node_places])
         )
         missed = error(made)
-        missed[at] = 0.0
+        missed[node_places] = 0.0
         if missed.max() <= 1.0:
-            return at, made
+            return node_places, made
         chosen.add(int(missed.argmax()))
 
 
@@ -157,9 +160,11 @@ def curves_of_tables(tables: Tables, pad: PadCurves, cubic: bool) -> PadCurves:
     closing = pressures(curves(tables.closing, s), s)
     opening = np.full_like(pad.opening, np.nan)
     for number, (depth, pieces) in enumerate(zip(tables.depth_nm, tables.opening, strict=True)):
-        way = np.isfinite(pad.opening[number, 0])
+        solved_places = np.isfinite(pad.opening[number, 0])
         start = curves(tables.closing, np.array([depth]))
-        opening[number][:, way] = pressures(start + curves(pieces, s[way] - depth), s[way])
+        opening[number][:, solved_places] = pressures(
+            start + curves(pieces, s[solved_places] - depth), s[solved_places]
+        )
     return PadCurves(s, closing, pad.depth_nm, opening, pad.flats)
 
 

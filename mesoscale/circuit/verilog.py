@@ -105,11 +105,15 @@ def _function(name: str, piece: Piece) -> str:
     after = [piece.x[-1], piece.y[-1], 0.0, 0.0, 0.0]
     rows = [before, *np.vstack([piece.x[:-1], cubic.c[::-1]]).T, after]
     chosen = [
-        " ".join(f"{of} = {value:.9g};" for of, value in zip(("x0", *"abcd"), row, strict=True))
+        " ".join(
+            f"{letter} = {value:.9g};" for letter, value in zip(("x0", *"abcd"), row, strict=True)
+        )
         for row in rows
     ]
-    ends = [f"if (x < {x:.9g}) begin {row} end" for x, row in zip(piece.x, chosen, strict=False)]
-    body = "\n            else ".join([*ends, f"begin {chosen[-1]} end"])
+    branches = [
+        f"if (x < {x:.9g}) begin {row} end" for x, row in zip(piece.x, chosen, strict=False)
+    ]
+    body = "\n            else ".join([*branches, f"begin {chosen[-1]} end"])
     return f"""
     analog function real {name};
         input x;

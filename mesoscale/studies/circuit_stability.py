@@ -173,9 +173,9 @@ def _tables(pad: PadCurves) -> tuple[bool, str]:
         if not np.isfinite(made.opening[known]).all() or not np.isfinite(made.closing).all():
             broken.append("a number missing")
         for number, opened in enumerate(pad.opening):
-            way = np.isfinite(opened[0])
-            net = opened[:, way].sum(axis=0)
-            missed = np.abs(made.opening[number][:, way].sum(axis=0) - net)
+            solved_places = np.isfinite(opened[0])
+            net = opened[:, solved_places].sum(axis=0)
+            missed = np.abs(made.opening[number][:, solved_places].sum(axis=0) - net)
             well = max(-float(net.min()), 0.0)
             # closing at the depth and the rise above it may each err by as much
             allowed = 2.0 * (CIRCUIT.of_well * well + CIRCUIT.of_net * np.abs(net)) + 1e-9

@@ -181,8 +181,12 @@ def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case
             too_much=True,
         ),
     ]
-    others = [model for model in ("elastic", "nonlinear", "plastic") if model != settings.model]
-    return cases + [Case(model, "another model", inputs, {"model": model}) for model in others]
+    other_models = [
+        model for model in ("elastic", "nonlinear", "plastic") if model != settings.model
+    ]
+    return cases + [
+        Case(model, "another model", inputs, {"model": model}) for model in other_models
+    ]
 
 
 def _loaded(force_nN: float) -> dict[str, Any]:

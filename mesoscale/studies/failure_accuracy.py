@@ -114,9 +114,9 @@ def _points(response: ReserveResponse, times: float) -> Knob:
     # of fewer than some 400 points OpenTURNS may find a variance below zero, and stops
     counts = (SAMPLES // 4, SAMPLES // 2, SAMPLES)
     choices = [Choice(count, partial(probabilities, count)) for count in counts]
-    most = 4 * SAMPLES
-    best = partial(probabilities, most, 1)
-    return Knob(SAMPLED, [RATE], choices, SAMPLES, f"{most} points", best, f"{SEEDS} seeds")
+    finest = 4 * SAMPLES
+    best = partial(probabilities, finest, 1)
+    return Knob(SAMPLED, [RATE], choices, SAMPLES, f"{finest} points", best, f"{SEEDS} seeds")
 
 
 def _learned(response: ReserveResponse, sampled: Sampled, times: float, one: Cost) -> Knob:

@@ -199,20 +199,20 @@ def limits() -> Iterator[HardCase]:
         "a curve of zeros": (volts, np.zeros(3), 1e-8, 90.0),
         "a dip by chance": (volts, np.array([1e-5, 1e-3, 1e-6]), 1e-4, 75.0),
     }
-    for name, (values, probability, allowed, wanted) in curves.items():
-        judge = partial(_limit, values, probability, allowed, wanted)
+    for name, (values, probability, allowed, exact_value) in curves.items():
+        judge = partial(_limit, values, probability, allowed, exact_value)
         yield HardCase(name, f"{allowed:g} allowed", "the voltage that is known", judge)
 
 
 def _limit(
-    values: Array, probability: Array, allowed: float, wanted: float | None
+    values: Array, probability: Array, allowed: float, exact_value: float | None
 ) -> tuple[bool, str]:
     furthest = furthest_allowed(values, probability, allowed)
     falling = furthest_allowed(100.0 - values, probability, allowed)
-    if wanted is None or furthest is None or falling is None:
-        return furthest is falling is wanted, f"{furthest}"
-    return abs(furthest - wanted) <= 1e-6 and abs(
-        falling - (100.0 - wanted)
+    if exact_value is None or furthest is None or falling is None:
+        return furthest is falling is exact_value, f"{furthest}"
+    return abs(furthest - exact_value) <= 1e-6 and abs(
+        falling - (100.0 - exact_value)
     ) <= 1e-6, f"{furthest:.6g} V"
 
 

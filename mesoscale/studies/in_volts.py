@@ -28,8 +28,8 @@ def volts_per_percent(
     for name in names:
         if name not in point.values:
             continue
-        ends = [releases(_changed(point, name, sign * CHANGE_PERCENT)) for sign in (-1, 1)]
-        differences = (ends[1] - ends[0]) / (2 * CHANGE_PERCENT)
+        both_sides = [releases(_changed(point, name, sign * CHANGE_PERCENT)) for sign in (-1, 1)]
+        differences = (both_sides[1] - both_sides[0]) / (2 * CHANGE_PERCENT)
         if np.isfinite(differences).any():
             volts[name] = float(np.nanmean(differences))
     return volts

@@ -166,8 +166,8 @@ def _steps(pads: Sequence[SamplePad], rms_nm: float) -> Knob:
 def thinned(grid: PadGrid, merged: int) -> PadGrid:
     """A grid with so many steps as one; its ends and depths stay."""
     last = grid.separation_nm.size - 1
-    kept = np.unique(np.concatenate([np.arange(0, last, merged), [last], grid.depths]))
-    return PadGrid(grid.separation_nm[kept], np.searchsorted(kept, grid.depths))
+    chosen_places = np.unique(np.concatenate([np.arange(0, last, merged), [last], grid.depths]))
+    return PadGrid(grid.separation_nm[chosen_places], np.searchsorted(chosen_places, grid.depths))
 
 
 def halved(grid: PadGrid) -> PadGrid:

@@ -197,14 +197,14 @@ def _curves(
 
 def _flats(inputs: ContactInputs, contact: ContactSettings, pad: PadCurves) -> list[str]:
     """Whether a pad goes over into two flats where its curves end."""
-    ends = float(pad.separation_nm[-1])
-    inside, beyond = pad.closing_GPa(np.array([ends, ends * (1.0 + 1e-9)])).tolist()
+    last_nm = float(pad.separation_nm[-1])
+    inside, outside = pad.closing_GPa(np.array([last_nm, last_nm * (1.0 + 1e-9)])).tolist()
     broken = []
     # 1 + 6 (rms / separation)^2 is 4e-4
-    if not abs(inside - beyond) <= 1e-3 * abs(beyond):
+    if not abs(inside - outside) <= 1e-3 * abs(outside):
         broken.append("the curves do not end as two flats")
-    flats = -inputs.hamaker / (6.0 * np.pi * (ends + pad.flats.offset_nm) ** 3)
-    if not abs(beyond - flats) <= 1e-6 * abs(flats):
+    flats = -inputs.hamaker / (6.0 * np.pi * (last_nm + pad.flats.offset_nm) ** 3)
+    if not abs(outside - flats) <= 1e-6 * abs(flats):
         broken.append("beyond the curves it is not two flats")
     return broken
 
@@ -236,9 +236,9 @@ def violations(pad: PadCells) -> list[str]:
         broken.append(f"{(~pad.settled).sum()} cells did not settle")
     largest = pad.closing[:, 0].max(axis=1)
     for number, depth in enumerate(pad.grid.depths):
-        way = slice(0, depth + 1)
-        closing = pad.closing[:, :, way]
-        opening = pad.opening[:, number, :, way]
+        opened = slice(0, depth + 1)
+        closing = pad.closing[:, :, opened]
+        opening = pad.opening[:, number, :, opened]
         where = f"from {pad.grid.separation_nm[depth]:.4g} nm"
         if not np.isfinite(opening).all():
             broken.append(f"opening {where} not finite")
@@ -267,14 +267,14 @@ def gains_energy(
     depths = finer * grid.depths
     closed = close_by_separation(inputs, contact, heights, fine + float(heights.mean()), depths)
     for depth, opening in zip(depths.tolist(), closed.opening, strict=True):
-        way = slice(0, depth + 1)
-        gain = work_J_m2(fine[way], opening[:, way], contact) - work_J_m2(
-            fine[way], closed.closing[:, way], contact
+        opened = slice(0, depth + 1)
+        gain = work_J_m2(fine[opened], opening[:, opened], contact) - work_J_m2(
+            fine[opened], closed.closing[:, opened], contact
         )
         changes = [
-            np.abs(np.diff(curve[:, way].sum(axis=0))) for curve in (opening, closed.closing)
+            np.abs(np.diff(curve[:, opened].sum(axis=0))) for curve in (opening, closed.closing)
         ]
-        unknown = 0.5 * float(-np.diff(fine[way]) @ np.add(*changes)) / contact.length_nm**2
+        unknown = 0.5 * float(-np.diff(fine[opened]) @ np.add(*changes)) / contact.length_nm**2
         if gain > unknown:
             return True
     return False

@@ -149,12 +149,12 @@ def _errors(cleaned: Cleaned, truth: ScanSet, used: tuple[int, int], analysis: A
     costs = []
     for surface in range(SURFACES):
         every = cleaned(truth, surface)
-        parts = [*every[:small], *every[truth.small_scans : truth.small_scans + large]]
-        estimated, cost = timed(partial(analysis, [scan for scan, _ in parts]))
+        sample = [*every[:small], *every[truth.small_scans : truth.small_scans + large]]
+        estimated, cost = timed(partial(analysis, [scan for scan, _ in sample]))
         deviations.append(
             [100 * _relative(estimated.get(name), value) for name, value in true_values.items()]
         )
-        costs += [cost, *(of_cleaning for _, of_cleaning in parts)]
+        costs += [cost, *(of_cleaning for _, of_cleaning in sample)]
     return Errors(*root_mean_square(deviations), reduce(Cost.__add__, costs).times(1 / SURFACES))
 
 

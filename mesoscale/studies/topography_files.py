@@ -65,9 +65,9 @@ def _uneven(folder: Path) -> list[Path]:
     for seed in range(6):
         line = _line(seed)
         rng = np.random.default_rng(seed)
-        kept = np.sort(rng.choice(POINTS, POINTS // 2, replace=False))
+        half = np.sort(rng.choice(POINTS, POINTS // 2, replace=False))
         paths.append(folder / f"line_{seed}.csv")
-        np.savetxt(paths[-1], line[kept], delimiter=",", header="x (nm), z (nm)", comments="")
+        np.savetxt(paths[-1], line[half], delimiter=",", header="x (nm), z (nm)", comments="")
     return paths
 
 

@@ -113,11 +113,11 @@ def _saturated(heights: np.ndarray) -> np.ndarray:
 def _wide(scan: Scan) -> Scan:
     """Only the middle three quarters of the lines: a scan that is not square."""
     ny = scan.heights_nm.shape[1]
-    kept = 3 * ny // 4
+    rows_measured = 3 * ny // 4
     return replace(
         scan,
-        heights_nm=scan.heights_nm[:, :kept],
-        lengths_nm=(scan.lengths_nm[0], scan.lengths_nm[1] * kept / ny),
+        heights_nm=scan.heights_nm[:, :rows_measured],
+        lengths_nm=(scan.lengths_nm[0], scan.lengths_nm[1] * rows_measured / ny),
     )
 
 

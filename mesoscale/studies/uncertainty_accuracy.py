@@ -85,9 +85,9 @@ def accuracy_points(
 
 def cost_of_cycle(table: InputTable, contact: ContactSettings) -> Cost:
     """Mean cost of a cycle with its fit at random inputs."""
-    first, *others = random_runs(table, 0, TIMED_CYCLES + 1)
+    first, *timed_runs = random_runs(table, 0, TIMED_CYCLES + 1)
     list(compute_rows([first], contact))  # loads the engine
-    _, cost = timed(lambda: list(compute_rows(others, contact)))
+    _, cost = timed(lambda: list(compute_rows(timed_runs, contact)))
     return cost.times(1 / TIMED_CYCLES)
 
 

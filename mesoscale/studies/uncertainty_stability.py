@@ -57,8 +57,8 @@ class Answer:
 
 def _table(*distributions: Distribution, correlation: Array | None = None) -> InputTable:
     rows = tuple(
-        UncertainInput(f"x{k}", "1", given, "literature", "")
-        for k, given in enumerate(distributions)
+        UncertainInput(f"x{k}", "1", distribution, "literature", "")
+        for k, distribution in enumerate(distributions)
     )
     return InputTable(rows, np.eye(len(rows)) if correlation is None else correlation)
 
@@ -81,18 +81,20 @@ def _answer(
     rng = np.random.default_rng(5)
     x_nodes = to_values(nodes(len(table.rows)), table.ranges())
     of_every_seed = np.tile(function(x_nodes), (seeds, 1))
-    given = NodeOutputs(
+    distribution = NodeOutputs(
         list(range(seeds)), np.repeat(of_every_seed[..., None], len(FITTED), axis=2)
     )
-    given.values[rng.random(given.values.shape[:2]) < missing] = np.nan
+    distribution.values[rng.random(distribution.values.shape[:2]) < missing] = np.nan
     x = table.sample(runs, 11)
     y = np.repeat(function(x)[:, None], len(FITTED), axis=1)
     y[rng.random(runs) < missing] = np.nan
-    result = propagate(given, table, settings, (x, y))
+    result = propagate(distribution, table, settings, (x, y))
     with np.errstate(all="ignore"):
-        ranked = sensitivity_rows(given, table, settings, np.zeros(len(OUTPUTS)), {}, {}, (x, y))
+        ranked = sensitivity_rows(
+            distribution, table, settings, np.zeros(len(OUTPUTS)), {}, {}, (x, y)
+        )
     return Answer(
-        output_rows(given, result, (x, y), {}, {})[place],
+        output_rows(distribution, result, (x, y), {}, {})[place],
         ranked[place * len(table.rows) : (place + 1) * len(table.rows)],
         validation_rows((x, y), table, result, settings, np.empty((0, len(FITTED))), 0.007)[place],
         sum(response is not None for response in result.responses),
@@ -104,8 +106,8 @@ def _unless(**statements: bool) -> list[str]:
     return [name.replace("_", " ") for name, holds in statements.items() if not holds]
 
 
-def _close(value: float, wanted: float, relative: float = 0.05) -> bool:
-    return bool(abs(value - wanted) <= relative * abs(wanted) + 1e-9)
+def _close(value: float, exact_value: float, relative: float = 0.05) -> bool:
+    return bool(abs(value - exact_value) <= relative * abs(exact_value) + 1e-9)
 
 
 def _zero_width() -> list[str]:

@@ -237,7 +237,7 @@ def _beam(settings: DeviceSettings, sizes: Array, within: Array, weights: Array)
     )
     section = width * thickness
     cantilever = settings.ends == "cantilever"
-    ends = np.concatenate([[0.0], np.cumsum(sizes)])
+    node_shares = np.concatenate([[0.0], np.cumsum(sizes)])
     flat = Beam(
         width,
         1e9 * settings.bending_GPa * section * thickness**2 / 12.0,
@@ -260,8 +260,8 @@ def _beam(settings: DeviceSettings, sizes: Array, within: Array, weights: Array)
         NM
         * np.stack(
             [
-                settings.shape_at_rest_nm(ends / length),
-                settings.slope_at_rest_nm(ends / length) / length,
+                settings.shape_at_rest_nm(node_shares / length),
+                settings.slope_at_rest_nm(node_shares / length) / length,
             ],
             1,
         ),
@@ -321,14 +321,14 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
     bends, pulls = (assembled(parts)[freedoms, freedoms] for parts in (bending, pulled))
     z0 = rest.ravel()[freedoms]
     share = np.concatenate([[0.0], np.cumsum(stated.sizes_m)]) / stated.length_m
-    beyond = -(stated.tension_N + heat) - euler_MPa(settings) * newton_MPa
+    excess_N = -(stated.tension_N + heat) - euler_MPa(settings) * newton_MPa
     u = np.zeros(unknowns)
-    if beyond > 0.0:  # on the side of the height that a flat beam would have
+    if excess_N > 0.0:  # on the side of the height that a flat beam would have
         height = (
             2.0
             / np.pi
             * stated.length_m
-            * np.sqrt(beyond / (stated.stretching_N_m * stated.length_m))
+            * np.sqrt(excess_N / (stated.stretching_N_m * stated.length_m))
         )
         mode = np.stack(
             [
@@ -379,10 +379,10 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
 
 def assembled(parts: Array) -> Array:
     """The matrix of all nodes from those of the elements, shape (2 nodes, 2 nodes)."""
-    whole = np.zeros((2 * len(parts) + 2, 2 * len(parts) + 2))
+    matrix = np.zeros((2 * len(parts) + 2, 2 * len(parts) + 2))
     for place, part in enumerate(parts):
-        whole[2 * place : 2 * place + 4, 2 * place : 2 * place + 4] += part
-    return whole
+        matrix[2 * place : 2 * place + 4, 2 * place : 2 * place + 4] += part
+    return matrix
 
 
 def _shapes(size: float, x: Array) -> Array:

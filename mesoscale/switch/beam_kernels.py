@@ -112,14 +112,14 @@ def solve_beam_matrix(blocks, coupling, right, stretching):
     y, z = right[-1, sides]
     m = stretching * y
     n = stretching * z
-    whole = determinant(a, b, y, b, d, z, m, n, corner)
+    full_determinant = determinant(a, b, y, b, d, z, m, n, corner)
     for side in range(sides):
         f = right[-1, side, 0]
         g = right[-1, side, 1]
         h = below[side]
-        right[-1, side, 0] = determinant(f, b, y, g, d, z, h, n, corner) / whole
-        right[-1, side, 1] = determinant(a, f, y, b, g, z, m, h, corner) / whole
-        force = determinant(a, b, f, b, d, g, m, n, h) / whole
+        right[-1, side, 0] = determinant(f, b, y, g, d, z, h, n, corner) / full_determinant
+        right[-1, side, 1] = determinant(a, f, y, b, g, z, m, h, corner) / full_determinant
+        force = determinant(a, b, f, b, d, g, m, n, h) / full_determinant
         for k in range(nodes - 2, -1, -1):
             f, g = right[k + 1, side]
             right[k, side, 0] -= (
@@ -281,13 +281,13 @@ def creep(
             nodal, pressure * GPA, slope * (GPA / NM), nothing, inertia, *beam
         )
         moved = deflect(change, beam[0]) / NM
-        excess, most = 0.0, 0.0
+        excess, largest_move = 0.0, 0.0
         for e in range(s.shape[0]):
             for g in range(s.shape[1]):
-                way = s[e, g] - (dimple_nm + contact_nm if lands[e, g] > 0.0 else stopper_nm)
-                allowed = min(max(0.25 * way, most_nm), 100.0)  # nm, of the way to landing
+                height_nm = s[e, g] - (dimple_nm + contact_nm if lands[e, g] > 0.0 else stopper_nm)
+                allowed = min(max(0.25 * height_nm, most_nm), 100.0)  # nm, of the way to landing
                 excess = max(excess, abs(moved[e, g]) / allowed)
-                most = max(most, abs(moved[e, g]))
+                largest_move = max(largest_move, abs(moved[e, g]))
         if excess > 1.0 or work < 0.0:
             inertia = max(min(max(1.2 * excess, 1.5), 10.0) * inertia, weakest)
             if inertia < strongest:
@@ -314,6 +314,6 @@ def creep(
             inertia = max(0.3 * inertia, least)
         # a thousandth of the length over which a pad's pressure changes (nm), 1 Pa of the default
         # switch
-        if most < 1e-3 and most * NM * inertia < 6.6e-5 * spring_Pa:
+        if largest_move < 1e-3 and largest_move * NM * inertia < 6.6e-5 * spring_Pa:
             return SETTLED if lowest < off_nm else FREE
     return UNSETTLED

@@ -214,8 +214,8 @@ class AdhesiveContact(CoupledContact):
         """
         if self.undone is None or self.before.pressure.any():
             return 0.0
-        whole = self.undone.separation - self.now.separation
-        share = (separation - self.now.separation) / (whole or math.inf)
+        full_step_nm = self.undone.separation - self.now.separation
+        share = (separation - self.now.separation) / (full_step_nm or math.inf)
         return share if 0.0 < share <= 1.0 else 0.0
 
     @property
@@ -253,9 +253,9 @@ class AdhesiveContact(CoupledContact):
 
         The last separation is the present one; the contact is as before afterwards.
         """
-        kept = self._kept(), (self.now, self.last)
+        saved = self._kept(), (self.now, self.last)
         rows = [self.away(separation) for separation in separations[::-1].tolist()]
-        self.before, self.saved = kept
+        self.before, self.saved = saved
         self.back()
         return np.array([(row.force, row.attraction) for row in rows[::-1]]).T
 

@@ -40,7 +40,7 @@ def label(sites, place, pressure, pixels, number):
 
 
 @njit(cache=True)
-def displace(table, scale, pixels, sites, pressure, others, displacement):
+def displace(table, scale, pixels, sites, pressure, targets, displacement):
     """Add to the displacements (nm) of other sites what pressures (GPa) of some make."""
     rows = np.empty(sites.size, np.int64)
     cols = np.empty(sites.size, np.int64)
@@ -52,9 +52,9 @@ def displace(table, scale, pixels, sites, pressure, others, displacement):
             cols[count] = sites[k] % pixels
             value[count] = scale * pressure[k]
             count += 1
-    for m in range(others.size):
-        row = others[m] // pixels
-        col = others[m] % pixels
+    for m in range(targets.size):
+        row = targets[m] // pixels
+        col = targets[m] % pixels
         total = 0.0
         for k in range(count):
             dr = abs(row - rows[k])

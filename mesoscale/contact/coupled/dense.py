@@ -83,9 +83,9 @@ def residual(gap, pressure, displacement, limit, stiffness, n):
     worst = 0.0
     largest = 0.0
     for k in range(n):
-        wanted = pressure[k] - stiffness * (gap[k] + displacement[k])
-        wanted = min(max(wanted, 0.0), limit[k])
-        worst = max(worst, abs(pressure[k] - wanted))
+        new_pressure = pressure[k] - stiffness * (gap[k] + displacement[k])
+        new_pressure = min(max(new_pressure, 0.0), limit[k])
+        worst = max(worst, abs(pressure[k] - new_pressure))
         largest = max(largest, pressure[k])
     return worst / largest if largest > 0.0 else (np.inf if worst > 0.0 else 0.0)
 

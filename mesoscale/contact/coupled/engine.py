@@ -131,20 +131,20 @@ class CoupledContact(Contact):
     def back(self) -> None:
         """Undo the last move, its flow and its pressures."""
         undo(self.heights, self.changes)
-        kept, self.before = self.before, self.earlier
-        self.separation, places = kept.separation, self.place[kept.sites]
+        reused, self.before = self.before, self.earlier
+        self.separation, places = reused.separation, self.place[reused.sites]
         self.pressure[:] = 0.0
-        self.pressure[places] = kept.pressure
+        self.pressure[places] = reused.pressure
         self.limit[:] = self._fresh_limit
-        self.limit[places] = kept.limit
+        self.limit[places] = reused.limit
         if self.grid is None:
             dense.multiply(self.matrix, self.sites.size, self.pressure, self.displacement)
-        elif kept.field is None:
+        elif reused.field is None:
             self.displacement = self.grid.displace(self.sites, self.pressure)
         else:
-            self.grid.field = kept.field
-            self.grid.under = (kept.sites, kept.pressure)
-            self.displacement = kept.field[self.sites]
+            self.grid.field = reused.field
+            self.grid.under = (reused.sites, reused.pressure)
+            self.displacement = reused.field[self.sites]
 
     def move_to(self, separation: float, with_flow: bool) -> State:
         """Bring the flat down to a separation; it may be undone by `back` until the next move."""
@@ -291,13 +291,13 @@ class CoupledContact(Contact):
         """Take the hardness of the clusters, after many rounds only a lower one; whether that
         changes any limit.
         """
-        wanted = self._hardness_of(self._clusters()[0])
+        caps = self._hardness_of(self._clusters()[0])
         if rounds >= self.FALLING_ROUNDS:
-            wanted = np.minimum(wanted, self.limit)
+            caps = np.minimum(caps, self.limit)
         touching = self.pressure > 0.0
-        if self.hardness.constant or np.array_equal(wanted[touching], self.limit[touching]):
+        if self.hardness.constant or np.array_equal(caps[touching], self.limit[touching]):
             return False
-        self.limit = wanted
+        self.limit = caps
         return True
 
     def _clusters(self) -> tuple[np.ndarray, int]:
@@ -455,15 +455,18 @@ class CoupledContact(Contact):
         gap = self.heights[sites[:count]] + separation + displacement[:count]
         return law.deformed(gap, self._weight(sites[:count]), separation, wet)
 
-    def _displace(self, others: np.ndarray, displacement: np.ndarray) -> None:
+    def _displace(self, targets: np.ndarray, displacement: np.ndarray) -> None:
         """Add the displacements (nm) of other sites by the pressures: of many pairs of sites by a
         transform.
         """
-        if others.size * np.count_nonzero(self.pressure) > self.TRANSFORM_PAIRS * self.heights.size:
-            displacement += self.whole.displacement_by(self.sites, self.pressure)[others]
+        if (
+            targets.size * np.count_nonzero(self.pressure)
+            > self.TRANSFORM_PAIRS * self.heights.size
+        ):
+            displacement += self.whole.displacement_by(self.sites, self.pressure)[targets]
             return
         clusters.displace(
-            self.table, self.scale, self.n, self.sites, self.pressure, others, displacement
+            self.table, self.scale, self.n, self.sites, self.pressure, targets, displacement
         )
 
     def _weight(self, sites: np.ndarray) -> np.ndarray:

@@ -29,9 +29,11 @@ HYPERBOLIC = 0.5 * np.array(
 @lru_cache(maxsize=4)
 def softness_spline(bodies: tuple[Body, ...], lowest_q: float, highest_q: float) -> CubicSpline:
     """`softness` between two wave vectors (1/nm), over ln q."""
-    wanted = np.log([lowest_q, highest_q])
+    log_range = np.log([lowest_q, highest_q])
     log_q = np.linspace(
-        wanted[0] - STEP, wanted[1] + STEP, 3 + int(np.ceil((wanted[1] - wanted[0]) / STEP))
+        log_range[0] - STEP,
+        log_range[1] + STEP,
+        3 + int(np.ceil((log_range[1] - log_range[0]) / STEP)),
     )
     return CubicSpline(log_q, softness(bodies, np.exp(log_q)))
 

@@ -143,7 +143,7 @@ class Search(ABC):
         """Take the separation that the pressures ask for."""
 
     @abstractmethod
-    def factor(self, kept: float) -> float:
+    def factor(self, carried: float) -> float:
         """By which pressures grow, of which so much is left at sites that touch."""
 
     @abstractmethod
@@ -183,13 +183,13 @@ class Search(ABC):
         for _ in range(NEWTON_STEPS):
             self.separate()
             state = (self.pressure, self.gap, self.separation, stiffness)
-            sites, worst, largest, kept, moved = classify(*state)
+            sites, worst, largest, carried, moved = classify(*state)
             if worst <= tolerance * largest:
                 if self.exact() and ROUNDED * self.drift <= tolerance:
                     return True
                 self.follow()
                 continue
-            if bind(*state, self.factor(kept), self.change) > UNSEEN * tolerance * largest:
+            if bind(*state, self.factor(carried), self.change) > UNSEEN * tolerance * largest:
                 self._step_ahead(sites, length)
                 self.gap += self._moved(self.change)
                 self._drift(np.abs(self.change).sum(dtype=float))
@@ -270,9 +270,9 @@ class OneLoad(Search):
         """The mean gap of the pressed sites is 0."""
         self.separation = -mean_gap(self.pressure, self.gap)
 
-    def factor(self, kept: float) -> float:
+    def factor(self, carried: float) -> float:
         """The load stays."""
-        return self.load / kept
+        return self.load / carried
 
     def closed(self, sites: Array) -> float:
         """The mean one of the sites."""
@@ -309,7 +309,7 @@ class OneSeparation(Search):
     def separate(self) -> None:
         """It stays."""
 
-    def factor(self, kept: float) -> float:
+    def factor(self, carried: float) -> float:
         """Pressures stay as they are."""
         return 1.0
 
@@ -354,19 +354,19 @@ def classify(pressure, gap, separation, stiffness):
     count = 0
     worst = 0.0
     largest = 0.0
-    kept = 0.0
+    carried = 0.0
     moved = 0
     for k in range(gap.size):
-        here = pressure[k]
-        wanted = max(here - stiffness * (gap[k] + separation), 0.0)
-        worst = max(worst, abs(here - wanted))
-        largest = max(largest, here)
-        moved += (wanted > 0.0) != (here != 0.0)
-        if wanted > 0.0:
+        site_pressure = pressure[k]
+        new_pressure = max(site_pressure - stiffness * (gap[k] + separation), 0.0)
+        worst = max(worst, abs(site_pressure - new_pressure))
+        largest = max(largest, site_pressure)
+        moved += (new_pressure > 0.0) != (site_pressure != 0.0)
+        if new_pressure > 0.0:
             sites[count] = k
             count += 1
-            kept += max(here, 0.0)
-    return sites[:count].copy(), worst, largest, kept, moved
+            carried += max(site_pressure, 0.0)
+    return sites[:count].copy(), worst, largest, carried, moved
 
 
 @njit(cache=True)
@@ -374,12 +374,12 @@ def bind(pressure, gap, separation, stiffness, factor, change):
     """Take the pressures off all sites that do not touch, and keep the load; the largest change."""
     largest = 0.0
     for k in range(gap.size):
-        here = pressure[k]
+        site_pressure = pressure[k]
         new = 0.0
-        if here - stiffness * (gap[k] + separation) > 0.0:
-            new = factor * max(here, 0.0)
-        change[k] = new - here
-        largest = max(largest, abs(new - here))
+        if site_pressure - stiffness * (gap[k] + separation) > 0.0:
+            new = factor * max(site_pressure, 0.0)
+        change[k] = new - site_pressure
+        largest = max(largest, abs(new - site_pressure))
         pressure[k] = new
     return largest
 

@@ -48,13 +48,17 @@ class Split:
         spline = ((2.0 + np.cos(2.0 * np.pi * modes / self.coarse)) / 3.0) ** 2 * (
             pixels / self.coarse
         )
-        kept = modes[: self.coarse // 2 + 1]
+        coarse_modes = modes[: self.coarse // 2 + 1]
         self.rest = (
-            (compliance - short)[modes][:, np.abs(kept)] / spline[:, None] / spline[: kept.size]
+            (compliance - short)[modes][:, np.abs(coarse_modes)]
+            / spline[:, None]
+            / spline[: coarse_modes.size]
         ).astype(np.float32)
-        at = np.arange(pixels) * (self.coarse / pixels)
-        self.nodes = ((at.astype(int)[:, None] + np.arange(4)) % self.coarse).astype(np.int32)
-        x = (at % 1.0)[:, None]
+        coarse_place = np.arange(pixels) * (self.coarse / pixels)
+        self.nodes = ((coarse_place.astype(int)[:, None] + np.arange(4)) % self.coarse).astype(
+            np.int32
+        )
+        x = (coarse_place % 1.0)[:, None]
         weights = (
             np.hstack([(1 - x) ** 3, 3 * x**3 - 6 * x**2 + 4, 3 * (x + x**2 - x**3) + 1, x**3])
             / 6.0
@@ -119,7 +123,7 @@ class Split:
 
 
 @njit(cache=True)
-def pair(rows, cols, place, pixels, table, old, first, others, values):
+def pair(rows, cols, place, pixels, table, old, first, neighbours, values):
     """List the earlier sites near each of the sites from `old` on; False where there are too
     many.
     """
@@ -131,9 +135,9 @@ def pair(rows, cols, place, pixels, table, old, first, others, values):
             for j in range(-reach, reach + 1):
                 other = place[start + dense.wrapped(cols[k] + j, pixels)]
                 if 0 <= other < k and i * i + j * j <= reach * reach:
-                    if end == others.size:
+                    if end == neighbours.size:
                         return False
-                    others[end] = other
+                    neighbours[end] = other
                     values[end] = table[abs(i), abs(j)]
                     end += 1
         first[k + 1] = end
@@ -160,10 +164,10 @@ def gather(around, coarse, pairs, pressure, moved):
     sites.
     """
     rows, cols, row_nodes, nodes, weights = around
-    first, others, values, itself = pairs
+    first, neighbours, values, itself = pairs
     for k in range(moved.size):
-        here = pressure[k]
-        total = itself * here
+        site_pressure = pressure[k]
+        total = itself * site_pressure
         for i in range(4):
             for j in range(4):
                 total += (
@@ -172,6 +176,6 @@ def gather(around, coarse, pairs, pressure, moved):
                     * weights[cols[k], j]
                 )
         for m in range(first[k], first[k + 1]):
-            total += values[m] * pressure[others[m]]
-            moved[others[m]] += values[m] * here
+            total += values[m] * pressure[neighbours[m]]
+            moved[neighbours[m]] += values[m] * site_pressure
         moved[k] = total

@@ -71,9 +71,9 @@ def adhesion_numbers(
     menisci = menisci_of(settings.air)
     work = hamaker / (WORK_FACTOR[law] * math.pi * cutoff**2)
     reach = RANGE_IN_D0[law] * cutoff
-    parts = [(work, reach)]
+    laws = [(work, reach)]
     if menisci:
-        parts = [
+        laws = [
             (menisci.dispersion * work, reach),
             (menisci.pull_GPa * menisci.reach_nm, menisci.reach_nm),
         ]
@@ -88,7 +88,7 @@ def adhesion_numbers(
     # as far as the gap is below `reach`: at a distance x from Hertz's line contact of the slope h',
     # gap^2 = 16/9 h'^2 x^3 / d.
     tabor, sticky = 0.0, 0.0
-    for work, reach in parts:
+    for work, reach in laws:
         tabor = max(
             tabor, (2.0 / surface.curvature * work**2 / (e_star**2 * reach**3)) ** (1.0 / 3.0)
         )
