@@ -22,7 +22,7 @@ from mesoscale.topography.spectrum import FLOOR, Spectrum
 # numbers
 TAPERS = 3
 MOST_STEPS = 60  # of the fit of a spectrum; most take ten, some creep
-SETTLED = 1e-6  # of ln L: what the last step could gain; beyond, a fit has not settled
+SETTLED = 1e-3  # of ln L: what the last step could gain; it moves ln C by a twentieth of its error
 COVER = 2 * TAPERS / (2 * TAPERS + 1)
 SPREAD = np.sqrt((TAPERS + 1) * (2 * TAPERS + 1) / 24)
 

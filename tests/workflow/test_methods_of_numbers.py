@@ -8,6 +8,7 @@ import pytest
 
 from tests.workflow.made_up_results import DOUBT
 from workflow.report.available import Results
+from workflow.report.render import low
 from workflow.report.stages import pad, sensitivity, uncertainty
 from workflow.report.verdict import verdict
 
@@ -23,8 +24,8 @@ def page(results, page_of):
 
 
 def test_page_and_verdict_say_the_same(results, page):
-    words = verdict(results).outcome
-    assert f'<h1 id="answer-title">{words}</h1>' in page
+    words = low(verdict(results).outcome)
+    assert f'<h1 id="first-title">{words}</h1>' in page
 
 
 def test_no_other_release_stands_on_the_page(results, page):
@@ -41,7 +42,9 @@ def test_no_other_release_stands_on_the_page(results, page):
         flags=re.DOTALL,
     )
     unfolded = re.sub(r"<svg.*?</svg>", "", unfolded, flags=re.DOTALL)
-    volts = set(re.findall(r"[\d.]+ V\b", re.sub(r"<[^>]*>", "", unfolded)))
+    words = re.sub(r"<[^>]*>", "", unfolded)
+    words = re.sub(r"It closes at .*?\. Check this", "", words)  # pull-in
+    volts = set(re.findall(r"[\d.]+ V\b", words))
     assert volts <= {
         f"{value:.3g} V"
         for value in (*verdict(results).release_V, *(verdict(results).other_law_V or ()))
@@ -63,7 +66,7 @@ def test_a_quantity_below_its_bar_is_grey_wherever_it_stands(results, page):
         table = next(block for block in stage.describe(results).blocks if hasattr(block, "rows"))
         assert [row for row in table.faint] == ["C_r (10⁻⁴ GPa)"]
     assert page.count('<tr class="faint">') == 2
-    assert f"Cr: {DOUBT}" in re.sub(r"<[^>]*>", "", page)
+    assert f"Cr: {low(DOUBT)}" in re.sub(r"<[^>]*>", "", page)
 
 
 def test_every_column_of_the_table_of_outputs_names_its_method(results):

@@ -24,8 +24,8 @@ class Stiffness:
     """What closes the gaps of some sites of a map, in single precision."""
 
     def __init__(self, base: Base):
-        rows, columns = base.shape
-        self.shape = (-(-rows // COARSER), -(-columns // COARSER))
+        rows, columns = (max(2, -(-sites // COARSER)) for sites in base.shape)  # one has no wave
+        self.shape = (rows, columns)
         self.stencil = base.stencil.astype(np.float32)
         self.rows = _between(base.shape[0], self.shape[0])
         self.columns = _between(base.shape[1], self.shape[1])

@@ -128,12 +128,10 @@ def test_the_switch_releases_on_the_table_as_on_the_curves(tmp_path):
     made = PadCurves(
         s, apart([pressed(at, at) for at in s], 20.0 * well(law)), depths, opening, law.flats
     )
-    by_curves, by_table = (
-        switch_of(DeviceSettings()).states(law),
-        switch_of(DeviceSettings()).states(made),
-    )
+    by_curves = switch_of(DeviceSettings()).states(law)
+    by_table = switch_of(DeviceSettings()).states(made)
     for name in ("pull_in_V", "release_V"):
-        assert by_table[name] == pytest.approx(by_curves[name], rel=0.01)
+        assert getattr(by_table, name) == pytest.approx(getattr(by_curves, name), rel=0.01)
 
 
 def apart(net, pull):

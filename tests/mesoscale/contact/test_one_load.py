@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+import asperity as asp
 from mesoscale.contact.coupled import one_load
 from mesoscale.contact.coupled.base import Alone, Base, Repeated
 from mesoscale.contact.coupled.engine import CoupledContact
@@ -177,3 +178,14 @@ def test_an_oversampled_map_needs_few_transforms():
         counts.append(one_load.press(heights, 2000.0, base).transforms)
     assert max(counts) <= 30
     assert counts[2] <= counts[0] + 5
+
+
+@pytest.mark.parametrize("shape", [(3, 3), (4, 4), (4, 9), (5, 3)])
+def test_maps_of_a_few_sites_carry_their_load(shape):
+    """Their coarser grid had one site, which has no wave."""
+    heights = np.random.default_rng(5).normal(size=shape)
+    repeated = shape[0] == shape[1]
+    pressed = asp.press(heights, 10.0, 20.0, 5.0, periodic=repeated)
+    area = np.prod(pressed.lengths_nm)
+    assert pressed.converged
+    assert pressed.pressure_GPa.mean() * area == pytest.approx(20.0, rel=1e-6)
