@@ -229,7 +229,7 @@ def test_every_option_that_a_refusal_prints_works(
         (["scans", "--material", "stiffness=3"], "stiffness: no such input"),
         (
             ["scans", "--material", "e_star=hard"],
-            "e_star=hard: accepted is a number, or two materials",
+            "e_star=hard: accepted is a number",
         ),
         (["scans", "--device", "gap=2"], "gap=2: accepted is KEY=VALUE with a key of material"),
     ],

@@ -180,7 +180,7 @@ def test_an_oversampled_map_needs_few_transforms():
     assert counts[2] <= counts[0] + 5
 
 
-@pytest.mark.parametrize("shape", [(3, 3), (4, 4), (4, 9), (5, 3)])
+@pytest.mark.parametrize("shape", [(4, 4), (4, 9), (5, 3)])
 def test_maps_of_a_few_sites_carry_their_load(shape):
     """Their coarser grid had one site, which has no wave."""
     heights = np.random.default_rng(5).normal(size=shape)
