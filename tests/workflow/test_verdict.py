@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from workflow.report.first import _unsolved, release_bar
+from workflow.report.first import _conditions, _unsolved, release_bar
 from workflow.report.gates import _attraction, trust
 from workflow.report.page import Gate
 from workflow.report.verdict import CELLS, verdict
@@ -209,3 +209,20 @@ def test_switches_without_answer_are_named_with_the_reason_of_the_first():
     words = _unsolved({"points": 126, "refused": ["asperities merge", "another"]})
     assert words.startswith("2 of 128 switches have no answer.")
     assert words.endswith("The reason of the first: asperities merge.")
+
+
+@pytest.mark.parametrize(
+    ("inputs", "air", "words"),
+    [
+        ({}, None, "In dry air"),
+        ({"humidity": None}, None, "In dry air"),  # a record has all keys of a scene
+        ({"humidity": {"values": [0.0, 0.8]}}, None, "In humid air"),
+        ({"humidity": None}, {"humidity": 0.4}, "In air of 40% humidity"),
+    ],
+)
+def test_the_first_screen_says_which_air_it_is_of(inputs, air, words):
+    scene = {"inputs": inputs, "contact": {"air": air}, "device": {"temperature_C": 85.0}}
+    results = SimpleNamespace(has=lambda name: True, record={"scene": scene})
+    said = _conditions(results)
+    assert said.startswith(words)
+    assert said.endswith(", at 85 °C, uncharged.")

@@ -6,7 +6,15 @@ from typing import Any
 from mesoscale.settings import DeviceSettings
 from workflow.report.available import Results
 from workflow.report.numbers import show
-from workflow.report.verdict import DECIDED, Verdict, does, in_words, verdict, volts
+from workflow.report.verdict import (
+    DECIDED,
+    Verdict,
+    does,
+    in_words,
+    interval_of,
+    verdict,
+    volts,
+)
 
 KINDS = {
     "common": "To measure: one unknown value",
@@ -67,19 +75,21 @@ def _pull_in(pad: dict[str, Any]) -> str:
     """The voltage that closes it, in words; empty where it is not known."""
     if pad.get("answer"):
         quantiles = pad["answer"]["pull_in_V"]["quantiles"]
-        low, middle, high = (volts(quantiles[q]) for q in ("0.05", "0.5", "0.95"))
-        return f"It closes at {middle} (5\u00a0%:\u00a0{low}; 95\u00a0%:\u00a0{high})."
+        low, middle, high = (f"{show(quantiles[q])} V" for q in ("0.05", "0.5", "0.95"))
+        return f"It closes at {middle} {interval_of(low, high)}."
     if pad["central"]:
-        return f"It closes at {volts(pad['central']['pull_in_V'])}, at central inputs."
+        return f"It closes at {show(pad['central']['pull_in_V'])} V, at central inputs."
     return ""
 
 
 def _conditions(results: Results) -> str:
     """The air, the temperature and the charge that the answer is of."""
+    if not results.has("scene.yaml"):
+        return ""
     scene = results.record["scene"]
     device = DeviceSettings(**scene["device"])
     air = scene["contact"].get("air") or {}
-    if "humidity" in scene.get("inputs", {}):
+    if scene.get("inputs", {}).get("humidity"):
         words = "In humid air of the stated range"
     elif air.get("humidity"):
         words = f"In air of {air['humidity']:.0%} humidity"

@@ -72,7 +72,7 @@ class Verdict:
         probability = self.stuck[1]
         if probability >= DECIDED:
             return f"The switch sticks, with a probability of {probability:.0%}."
-        interval = f"(5\u00a0%:\u00a0{volts(low)}; 95\u00a0%:\u00a0{volts(high)})"
+        interval = interval_of(volts(low), volts(high))
         if probability <= 1 - DECIDED:
             return f"The switch lets go at {volts(middle)} {interval}; {probability:.0%} stick."
         median = f"is {volts(middle)}" if middle else "sticks"
@@ -119,6 +119,11 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
         other_law_V(results),
         _next(pad, failed, no_cause, results.coupled),
     )
+
+
+def interval_of(low: str, high: str) -> str:
+    """The ends of an interval, in words that no line end parts."""
+    return f"(5\u00a0%:\u00a0{low}; 95\u00a0%:\u00a0{high})"
 
 
 def volts(value: float) -> str:
