@@ -11,7 +11,7 @@ from typing import Any, get_args
 
 from asperity.film import MATERIAL, Film, pixels_for
 from asperity.guards.bundle import ROOT
-from asperity.words import NUMBER, SCALAR_KEYS
+from asperity.words import NUMBER, SCALAR_KEYS, with_u_for_micro
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import PAPER_ROWS
 from mesoscale.settings import DeviceSettings, InputRow, InstrumentSettings, TopographySettings
@@ -32,7 +32,7 @@ def topography_of(words: Namespace) -> dict[str, Any]:
     keys = {name: getattr(words, name) for name in ("channel", "detrend") if getattr(words, name)}
     added: dict[str, Any] = {}
     if words.unit:
-        units = re.sub("[\u00b5\u03bc]", "u", words.unit).split(",")  # micro sign, mu
+        units = with_u_for_micro(words.unit).split(",")
         known = get_args(LengthUnit)
         if len(units) > 2 or not set(units) <= set(known):
             raise InputError(

@@ -12,6 +12,7 @@ from asperity.guards.foreign_yaml import load_mapping
 from asperity.guards.settings import Settings, key
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings, InputRow
+from mesoscale.settings.contact import MaterialSettings, base_modulus
 from mesoscale.settings.definitions import definition
 from mesoscale.settings.device import unit_of
 
@@ -69,6 +70,11 @@ def body_of(word: str, name: str) -> Body:
     return by_lower_case[name.lower()]
 
 
+def with_u_for_micro(text: str) -> str:
+    """Text with a u in place of the micro sign and of the Greek letter."""
+    return re.sub("[\u00b5\u03bc]", "u", text)
+
+
 def number_of(word: str, text: str, unit: str) -> float:
     """A number, with or without its unit; a share may be in per cent.
 
@@ -77,7 +83,7 @@ def number_of(word: str, text: str, unit: str) -> float:
     InputError : a decimal comma, another unit, or no number.
     """
     name = word.partition("=")[0]
-    plain = re.sub("[\u00b5\u03bc]", "u", text)  # micro sign, mu
+    plain = with_u_for_micro(text)
     if re.fullmatch(NUMBER, plain):
         return float(plain)
     if re.fullmatch(NUMBER.replace(r"\.", ","), plain) and "," in plain:
@@ -124,13 +130,13 @@ def material_of(words: Sequence[str]) -> dict[str, InputRow]:
 
 
 def _modulus_of_bodies(word: str, names: str) -> InputRow:
-    """E* of two bodies: 1 / E* is the sum of (1 - nu^2) / E."""
+    """E* of two bodies by their names."""
     pair = names.split("/")
     if len(pair) != 2:
         raise InputError(f"{word}: accepted is a number, or two materials: e_star=gold/silica")
     both = [body_of(word, name) for name in pair]
-    compliance = sum((1.0 - body.poisson**2) / body.young_GPa for body in both)
-    stated: Any = {"distribution": "fixed", "values": (round(1.0 / compliance, 3),)}
+    bases = [(MaterialSettings(young_GPa=body.young_GPa, poisson=body.poisson),) for body in both]
+    stated: Any = {"distribution": "fixed", "values": (round(base_modulus(bases), 3),)}
     sources = "; ".join(dict.fromkeys(body.source for body in both))
     return InputRow(**stated, source=f"{pair[0]} on {pair[1]}: {sources}")
 

@@ -15,7 +15,7 @@ from mesoscale.errors import InputError
 from mesoscale.pad.cells import FIRST_SEED, sample_cells
 from mesoscale.pad.closing import press_cells
 from mesoscale.pad.grid import DEPTHS
-from mesoscale.pad.pilots import Pilots
+from mesoscale.pad.pilots import Pilots, closed_until
 from mesoscale.pad.pressed import Pad, flats_of
 from mesoscale.settings import ContactSettings
 from mesoscale.switch import States, Switch, release_or_nan_V, switch_of
@@ -149,14 +149,12 @@ def close_for(switch: Switch, pilots: Pilots) -> Pilots:
     ------
     InputError : they never do, or their asperities merge before.
     """
-    carried = False
-    while not carried:
-        pilots.close()
-        if pilots.repel(float(switch.least_GPa(pilots.separation_nm))):
-            carried = pilots.carry(MARGIN * switch.pressed_GPa(pilots.curves))
-    if pilots.have_enough_steps:
-        return pilots
-    return close_for(switch, pilots.in_finer_steps())
+
+    def carry_it(closed: Pilots) -> bool:
+        repel = closed.repel(float(switch.least_GPa(closed.separation_nm)))
+        return repel and closed.carry(MARGIN * switch.pressed_GPa(closed.curves))
+
+    return closed_until(carry_it, pilots)
 
 
 def surfaces_of(number: int) -> int:

@@ -1,6 +1,6 @@
 """A few cells of a pad, closed before the others: they tell how far the pad is to be closed."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -186,6 +186,21 @@ class Pilots:
         return opened_at_loads(separation_nm, self.separations_nm, self.loads_GPa, depths)
 
 
+def closed_until(enough: Callable[[Pilots], bool], pilots: Pilots) -> Pilots:
+    """Pilots that are not closed yet, closed until it is enough; in finer steps where few are.
+
+    Raises
+    ------
+    InputError : it never is, or their asperities merge before.
+    """
+    pilots.close()
+    while not enough(pilots):
+        pilots.close()
+    if pilots.have_enough_steps:
+        return pilots
+    return closed_until(enough, pilots.in_finer_steps())
+
+
 def plan_grid(
     inputs: ContactInputs,
     contact: ContactSettings,
@@ -206,13 +221,7 @@ def plan_grid(
     InputError : the pilot cells never reach the pressure, or their asperities merge before.
     """
     pilots = Pilots(inputs, contact, cells, step_nm, attraction=False)
-    while True:
-        pilots.close()
-        while not pilots.repel(pressure_GPa):
-            pilots.close()
-        if pilots.have_enough_steps:
-            return pilots.grid(depths)
-        pilots = pilots.in_finer_steps()
+    return closed_until(lambda closed: closed.repel(pressure_GPa), pilots).grid(depths)
 
 
 def _some_of(cells: Sequence[Cell], every: int) -> list[Cell]:

@@ -14,6 +14,9 @@ doi 10.1016/0021-9797(77)90366-6; K. L. Johnson, Int. J. Solids Struct. 32 (1995
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.theory.sphere import hertz_force
+from mesoscale.theory.waves import wave_mean_pressure
+
 Real = float | NDArray[np.float64]
 
 
@@ -38,8 +41,7 @@ def jkr_pull_off(radius: Real, work_of_adhesion: Real) -> Real:
 
 def dmt_force(indentation: Real, radius: Real, e_star: Real, work_of_adhesion: Real) -> Real:
     """Force (nN) at an approach (nm): Hertz's, less the pull 2 pi w R of the whole sphere."""
-    hertzian = 4.0 / 3.0 * e_star * np.sqrt(radius) * np.maximum(indentation, 0.0) ** 1.5
-    return hertzian - dmt_pull_off(radius, work_of_adhesion)
+    return hertz_force(indentation, radius, e_star) - dmt_pull_off(radius, work_of_adhesion)
 
 
 def dmt_pull_off(radius: Real, work_of_adhesion: Real) -> Real:
@@ -62,7 +64,6 @@ def adhesive_wave_pressure(
     p = p* sin^2(s) - sqrt(2 w E* tan(s) / wavelength), s = pi share / 2, of h(x) = amplitude cos(2
     pi x / wavelength), p* = pi E* amplitude / wavelength. Its minimum is the pull-off.
     """
-    angle = 0.5 * np.pi * area_share
-    full = np.pi * e_star * amplitude / wavelength
-    adhesive = np.sqrt(2.0 * work_of_adhesion * e_star * np.tan(angle) / wavelength)
-    return full * np.sin(angle) ** 2 - adhesive
+    tangent = np.tan(0.5 * np.pi * area_share)
+    adhesive = np.sqrt(2.0 * work_of_adhesion * e_star * tangent / wavelength)
+    return wave_mean_pressure(area_share, amplitude, wavelength, e_star) - adhesive

@@ -118,13 +118,7 @@ class Repeated(Base):
 
     def compliance(self) -> Array:
         """Of the waves of the map."""
-        pixels = self.shape[0]
-        compliance = half_space.wave_numbers(pixels)
-        compliance[0, 0] = np.inf
-        np.divide(self.length / (math.pi * self.e_star), compliance, out=compliance)
-        if self.bodies:
-            compliance *= half_space.softness(pixels, self.length, self.bodies)
-        return compliance
+        return half_space.wave_compliance(self.shape[0], self.length, self.e_star, self.bodies)
 
     def near(self) -> Array:
         """From the sum of the waves at nine sites."""

@@ -53,9 +53,7 @@ class Grid:
     def __init__(self, pixels: int, length: float, e_star: float, bodies: tuple[Body, ...] = ()):
         self.shape = (pixels, pixels)
         self.scale = length / e_star
-        number = half_space.wave_numbers(pixels) / half_space.softness(pixels, length, bodies)
-        number[0, 0] = np.inf
-        self.compliance = (length / (np.pi * e_star)) / number
+        self.compliance = half_space.wave_compliance(pixels, length, e_star, bodies)
         self.single_compliance = self.compliance.astype(np.float32)
         self.field = np.zeros(pixels**2)
         self.rows = np.arange(pixels)

@@ -38,6 +38,16 @@ def softness(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarray
     return shares
 
 
+def wave_compliance(
+    pixels: int, length: float, e_star: float, bodies: tuple[Body, ...]
+) -> np.ndarray:
+    """Compliance of all modes, nm/GPa, shape (pixels, pixels // 2 + 1); 0 for the mean."""
+    number = wave_numbers(pixels)
+    number /= softness(pixels, length, bodies)
+    number[0, 0] = np.inf
+    return np.divide(length / (np.pi * e_star), number, out=number)
+
+
 @lru_cache(maxsize=4)
 def influence(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarray:
     """Displacement (in L / E*) at sites 0 .. pixels/2 in x and y from a unit pressure on one site
