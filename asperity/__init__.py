@@ -14,7 +14,8 @@ From a scan to a switch::
     print(switch, switch.release_V)
 
 Lengths are in nm, forces in nN, pressures and moduli in GPa; `help()` of every name states its
-units."""
+units.
+"""
 
 import os
 import sys

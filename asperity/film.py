@@ -206,7 +206,8 @@ class Film(Shown):
         Raises
         ------
         InputError : an unknown input, a value out of range, or measurements that no description
-            fits."""
+            fits.
+        """
         stated = {name: _row(value) for name, value in (material or {}).items()}
         laws = ("", stated.get("hardness", "paper"))
         rows = {
@@ -271,7 +272,8 @@ class FilmContact(Shown):
         (`pad.rms_scatter`).
     on_grid : settings before the inputs were put in.
     pressure_GPa, gap_nm : maps at the largest load, shape (pixels, pixels); walls touch where the
-        pressure is positive."""
+        pressure is positive.
+    """
 
     inputs: ContactInputs
     settings: ContactSettings

@@ -2,7 +2,8 @@
 (docs/umbridge.md).
 
 A model takes lists of numbers in stated units and a configuration, and gives lists of numbers. It
-calls the library and changes nothing: the same inputs give the same digits."""
+calls the library and changes nothing: the same inputs give the same digits.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields
@@ -52,7 +53,8 @@ class ServedModel:
         Raises
         ------
         InputError : wrong shape, unknown key of the configuration, values out of range, no finite
-            result."""
+            result.
+        """
         checked = self.checked_config(config)
         named = ", ".join(INPUTS)
         values = parameters[0] if isinstance(parameters, list) and len(parameters) == 1 else None

@@ -5,7 +5,8 @@
 clients name shared memory to be read, and answers a malformed request with a page of HTML. This one
 listens where it is told, evaluates in worker processes, and answers every mistake in one line. A
 page in a browser of the same machine cannot use it: requests must be JSON and name this machine as
-their host."""
+their host.
+"""
 
 import asyncio
 import ipaddress

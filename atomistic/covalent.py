@@ -46,7 +46,8 @@ def tersoff_table(parameters: Tersoff) -> str:
 
     A pair's own parameters come from the mixing rules of Tersoff, PRB 39, 5566 (1989); `chi` scales
     the attraction of unlike (and, if given, like) pairs.  The cutoff of a triplet i j k is that of
-    i–k."""
+    i–k.
+    """
     elements = parameters.elements
     chi = {frozenset(pair.split("-")): value for pair, value in parameters.chi.items()}
     lines = ["# m gamma lambda3 c d costheta0 n beta lambda2 B R D lambda1 A"]

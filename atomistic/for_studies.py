@@ -1,7 +1,8 @@
 """What a stage of atoms tells the driver of all studies: numerical choices to vary, and hard cases.
 
 The driver is `mesoscale.studies.driver`, which this package does not know. The tuples have the
-fields of its classes."""
+fields of its classes.
+"""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple

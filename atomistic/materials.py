@@ -2,7 +2,8 @@
 
 A file holds what the stages need of it: `oxide_glass` for the hardness stage, `network_glass` for
 the body that the elastic stage computes, `polycrystal` for the body it is pressed against,
-`crystals` as anchors."""
+`crystals` as anchors.
+"""
 
 import operator
 from collections.abc import Iterable, Mapping
@@ -222,7 +223,8 @@ class Eam(_Section):
     """Embedded-atom potential of a metal in closed form (doi:10.1103/PhysRevB.69.144113).
 
     Energies in eV, distances in Å; `r` is the nearest distance, `f` and `rho` are electron
-    densities of one unit."""
+    densities of one unit.
+    """
 
     mass_u: Positive
     lattice_A: tuple[Positive, Positive] = Field(
@@ -370,7 +372,8 @@ def load_material(path: str | Path) -> Material:
     Raises
     ------
     InputError : unreadable or malformed file, unknown key, missing or non-physical value, unnamed
-        source."""
+        source.
+    """
     path = Path(path)
     material = load_settings(Material, path, "material", "config/materials/silicon_dioxide.yaml")
     if material.name != path.stem:
@@ -386,7 +389,8 @@ def load_materials(folder: str | Path) -> dict[str, Material]:
     Raises
     ------
     InputError : a file is not accepted, or two name the same crystal or have an oxide glass of the
-        same formula."""
+        same formula.
+    """
     paths = sorted(Path(folder).glob("*.yaml"))
     materials = {path.stem: load_material(path) for path in paths}
     owners: dict[str, Path] = {}

@@ -1,7 +1,8 @@
 """Rigid-ion pair potentials read from data files, checked, and written as LAMMPS tables.
 
 All terms of a pair, Coulomb included, go into one table: 3-5 times faster than the sum of their own
-pair styles, and its twin with all energies halved is the same table times one half."""
+pair styles, and its twin with all energies halved is the same table times one half.
+"""
 
 import io
 from collections.abc import Callable, Mapping

@@ -14,4 +14,5 @@ Its table is `evidence/data/<room>_<name>.csv`. Each row carries commit, date, p
 command.
 
 A study that nobody will run on newer code ends: `evidence/ended.yaml` keeps its question and its
-numbers, and the commit at which its code is. The command runs it there."""
+numbers, and the commit at which its code is. The command runs it there.
+"""

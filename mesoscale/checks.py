@@ -118,7 +118,8 @@ def checked_heights(
     Raises
     ------
     InputError : not square, not real and finite, or heights and side in units that do not fit each
-        other."""
+        other.
+    """
     check_number("length_nm", length_nm, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
     array = checked_array(name, heights, "nm")
     fewest = FEWEST_PERIODIC if square else 3

@@ -2,7 +2,8 @@
 1e-6.
 
 Processors with other instructions round otherwise. A fit that stops before it has settled, or that
-chooses its terms by the last digits, makes visible differences of that."""
+chooses its terms by the last digits, makes visible differences of that.
+"""
 
 from dataclasses import replace
 

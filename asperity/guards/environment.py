@@ -2,7 +2,8 @@
 
 Python and several packages look for modules and settings in the working folder, and a working
 folder may come from a stranger. Here each is told where to look instead. What the user set himself
-stays."""
+stays.
+"""
 
 import locale
 import os

@@ -3,7 +3,8 @@ it so.
 
 YAML 1.1 reads `16:40` as 1000 (base 60), `0200` as 128 (octal), `1_000` as 1000 and 2026-11-22 as a
 date; here they stay text, which a number's key then refuses.  Aliases are refused: a file of 342
-bytes can unfold to gigabytes. Tags are refused: `!!int ""` is an error deep inside PyYAML."""
+bytes can unfold to gigabytes. Tags are refused: `!!int ""` is an error deep inside PyYAML.
+"""
 
 import re
 from pathlib import Path

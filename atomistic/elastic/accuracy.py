@@ -2,7 +2,8 @@
 
 The choices are the width of the strains, their number, the cut-off of the density, the steps of the
 relaxation and the number of glasses. Energies of the scene's own scans are used again, and orbitals
-as well: every calculation starts from those of the ones before."""
+as well: every calculation starts from those of the ones before.
+"""
 
 import time
 from collections.abc import Callable, Sequence

@@ -2,7 +2,8 @@
 
 Energies in eV, lengths in Å, forces in eV/Å outside; PySCF's atomic units inside.  Pseudopotentials
 are GTH, the basis a short-ranged MOLOPT one.  The real-space mesh can be held fixed while the cell
-is strained: without that the number of grid points jumps along E(V) and so does the energy."""
+is strained: without that the number of grid points jumps along E(V) and so does the energy.
+"""
 
 import hashlib
 from collections.abc import MutableMapping, Sequence
@@ -301,7 +302,8 @@ def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> n
     The overlap describes the geometry: the combination of former ones, with weights that add to
     one, which comes nearest to it also combines the former orbitals, once each set is rotated onto
     the last one.  Along a line this is polynomial extrapolation; after Polack et al., J. Chem.
-    Theory Comput. 17, 6965 (2021)."""
+    Theory Comput. 17, 6965 (2021).
+    """
     if not history:
         return None
     *older, last = history

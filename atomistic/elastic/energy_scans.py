@@ -1,7 +1,8 @@
 """Energy-volume scans E(V) under isotropic strain, and the bulk modulus of each.
 
 Ions keep their fractional coordinates (they are "clamped": every bond scales), as in the paper.  A
-glass whose ions follow the strain is softer."""
+glass whose ions follow the strain is softer.
+"""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -42,7 +43,8 @@ def scan_volumes(
     """Energy of a structure at each isotropic strain, ions clamped.
 
     The smallest strain comes first, then they go outwards: each calculation starts from its
-    neighbours'.  One that fails is reported in its point and the scan goes on."""
+    neighbours'.  One that fails is reported in its point and the scan goes on.
+    """
     points: dict[float, ScanPoint] = {}
     for strain in sorted(strains, key=lambda strain: (abs(strain), -strain)):
         if progress:
@@ -104,7 +106,8 @@ def fit_scan(scan: Sequence[Mapping[str, str]]) -> dict[str, Any]:
     """Row of `bulk_moduli.csv` from the rows of one scan: the fit, or why there is none.
 
     Points that did not converge are named in `flags`; with fewer than five left the structure is
-    rejected."""
+    rejected.
+    """
     good = [row for row in scan if row["converged"] == "True"]
     failed = list(dict.fromkeys(row["detail"] for row in scan if row["converged"] != "True"))
     result: dict[str, Any] = {key: scan[0][key] for key in ("structure", "xc", "ions", "atoms")}

@@ -13,7 +13,8 @@ PySCF's FFTDF exactly, on the same grid.  For GGA, ∇ρ here is the derivative 
 (as in PySCF's multigrid and in plane-wave codes), whereas FFTDF takes it from orbital gradients:
 the two differ by the error of the mesh. Because gradient and divergence are each other's negative
 adjoints on the grid, V is the exact derivative of the discrete energy, and so are forces.  Atomic
-units throughout."""
+units throughout.
+"""
 
 from typing import TYPE_CHECKING, Any
 
@@ -141,7 +142,8 @@ class CachedGrid(MultiGridNumInt2):
         """Σ_r w φ_µ v φ_ν, shape (orbitals, orbitals).
 
         Products of a block run in single precision and are summed in double: the energy is
-        stationary in the orbitals and feels this error (1e-6 hartree per element) only squared."""
+        stationary in the orbitals and feels this error (1e-6 hartree per element) only squared.
+        """
         total = np.zeros((len(self.orbitals),) * 2)
         weights = (self.weight * potential).astype(np.float32)
         for start in range(0, self.points, BLOCK):
@@ -183,7 +185,8 @@ class CachedGrid(MultiGridNumInt2):
 
         With δ the change since the last full matrix and Q the projector onto empty orbitals, δ − Qᵀ
         δ Q is added to it: half the work or less.  The gradient of the orbitals is exact, so the
-        SCF ends at the same solution."""
+        SCF ends at the same solution.
+        """
         if (
             self.basis_overlap is not None
             and getattr(density_matrix, "mo_coeff", None) is not None
@@ -216,7 +219,8 @@ class CachedGrid(MultiGridNumInt2):
         """Forces (atoms, 3), hartree/bohr: the exact derivative of the discrete energy.
 
         The grid breaks translation symmetry a little ("egg box"), so forces sum to ~1e-3: their
-        mean is subtracted."""
+        mean is subtracted.
+        """
         cell = self.cell
         dm = np.asarray(mf.make_rdm1())
         energy_weighted = (mf.mo_coeff * (mf.mo_occ * mf.mo_energy)) @ mf.mo_coeff.T
@@ -303,7 +307,8 @@ def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
     ----------
     pseudo : PySCF's parsed GTH entry
     g2 : squared length of G, 1/bohr²; at G = 0 the divergence is left out (it cancels against
-        Hartree and Ewald terms)"""
+        Hartree and Ewald terms)
+    """
     charge = sum(pseudo[0])
     radius, n, c = pseudo[1:4]
     c = list(c[:n]) + [0.0] * (4 - n)

@@ -87,7 +87,8 @@ def mean_and_deviation(
     The inputs are independent: structure (the ensemble, equal weights), the error of its fit
     (normal), functional (GGA or GGA + shift, equal weights), ions that follow the strain (a normal
     factor on B), ν (uniform), E of the other body (normal).  Gauss quadrature makes a weighted grid
-    of them."""
+    of them.
+    """
     B = np.asarray(B_GPa, float)
     B_error = np.asarray(B_error_GPa, float)
     normal, normal_weights = np.polynomial.hermite_e.hermegauss(5)
@@ -128,7 +129,8 @@ def effective_modulus(
     Returns
     -------
     Content of e_star.json, with `inputs` and `gate`, and the arrays of SAMPLE_COLUMNS; none without
-    structures."""
+    structures.
+    """
     used = [m for m in moduli if m.xc == "GGA" and m.trusted]
     values = [(modulus.B_GPa, modulus.error_GPa) for modulus in used]
     B, B_error = np.array(values).reshape(-1, 2).T

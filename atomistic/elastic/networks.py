@@ -3,7 +3,8 @@
 Lengths in Å.  A glass cell is melted at the density of experiment and quenched with a Tersoff
 potential and soft cores in LAMMPS, its shape free as soon as it is stiff.  At rest it must be a
 network without symmetry in which (almost) every atom has its valence, and none that the ensemble
-already has."""
+already has.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -211,7 +212,8 @@ def make_glass(
     Returns
     -------
     The first cell that passes, or the last one tried, and one row per attempt with its numbers and
-    verdict."""
+    verdict.
+    """
     attempts: list[dict[str, Any]] = []
     atoms = Atoms()
     network = material.part("network_glass")
@@ -239,7 +241,8 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
 
     Down to `QUENCH.free_below_K` the volume is constant; below it volume and shape follow a
     pressure of zero.  In the box of the melt a network is left under up to 30 GPa of shear stress,
-    and slides far when it is let go."""
+    and slides far when it is let go.
+    """
     from ase.io import read
 
     from atomistic.lammps import Atoms as LammpsAtoms

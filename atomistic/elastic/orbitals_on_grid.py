@@ -3,7 +3,8 @@
 Atomic units throughout (bohr, hartree).  The orbitals are PySCF's: real solid harmonics times
 contracted Gaussians, in PySCF's order, summed over all periodic images within `radius`.  Along a
 grid line the Gaussians follow a two-term recurrence (exp of a quadratic), which is why this is an
-order of magnitude faster than evaluating each point by itself."""
+order of magnitude faster than evaluating each point by itself.
+"""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -128,7 +129,8 @@ def pulay_term(
     Parameters
     ----------
     potential_density : (orbitals of this atom in PySCF's order, grid points), w v(r) Σ_ν D_µν
-        φ_ν(r)"""
+        φ_ν(r)
+    """
     relative = replace(atom, first=atom.first - atom.first.min())
     return _contract_gradient(
         potential_density, lattice, np.array(mesh), *_arguments(relative, lattice, mesh)

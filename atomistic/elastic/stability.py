@@ -2,7 +2,8 @@
 
 What the engine cannot compute must be refused or flagged; a plausible number would be wrong. The
 cells are small ones of the material's first crystal, in the smallest basis: a hard case costs a
-second at most."""
+second at most.
+"""
 
 from collections.abc import Sequence
 from functools import partial

@@ -5,7 +5,8 @@ snapshots on the way. Two cuts of one glass are the samples. Each is annealed on
 base, for half of the scene's time, and every choice then starts from these atoms. All choices but
 the speed are varied at four times the scene's speed, where they take a quarter of its time. A
 repeat from reversed velocities tells what the motion of the atoms alone changes: an error below it
-cannot be seen."""
+cannot be seen.
+"""
 
 import resource
 import time

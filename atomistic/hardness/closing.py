@@ -82,7 +82,8 @@ def run_closing(
     Raises
     ------
     InputError : a film that its asperity does not allow, a base that is not given, or no
-        calibration of the area."""
+        calibration of the area.
+    """
     wavelength_nm = run.asperity.tiles * float(glass.cell_A[0]) / 10
     calibrated(potential)  # raises where it is not
     area = Area()

@@ -2,7 +2,8 @@
 
 Atoms nearer to the counterface than a depth (or beyond it) touch.  The space between touching atoms
 counts as contact where a disc of the closing radius does not fit; enclosed holes do too.  The rim
-lies one rim radius outside the outermost touching atoms."""
+lies one rim radius outside the outermost touching atoms.
+"""
 
 from dataclasses import dataclass
 
@@ -55,7 +56,8 @@ def contact_map(
     """Share of each cell in contact; the middle of the array is `centre_A`.
 
     Discs of `closing_A` about the touching atoms, holes filled, cut back to `rim_A`; cells that the
-    rim crosses count in part, so that the area does not jump with the grid."""
+    rim crosses count in part, so that the area does not jump with the grid.
+    """
     spacing = _spacing(cell_A, area)
     cell = np.asarray(cell_A, dtype=float)
     shape = np.round(cell / spacing).astype(int)

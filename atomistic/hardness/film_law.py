@@ -205,7 +205,8 @@ def left_out(name: str, points: FilmPoints) -> float:
     """Root mean square error of ln H of a law at films that its fit had not, one at a time.
 
     The laws without film are fitted to the other films, `film` to oxide and base besides. Seeds are
-    averaged."""
+    averaged.
+    """
 
     def foretell(fitted: FilmPoints, points_left: FilmPoints) -> np.ndarray:
         return LAWS[name][0](fit(name, fitted), points_left.length_nm, points_left.thickness_nm)
@@ -241,7 +242,8 @@ def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
     S^(-N/2), S the sum of squares (the scatter's own prior is Jeffreys's): seeds are too few for a
     bootstrap. Every bin counted would make intervals too wide: study `hardness.film_coverage`,
     where those of this likelihood hold 88 to 91 %. A second round draws where the first found a
-    likelihood that counts."""
+    likelihood that counts.
+    """
     low, high = np.array(FILM_FIT.prior).T
     low = np.array([*np.log(low[:3]), low[3]])
     high = np.array([*np.log(high[:3]), high[3]])
@@ -291,7 +293,8 @@ def fit_films(
     -------
     Content of fit.json (docs/hardness.md): the inputs H_film, k and m with their rank correlations,
     and in `film` what the runs say of the base, how well each law foretells a thickness that its
-    fit had not, and the range of L/t."""
+    fit had not, and the range of L/t.
+    """
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
     unsound = []
     for point in points:

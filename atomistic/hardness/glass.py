@@ -1,7 +1,8 @@
 """Oxide glass by melt and quench, and the gates it must pass.
 
 A glass cell is periodic and cubic; bodies are cut from a tiling of it, so that a wavelength is a
-whole number of cells and nothing is strained."""
+whole number of cells and nothing is strained.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise

@@ -1,7 +1,8 @@
 """A metal below an oxide film: its embedded-atom potential, and dense bodies of grains.
 
 The functions are those of X. W. Zhou, R. A. Johnson and H. N. G. Wadley, Phys. Rev. B 69, 144113
-(2004)."""
+(2004).
+"""
 
 import io
 from collections.abc import Mapping
@@ -142,7 +143,8 @@ class Metal(Base):
         Raises
         ------
         InputError : the material has no potential or no grains, or its cube came out of another
-            width than foreseen."""
+            width than foreseen.
+        """
         wide_A = tiles * edge_A
         segments = _segments()
         identity = {

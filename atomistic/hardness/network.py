@@ -1,7 +1,8 @@
 """A covalent glass below an oxide film: silicon nitride by Tersoff, melted and quenched.
 
 The schedule is that of the elastic stage (`atomistic/elastic/networks.py`), in cells as wide as
-those of the oxide."""
+those of the oxide.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

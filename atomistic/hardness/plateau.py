@@ -1,7 +1,8 @@
 """Hardness of one closing run: plastic onset, plateau stress, and the reasons to refuse.
 
 Hardness is the mean contact stress of the plateau beyond a *witnessed* onset of plasticity (bonds
-exchanged and a top that stays lower after unloading)."""
+exchanged and a top that stays lower after unloading).
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -119,9 +120,12 @@ class Hardness:
 class Onset:
     """Where plasticity is first witnessed.
 
+    Attributes
+    ----------
     background : bond exchanges per snapshot before contact; NaN without such a snapshot.
     exchanges, p_value : those of the onset's snapshot, and the chance of as many without
-        plasticity."""
+        plasticity.
+    """
 
     displacement_nm: float | None
     background: float
@@ -378,7 +382,8 @@ def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
 
     The correlation of neighbours is corrected for its bias in short series (Kendall 1954).  How
     often the interval holds the truth, also after stopping on its width, is tested (study
-    `hardness.detection`)."""
+    `hardness.detection`).
+    """
     if len(values) < 2 or np.ptp(values) == 0:
         return float(np.mean(values)), float(np.mean(values))
     from scipy.special import stdtrit
@@ -396,7 +401,8 @@ def settled(stress: np.ndarray) -> int:
     The start that leaves the most independent averages (Chodera, J. Chem. Theory Comput. 12, 1799,
     2016, doi:10.1021/acs.jctc.5b00784), if it leaves clearly more: else noise would choose, and the
     interval would be too narrow.  A start beyond the first third would make plateaus of the ends of
-    elastic curves.  Both by the rates of study `hardness.detection`."""
+    elastic curves.  Both by the rates of study `hardness.detection`.
+    """
     independent = [
         _effective_number(stress[start:]) for start in range(len(stress) // RULES.latest_start + 1)
     ]

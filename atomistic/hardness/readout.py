@@ -188,7 +188,8 @@ def curve_rows(
     Parameters
     ----------
     drift : of `energy_drift`; a row has the value between two ends of segments on the line through
-        them."""
+        them.
+    """
     steps = sorted(samples)
     position, force, temperature = np.array([samples[step].averages for step in steps]).T
     gained = np.interp(steps, list(drift), list(drift.values()))

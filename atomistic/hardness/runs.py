@@ -31,7 +31,8 @@ class Protocol(Settings):
         average.
     segment_nm : travel between restart files.
     segments_per_snapshot : segments between relaxed snapshots; the first two frame one segment
-        before contact."""
+        before contact.
+    """
 
     timestep_fs: float = 3.0
     temperature_K: float = 300.0
@@ -64,7 +65,8 @@ def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
     """Every asperity x seed x energy scale; films and their base at full energies only.
 
     A base keeps its energies, and oxide with halved ones is no harder than titanium: no effect of a
-    film would be left."""
+    film would be left.
+    """
     names = {1.0: "full", 0.5: "halved"}
     return [
         ClosingRun(

@@ -5,7 +5,8 @@ stated distribution, and H' = (H - H_macro) A^0.25 from every run.
 
 The form of the potential is not known. Its error stands for all energies times one factor, as in
 the paper. Two ways bound the factor: the measured hardness of the glass, or twins of the runs with
-other energies, each as likely."""
+other energies, each as likely.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -188,7 +189,8 @@ def twins(points: Sequence[PointRow]) -> list[dict[str, Any]]:
     Returns
     -------
     `energy_scale`, `pairs`, `full_GPa`, `scaled_GPa` and `ratio` (median, low, high) of each scale
-    with a pair."""
+    with a pair.
+    """
     hardness = {}
     for point in points:
         if point["status"] == "yield" and not point["film_nm"]:
@@ -229,7 +231,8 @@ def free_fit(used: Sequence[PointRow]) -> dict[str, Any] | None:
     Returns
     -------
     `H_macro_GPa` and `H_prime_GPa_nm0.5` (mean, low, high: 68 %), `identified` and `verdict`; None
-    below three runs."""
+    below three runs.
+    """
     from scipy.stats import t as student  # slow to import
 
     full = [point for point in used if float(point["energy_scale"]) == 1.0]
@@ -263,7 +266,8 @@ def energy_ways(
     """Both ways to bound the energies: the runs that count, and the range of their factor.
 
     The second is left out where no run has scaled energies, the first where none with full ones is
-    defended."""
+    defended.
+    """
     defended = [point for point in points if point["status"] == "yield"]
     full = [point for point in defended if float(point["energy_scale"]) == 1.0]
     ways: dict[Energies, tuple[list[PointRow], tuple[float, float]]] = {}
@@ -334,7 +338,8 @@ def relative_hardness(slope: float) -> float:
     """Hardness at an RMS slope over that at 0.444; NaN beyond the slopes that were pressed.
 
     Straight in the logarithm of the slope, as in an expanding cavity (Johnson, J. Mech. Phys.
-    Solids 18, 115, 1970)."""
+    Solids 18, 115, 1970).
+    """
     slopes = np.log(list(SLOPES))
     return float(np.interp(np.log(slope), slopes, list(SLOPES.values()), np.nan, np.nan))
 
@@ -351,7 +356,8 @@ def steepness(points: Sequence[PointRow]) -> dict[str, list[float]]:
     Returns
     -------
     `rms_slope` and `factor`, straight between them in the logarithm of the slope; empty where the
-    runs themselves are flatter or steeper than the slopes that were pressed"""
+    runs themselves are flatter or steeper than the slopes that were pressed
+    """
     of_runs = float(np.mean([relative_hardness(rms_slope(point)) for point in points]))
     if not np.isfinite(of_runs):
         return {}

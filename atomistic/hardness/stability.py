@@ -1,7 +1,8 @@
 """Stiff and extreme cases of the hardness stage, judged by what must hold (`stability`).
 
 Made-up closings without a hardness must be refused, with the reason. Atoms that are cold, hot,
-molten or pressed too fast must keep their energy. What cannot be computed must end in one line."""
+molten or pressed too fast must keep their energy. What cannot be computed must end in one line.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace

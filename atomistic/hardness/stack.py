@@ -1,7 +1,8 @@
 """A film of oxide glass on another body: force field, how it is laid, how it must look.
 
 Nobody published how atoms of the two potentials act on each other. The file of the base states an
-assumption (`film_base`): Morse bonds of some pairs and a short-range repulsion of the others."""
+assumption (`film_base`): Morse bonds of some pairs and a short-range repulsion of the others.
+"""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -20,7 +20,8 @@ The work counts, because a body whose gap differs from place to place is pulled 
 of radius R by 2 pi R w (Derjaguin). Summed over the stack, spheres, waves and flattened tops that
 sprang back pull off within 7 % of the law with D0 by work where they are 5 nm wide or more. By
 force, the law misses 38 %. Only one rigid flat pulls off by its largest force
-(tests/atomistic/hardness/test_top_attraction.py)."""
+(tests/atomistic/hardness/test_top_attraction.py).
+"""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -83,7 +84,8 @@ def gap_cutoff(
     Returns
     -------
     `distribution`, `values`, `unit` as an input has them, and `runs`; None where a fit needs more
-    runs with a top."""
+    runs with a top.
+    """
     runs = {run: tops for run, rows in witnesses.items() if (tops := tops_of(rows))}
     if len(runs) < FIT_RULES.least_runs:
         return None

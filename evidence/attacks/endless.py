@@ -1,7 +1,8 @@
 """Does a file that never ends, or unfolds to gigabytes, cost more than a minute?
 
 Scans, containers, tables, scenes and potentials of some hundred bytes to kilobytes, each made to
-keep its reader busy."""
+keep its reader busy.
+"""
 
 import io
 import json

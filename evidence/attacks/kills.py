@@ -3,7 +3,8 @@ had not been?
 
 The command is ended at random moments in every way that a supervisor, a terminal or the system has.
 Nothing of it may live on, and a folder that was ended several times and is then finished must hold
-the results of a run left alone."""
+the results of a run left alone.
+"""
 
 import os
 import pty

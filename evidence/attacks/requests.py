@@ -2,7 +2,8 @@
 one?
 
 Requests are made up, cut off, of foreign hosts, of forms, or as large as they may be; between them
-an ordinary one must be answered as always."""
+an ordinary one must be answered as always.
+"""
 
 import json
 import random

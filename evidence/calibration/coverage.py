@@ -4,7 +4,8 @@ Truths are drawn from the prior, data from the engine's own surfaces at these tr
 posterior is that of the product's responses and likelihood, by importance sampling of prior draws.
 Ranks of the truths are uniform if all is well (Talts et al., arXiv 1804.06788). A set is left out
 only where its own datum is missing: a surface that never pushes that much. That depends on the data
-alone, and so keeps ranks uniform."""
+alone, and so keeps ranks uniform.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor

@@ -1,7 +1,8 @@
 """Does the shipped example of a calibration (scene `made_up`) find its known truth?
 
 Its tables in config/measurements/made_up were made by `tables(TRUTH, CONTACT, 20, EXAMPLE_SEED)`:
-the engine's surfaces with drawn errors. Results are those of target `calibration`."""
+the engine's surfaces with drawn errors. Results are those of target `calibration`.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,8 @@
 """What does it change that attraction deforms the contact?
 
 The same surfaces by `coupled` and by `adhesive`: inputs and D0 drawn as in `contact.draws`, which
-also judges them."""
+also judges them.
+"""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence

@@ -10,7 +10,8 @@ work and equal stress at touch, not an exponential.
 Literature: without adhesion kappa = A E* h' / F is 2.2 at this load (Xu et al.,
 doi:10.1007/s11249-024-01838-4) and 1.6 in Persson's theory, whose 95 % quantile of the stress is
 1.22 E* h'. Adhesion makes the area 1 / (1 - S) times as large, S the stickiness of Pastewka and
-Robbins (doi:10.1073/pnas.1320846111): their contacts keep their shape."""
+Robbins (doi:10.1073/pnas.1320846111): their contacts keep their shape.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace

@@ -4,7 +4,8 @@ Each draw is closed and opened by both engines on grids of the same cell of 1 um
 the invariants of `mesoscale.studies.contact_stability`. Coupled plastic surfaces are closed twice:
 the second cycle must be elastic, but for the jumps that it reports. Adhesive ones have cells of
 0.16 um^2, whose sites their attraction allows, and a D0 as tops of atoms have it. Rows that the
-table has are not run again."""
+table has are not run again.
+"""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence

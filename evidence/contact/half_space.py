@@ -2,7 +2,8 @@
 
 Both press the same periodic surfaces, the engine to the separations that tamaas finds: elastic,
 with saturated pressure, and unloading what plastic closing has flattened. tamaas (L. Frerot et al.,
-J. Open Source Softw. 5 (2020) 2121) needs the optional extra `peers`."""
+J. Open Source Softw. 5 (2020) 2121) needs the optional extra `peers`.
+"""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence

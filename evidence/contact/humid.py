@@ -4,7 +4,8 @@ Polysilicon on polysilicon with a native oxide. Each wall has the RMS height s; 
 have the correlation c are one of s sqrt(2 (1 - c)) on a flat. Pads of a few cells are closed to 1
 MPa and opened from there; the work counts from zero net force on. DelRio et al. (2007,
 doi:10.1063/1.2723658) found the work of dispersion up to a threshold of humidity, and then a jump
-towards 144 mJ/m2. Nothing here is fitted to them."""
+towards 144 mJ/m2. Nothing here is fitted to them.
+"""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence

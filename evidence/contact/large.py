@@ -1,7 +1,8 @@
 """How long does a large surface take to 1 % contact and back, and how much memory?
 
 Smooth elastic surfaces with sites of 1 nm, 63 to the shortest wave, in ten steps of force. Seconds
-are those of the processor. Memory is the largest of the process: give one grid a run."""
+are those of the processor. Memory is the largest of the process: give one grid a run.
+"""
 
 import argparse
 import resource

@@ -8,7 +8,8 @@ yield stress is chosen so that the pressure at the largest depth is our constant
 attraction of `mdr` has no range, ours has D0. Its sphere flattens as a whole, too; ours is a
 sphere's shape on a periodic half-space. Its adhesion fades where a step lets the contact shrink by
 less than 1 %, because its bonded radius then follows: 4000 steps back halve the pull-off that 400
-have. A third answer is that of Mesarovic and Johnson (J. Mech. Phys. Solids 48 (2000) 2009)."""
+have. A third answer is that of Mesarovic and Johnson (J. Mech. Phys. Solids 48 (2000) 2009).
+"""
 
 import subprocess
 import tempfile

@@ -6,7 +6,8 @@ are those of the processor: medians of a few repeats. The error is the mean diff
 pressure over its mean (L1), from the solution at the tightest tolerance of the solver. In a closing
 tamaas goes on from load to load, and ours is the cycle of the engine. A peer is compared at its
 loosest tolerance, with ours at an error that is no larger. The smooth map has 63 sites to its
-shortest wave on 1024^2, the rough one 2."""
+shortest wave on 1024^2, the rough one 2.
+"""
 
 import argparse
 import importlib.util

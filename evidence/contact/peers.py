@@ -7,7 +7,8 @@ github.com/ContactEngineering/Adhesion) minimises the energy over the gaps by L-
 from the last; the law of attraction is added to it as a potential of its own. tamaas (L. Frerot et
 al., J. Open Source Softw. 5 (2020) 2121) minimises it by Polonsky and Keer's conjugate gradients.
 It has exponential attraction only, so it sums those whose integral the law is. Both are run at
-every few separations, and their times are scaled to all. Needs `pip install Adhesion tamaas`."""
+every few separations, and their times are scaled to all. Needs `pip install Adhesion tamaas`.
+"""
 
 import argparse
 import time
@@ -145,7 +146,8 @@ def _by_adhesion(
     """Separations of the mean planes and net forces (nN), one after the other.
 
     The half-space of Adhesion yields as a whole, too: by the mean of its displacement it is farther
-    away."""
+    away.
+    """
     from Adhesion.Interactions import Potential  # pyright: ignore[reportMissingImports]  (not a dependency)
     from Adhesion.System import BoundedSmoothContactSystem, make_system  # pyright: ignore[reportMissingImports]
     from ContactMechanics import PeriodicFFTElasticHalfSpace  # pyright: ignore[reportMissingImports]

@@ -166,7 +166,8 @@ def settle(
     """Let yielding asperities flow until none is above its hardness.
 
     Returns the surface, the sweeps, and whether flow came to its end. Nothing flows where every
-    site touches."""
+    site touches.
+    """
     h = h.copy()
     returning = numerics.flow == "return"
     tolerance = numerics.flow_tolerance if returning else 0.0

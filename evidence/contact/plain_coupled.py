@@ -2,7 +2,8 @@
 least squares.
 
 For small grids, meant to be read beside docs/contact.md. Units nm, nN, GPa. It shares no code with
-the engine."""
+the engine.
+"""
 
 import numpy as np
 from scipy import linalg, optimize

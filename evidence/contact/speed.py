@@ -4,7 +4,8 @@ Seconds of the processor, one thread each. The floor is a normal number per site
 there and back. The plain model is `evidence.contact.plain_contact`. The peers solve one elastic
 load at the largest force, without plastic flow. Adhesive cycles have branches of 20 steps of force,
 beside what they need at touch, before it and after it. Memory is the largest of the process so far:
-run one by `--only`."""
+run one by `--only`.
+"""
 
 import argparse
 import importlib.util

@@ -6,7 +6,8 @@ has the load of the machine. Film: the medians of scene `reduced` at 40 MPa. Tab
 means, 7 MPa, sites of 1 nm. Shares: a smooth elastic surface closed to a share of contact. tamaas
 solves one elastic load at the largest force; its time is multiplied by the rows of the cycle. Needs
 `pip install tamaas` for the ratio. With `--choices` each numerical choice of the solver is tried on
-the smooth surfaces: the largest error of a net force, over the largest force."""
+the smooth surfaces: the largest error of a net force, over the largest force.
+"""
 
 import argparse
 import importlib.util

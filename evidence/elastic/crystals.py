@@ -2,7 +2,8 @@
 
 E(V) of β-Si3N4, silicon and stishovite with PBE and LDA, by the engine and the settings of the
 glasses.  Each value stands beside one of the same functional, or of experiment where none is known.
-Ten minutes of one core."""
+Ten minutes of one core.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

@@ -5,7 +5,8 @@ multigrid evaluates its potential twice at the cached grid's density of the firs
 is estimated as the faster of the two, as often as the cached grid needs a potential.  Then the
 difference to PySCF's FFTDF of the energy of 14 atoms at one density: for LDA the same discrete
 expression; for GGA FFTDF takes gradients of orbitals, so they differ by the mesh. The first rows
-were copied from a page of their commit, to the digits that it gave."""
+were copied from a page of their commit, to the digits that it gave.
+"""
 
 import time
 from argparse import ArgumentParser, Namespace

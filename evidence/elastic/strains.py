@@ -1,7 +1,8 @@
 """Do bulk moduli by strains of 3 %, as in use, differ from those by 5 %, as in Kim et al. (2013)?
 
 E(V) of small glasses and of β-Si3N4 by PBE with clamped ions: five strains of each width by the
-stage's fit, beside a polynomial of degree 5 through all energies. Four minutes of one core."""
+stage's fit, beside a polynomial of degree 5 through all energies. Four minutes of one core.
+"""
 
 import tempfile
 from argparse import ArgumentParser, Namespace

@@ -5,7 +5,8 @@ snapshots have the layer of atoms of a contact under load.  Tiled and cut by pla
 by a wave of the slopes in use, they have a section that geometry gives exactly.  The potential's
 file then gets the largest error as `contact_area`. With `--base` the slabs are that metal, and a
 film of the glass on it; the metal's file gets both errors (`film_base`). Rows with two `bodies` are
-of slabs pressed by a second one, which the stage did until commit 884b5d7."""
+of slabs pressed by a second one, which the stage did until commit 884b5d7.
+"""
 
 import tempfile
 from argparse import ArgumentParser, Namespace

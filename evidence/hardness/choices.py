@@ -7,7 +7,8 @@ is cheaper is taken where it moves hardness and D0 by less than a third of what 
 (`figures`, rows `..._shift`).
 
 The rows of 2026-11-23 were not made by this command: they were copied, rounded, from the page that
-the runs were first written up on."""
+the runs were first written up on.
+"""
 
 import resource
 import tempfile
@@ -124,7 +125,8 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     share of the cell.
 
     Of a cheaper protocol also how far hardness, H' and D0 move, with a standard error, in scatters
-    between runs."""
+    between runs.
+    """
     found = {}
     for case, reference, column in (
         ("base_half", "base_thick", "hardness_GPa"),

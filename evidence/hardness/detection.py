@@ -4,7 +4,8 @@ Made-up closing curves with a known truth go through `find_hardness`.  The noise
 the largest of the runs of scene `reduced`: stress about its running mean over the window in which
 stress is judged.  Curves are too short to tell the correlation of neighbours better than between
 the two values here.  The bounds were set beforehand; the largest exponent of a plateau, its start
-and the interval of its mean were chosen by such rates."""
+and the interval of its mean were chosen by such rates.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterator, Mapping, Sequence

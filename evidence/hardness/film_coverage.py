@@ -9,7 +9,8 @@ keeps of the difference between both hardnesses at L/t = 3.6, a contact of 18 nm
 The range of truths was changed after a first run: of 200 sets with k from 0.02 to 0.4 and m from 1
 to 3.2, intervals held k in 94 %, m in 98 % and the share in 88 %. With each bin counted, a trial of
 such sets (no rows kept) gave 98, 100 and 96 %; with errors between and within runs told apart, 91,
-96 and 83 %."""
+96 and 83 %.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

@@ -13,7 +13,8 @@ that the fit had not. `prediction` has k and m of a prototype, written down befo
 runs.
 
 `slope` is the paper's hardness of a run: the contact stress where the slope of stress against
-contact length drops, by the two straight lines that fit best."""
+contact length drops, by the two straight lines that fit best.
+"""
 
 import os
 import subprocess

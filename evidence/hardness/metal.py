@@ -6,7 +6,8 @@ constants at 0 K by a sum over neighbours, the same energy by LAMMPS, the drift 
 density of the polycrystal. Then asperities are pressed as the hardness stage presses them; hardness
 is the mean stress while the contact is judged. Dislocations are loops about discs of missing basal
 planes, closed by an anneal; `disordered_share` of the atoms have not the twelve neighbours of a
-hexagonal crystal."""
+hexagonal crystal.
+"""
 
 import tempfile
 from argparse import ArgumentParser, Namespace

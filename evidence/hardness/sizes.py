@@ -10,7 +10,8 @@ the runs were first written up on; the runs' own files are lost.  Their `same_sh
 the middle of the range, 0.55 wavelengths, not a measured length, so the exponents of these rows are
 approximate and have no interval.  With the measured lengths that page gave -0.30 [-0.41, -0.19] at
 full energies (nine runs, wavelengths up to 8.5 nm) and -0.19 [-0.29, -0.08] at halved ones (ten
-runs).  The two largest runs at full energies are of glasses made on another processor."""
+runs).  The two largest runs at full energies are of glasses made on another processor.
+"""
 
 import os
 import subprocess

@@ -5,7 +5,8 @@ Causes are added one by one: `bending` alone, `stretching`, `plate` for the modu
 `fringe` for the field at the sides. Then each property of the device departs by one standard
 deviation to either side, and E is that of other nickel. `by`: the product's elements, or a plain
 twin by finite differences, from the snap on. Folders hold results of target `answer`, with their
-cells at central inputs."""
+cells at central inputs.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

@@ -2,7 +2,8 @@
 
 Of finished scenes: what the interval holds, added in quadrature, beside the 5 to 95 % of the
 answer; processor time of the switch on its pads and of the budget. With `--press` all pads are
-pressed again, which is the rest of the answer."""
+pressed again, which is the rest of the answer.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

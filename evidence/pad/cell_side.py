@@ -2,7 +2,8 @@
 
 Pads of equal area on one film, of cells of different sides, drive the switch of a finished scene
 with measured scans, at central inputs. All places have the same RMS height, so that pads of few
-cells compare. Repeats have other surfaces."""
+cells compare. Repeats have other surfaces.
+"""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence

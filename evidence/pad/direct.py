@@ -5,7 +5,8 @@ cells of other surfaces. `many`: the points that differ most, on pads of 1,024 i
 (drawn one by one, as a device has them), each with a cell of its own. `fresh`: further points of
 the joint distribution on pads of 64 cells, whose quantiles and share that sticks are set beside
 those of the answer. The cells of these pads stand only for themselves: their curves are not shifted
-as those of the answer are."""
+as those of the answer are.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

@@ -3,7 +3,8 @@ directly?
 
 Surfaces of 4 µm × 4 µm and cells of 1 µm are closed and opened at the same separations; sixteen
 cells are a pad of the area of one large surface. `apart_in_errors` is the difference of both means
-over its standard error."""
+over its standard error.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

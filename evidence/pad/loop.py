@@ -5,7 +5,8 @@ ngspice?
 is within 1 %, in motion in a vacuum, with a drag that takes what rings; the voltage rises for 3 s
 and falls for 11 s. `ended_s`: where ngspice stopped; a release before 14 s is none. Folders hold
 results of target `answer`, with their cells at central inputs. Attraction is that of the scene
-times the column."""
+times the column.
+"""
 
 import subprocess
 import tempfile

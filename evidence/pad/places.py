@@ -5,7 +5,8 @@ does that take?
 (independent, lognormal), beside pads of sixteen cells with the same RMS heights. `cells`: pads of
 so many successive cells beside pads of independent places. `kinds`: all cells beside a film of two
 kinds of places, half of each, with the same mean and scatter of ln RMS. `alike`: all cells beside a
-film whose places all have the median RMS height. `spread` is the standard deviation of pads."""
+film whose places all have the median RMS height. `spread` is the standard deviation of pads.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

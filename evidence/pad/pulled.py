@@ -3,7 +3,8 @@
 Cells of scene `diamond` at central inputs, in four attractions. A ruby sphere of 0.5 mm was
 measured to pull off such films with 0.08 to 7.15 mJ/m². It feels some ten square micrometres: cells
 of a median place, without the film's scatter of places. This film hardly flows, so the energy of
-opening them is the work that a sphere would read."""
+opening them is the work that a sphere would read.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

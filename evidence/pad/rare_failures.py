@@ -3,7 +3,8 @@
 `repeat`: a plate on pads of a known closed form fails with a probability near 1e-2 or 1e-3, by
 attraction. The same switches are drawn and solved one by one (`brute_force`), and the rare-event
 method is repeated with new random numbers. `exact`: a reserve whose probability is known to be one
-in a million, by independent runs of subset simulation."""
+in a million, by independent runs of subset simulation.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

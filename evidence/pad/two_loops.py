@@ -5,7 +5,8 @@ A plate on pads of a known closed form. E* and D0 are common to all plates, A_H 
 are of each. `truth`: for draws of what is common, the share that fails by quadrature in A_H and
 bisection in the RMS height, and the releases of plates that are solved one by one. `stated`: the
 same by the response of the failure rate, and by the sum that is fitted to the answer's points; each
-again with new random numbers."""
+again with new random numbers.
+"""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence

@@ -5,7 +5,8 @@ Prints the numbers of evidence/predictions/indentation.yaml. P/S2 needs no area 
 contact pressure is the law of films. The stiffness is that of a rigid circular punch on elastic
 layers, by the integral equation of its pressure (Sneddon, Mixed Boundary Value Problems in
 Potential Theory, 1966, chapter 4). The depth is h_c + 0.75 P/S (Oliver and Pharr, J. Mater. Res. 7
-(1992) 1564), with the area 24.5 h_c^2 of a Berkovich tip."""
+(1992) 1564), with the area 24.5 h_c^2 of a Berkovich tip.
+"""
 
 import json
 import sys

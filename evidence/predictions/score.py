@@ -4,7 +4,8 @@ Each file evidence/predictions/*.yaml is one prediction: date, commit, inputs, a
 the quantiles of its predicted distribution at `LEVELS`. Once somebody measured, a value has
 `measured`, and the file its source. Scored are the share inside the central 90 % and the continuous
 ranked probability score. For a prediction without a width it is the absolute error (Gneiting and
-Raftery, J. Am. Stat. Assoc. 102 (2007) 359)."""
+Raftery, J. Am. Stat. Assoc. 102 (2007) 359).
+"""
 
 from argparse import Namespace
 from collections.abc import Iterator, Mapping, Sequence

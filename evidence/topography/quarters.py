@@ -4,7 +4,8 @@ three quarters give?
 Every map with square pixels below a folder, cut into four. The description, of the kind that all
 four choose, is made from three quarters and judged by pressing the fourth, as a scene judges the
 scans of a film. A map has one place of a film only, and its quarters are small: they see few long
-waves."""
+waves.
+"""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence

@@ -4,7 +4,8 @@ Every file below a folder: the test data of SurfaceTopography, and the diamond f
 `config/measurements`. Each map with square pixels judges the description made from itself. Loads
 that press more than half of a scan into contact are counted apart: a scene does not ask for them.
 Outside are an interferometer map of 1.8 mm with dust, and numbers of two ridged maps (doubt
-`anisotropic`)."""
+`anisotropic`).
+"""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence

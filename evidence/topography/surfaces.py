@@ -5,7 +5,8 @@ property. The middle of the places' RMS heights is that of their surface; about 
 nothing, 5 % or 20 %. Seeds are new: the test was fixed on others.
 
 The test tells what differs by about ten times the scatter between places. Where places of one film
-scatter by 20 %, six maps cannot tell a film of half as much roughness again."""
+scatter by 20 %, six maps cannot tell a film of half as much roughness again.
+"""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence

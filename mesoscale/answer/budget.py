@@ -127,7 +127,8 @@ def budget(
     switch : content of answer/pad_switch.json.
     by_hardness : of `release_by_hardness`; None: effects on the hardness have no row.
     errors_V : errors of the release by numerical choice, as answer/errors.csv has them; None: not
-        known."""
+        known.
+    """
     if central.pad is None or central.states is None or central.states.release_V == 0.0:
         return []
     pressed = _Pressed(central.point.device, central.pad.curves, central.states)

@@ -2,7 +2,8 @@
 uncertain.
 
 Two limits hold what menisci do while the switch opens: in balance with the vapour, or with a volume
-that stays (docs/humidity.md)."""
+that stays (docs/humidity.md).
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace

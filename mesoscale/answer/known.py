@@ -4,7 +4,8 @@ known.
 An input is common to all devices, one unknown value U, or varies with each device, X. A sum of
 functions of single numbers is fitted to the solved switches, so that it splits in one part of U and
 one of X. It is the release, or its square, which the forces balance. Where the switch sticks, the
-fitted quantity lies below zero, and nothing else is known of it."""
+fitted quantity lies below zero, and nothing else is known of it.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -79,7 +80,8 @@ def fit_additive(units: Array, release_V: Array) -> Additive:
     it sticks.
 
     Of the release and its square, linear and of second degree. The linear ones need more than k + 1
-    switches that let go, the others twice as many."""
+    switches that let go, the others twice as many.
+    """
     fits = [_fit(units, release_V, power, 1) for power in (1, 2)]
     if np.count_nonzero(release_V) > 2 * units.shape[1] + 2:
         fits += [_fit(units, release_V, power, 2) for power in (1, 2)]

@@ -30,7 +30,8 @@ def release_by_key(device: DeviceSettings, pad: PadCurves) -> list[dict[str, Any
     From the device's own value outwards, until the switch has no answer: this row has a reason and
     no voltages. `continued` says that the pad is pressed harder than it was computed, so that its
     curves are continued; `own` is the device itself. Without an answer of its own there is nothing
-    to compare with, and no row."""
+    to compare with, and no row.
+    """
     try:
         voltages_here = _voltages(device, pad)
     except InputError:

@@ -128,7 +128,8 @@ def on_pad_grid(contact: ContactSettings, table: InputTable) -> ContactSettings:
     """The contact on the coarsest of its halved grids that still holds all waves of the inputs.
 
     The release of `reduced` moves by 0.03 V from 128 to 512 sites a side, at a fiftieth of the time
-    (docs/pad.md). Without a cut-off the grid itself is one, and stays."""
+    (docs/pad.md). Without a cut-off the grid itself is one, and stays.
+    """
     if "q1" in table.names:
         shortest = float(table.rows[table.names.index("q1")].distribution.span()[1])
     elif contact.q1_per_nm is not None:

@@ -2,7 +2,8 @@
 makes them so.
 
 It is taken from the switches of `mesoscale.answer.switches` as they are. A point without an answer
-has its reason, and the probability's interval counts it both ways."""
+has its reason, and the probability's interval counts it both ways.
+"""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -63,7 +64,8 @@ class Answer:
         one at a time.
     noise : share that a number seems to explain by chance, taken off those of `sensitivity`.
     known : bands of what is not known and of what differs between devices; see
-        `mesoscale.answer.known.known`."""
+        `mesoscale.answer.known.known`.
+    """
 
     release_V: dict[str, Any]
     quantile_error_V: dict[str, float]

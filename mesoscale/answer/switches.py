@@ -2,7 +2,8 @@
 
 Nothing is fitted between points. Each pad has a few cells of its own, so their error averages out
 over the points as surfaces common to all would not let it. Half of its cells against the other half
-tells the error of a point; one that they leave undecided has more cells."""
+tells the error of a point; one that they leave undecided has more cells.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass

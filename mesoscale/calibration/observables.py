@@ -2,7 +2,8 @@
 
 A curve is given by its separation at the lowest of some net forces and by its steps from one force
 to the next. From one surface to another the steps scatter log-normally; an unknown zero of the
-instrument touches the first number alone."""
+instrument touches the first number alone.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -183,7 +183,8 @@ class Calibration:
     tables, model : with the cycles of all rounds.
     x : samples of the inputs, shape (s, n).
     error_share : largest error of the responses in standard deviations of the posterior prediction,
-        by observable."""
+        by observable.
+    """
 
     tables: tuple[Measurements, ...]
     model: Model

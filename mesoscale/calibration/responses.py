@@ -2,7 +2,8 @@
 
 All observables share one basis, so that what the finite number of cycles leaves open is one number
 per point, the leverage of least squares times the scatter (Draper and Smith, Applied Regression
-Analysis, 1998, section 1.4)."""
+Analysis, 1998, section 1.4).
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,7 +31,8 @@ class Prediction:
     mean : averaged over random surfaces, shape (m, k).
     scatter : covariance of single surfaces, shape (m, k, k).
     error : variance of the mean by the finite number of cycles, as a share of the scatter, shape
-        (m,)."""
+        (m,).
+    """
 
     mean: Array
     scatter: Array

@@ -3,7 +3,8 @@
 Ensemble sampler: emcee (Foreman-Mackey et al., PASP 125, 306, 2013, doi 10.1086/670067). Most moves
 take a share of the difference of two walkers, which follows ridges; the whole difference jumps
 between separate modes (differential evolution: ter Braak, Stat. Comput. 16, 239, 2006, doi
-10.1007/s11222-006-8769-1)."""
+10.1007/s11222-006-8769-1).
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -123,7 +123,8 @@ def predictive_probability(data: Posterior, x: Array, rng: np.random.Generator) 
     """Share of made-up data sets less likely than the measured ones, at samples x (m, n).
 
     Box, J. R. Statist. Soc. A 143, 383 (1980): the predictive density at the data is compared with
-    those of its draws."""
+    those of its draws.
+    """
     replicates = 200  # a probability is known to 0.015 at 0.05
     x = x[rng.integers(len(x), size=replicates)]
 

@@ -4,7 +4,8 @@ Every specimen has observables f = response(inputs) + model error (one for all s
 scatter, all normal, and data with known normal errors, linearised where they lie: exp(-f A f / 2 +
 b f). So all but the inputs is integrated exactly (Rasmussen and Williams, Gaussian Processes for
 Machine Learning, 2006, appendix A). How points lie about their curve tells nothing of the inputs
-and is left out."""
+and is left out.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -161,7 +162,8 @@ def surface_data(
     Raises
     ------
     InputError : a curve keeps too few points in the range of forces of the responses; see
-        `fit_responses`."""
+        `fit_responses`.
+    """
     tables = [table for table in tables if table.kind in KINDS]
     if not tables:
         return None

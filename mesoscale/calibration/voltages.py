@@ -3,7 +3,8 @@
 Each voltage is a regression over these switches, in the inputs and in all else that they differ by.
 What the inputs do is the response; the rest is scatter, shared by all measured switches (D0, what
 devices have in common, how places of the film differ, what the regression misses) or of each. A
-switch that sticks has a release below zero, and nothing else is known of it."""
+switch that sticks has a release below zero, and nothing else is known of it.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -29,7 +30,8 @@ class Voltage:
     ----------
     response : to the inputs, averaged over all else (V; below zero: it sticks).
     shared_V, each_V : standard deviations about it, of all switches together and from one to the
-        next."""
+        next.
+    """
 
     response: Surrogate
     shared_V: float

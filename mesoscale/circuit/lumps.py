@@ -14,7 +14,8 @@ strip: small slow motion feels the incompressible film, mu b^3 / s^3 per length,
 spring P0 A / s of trapped gas, the two limits of Blech, J. Lubr. Technol. 105 (1983) 615. Viscosity
 in narrow gaps is that of Veijola et al., Sens. Actuators A 48 (1995) 239, Kn the mean free path
 over s. A fringe of 2 / pi is that of a thin strip over a plane (Palmer, Trans. AIEE 56 (1937) 363).
-Simulators integrate these equations (`mesoscale.circuit.spice`)."""
+Simulators integrate these equations (`mesoscale.circuit.spice`).
+"""
 
 from dataclasses import dataclass
 
@@ -127,7 +128,8 @@ class LumpErrors:
     say.
 
     An error of 1 is that of a release which only one of both has. `reference` is the larger of the
-    changes of pull-in and release from half as many finite elements."""
+    changes of pull-in and release from half as many finite elements.
+    """
 
     lumps: int
     pull_in: float

@@ -64,7 +64,8 @@ class CircuitNumerics:
     loop_voltages, loop_top : voltages of the slow loop, the largest over that of the largest
         pull-in.
     loop_elements : finite elements of the slow loop, the first with which all its balances are
-        found."""
+        found.
+    """
 
     start_nm: float = 200.0
     begins: float = 1.5

@@ -8,7 +8,8 @@ module, which is compiled once.
 Terminals are `top` and `bottom` of the two electrodes, and `middle`: by how much mid-span has come
 down (1 V = 1 nm). Inside, voltages are nm, nm/us, Pa and fC. All are zero for the open switch at
 rest, where simulators begin. What follows from others is a current into 1 Ohm: voltage sources
-would double the equations."""
+would double the equations.
+"""
 
 import numpy as np
 

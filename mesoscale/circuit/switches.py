@@ -3,7 +3,8 @@ slow loops.
 
 Corners lie some standard deviations out, in the direction of inputs, D0 and properties that moves
 the release (sticky, loose) or the pull-in (fast, slow) most: the slope of a plane through the
-switches of all points."""
+switches of all points.
+"""
 
 from contextlib import suppress
 from dataclasses import dataclass

@@ -7,7 +7,8 @@ simulator needs to find its first balance.
 Closing gives the logarithms of push and pull at the deepest separation. An opening from there adds
 how both change with the rise above it, interpolated between the depths that were computed.
 Verilog-A gets monotone cubic pieces (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300),
-so that force and slope are continuous; SPICE gets straight ones."""
+so that force and slope are continuous; SPICE gets straight ones.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

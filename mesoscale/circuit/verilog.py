@@ -99,7 +99,8 @@ def _function(name: str, piece: Piece) -> str:
     then level.
 
     Branches choose the piece, which stands once: compilers write functions out wherever they are
-    called."""
+    called.
+    """
     cubic = PchipInterpolator(piece.x, piece.y)
     before = [piece.x[0], piece.y[0], float(cubic.derivative()(piece.x[0])), 0.0, 0.0]
     after = [piece.x[-1], piece.y[-1], 0.0, 0.0, 0.0]

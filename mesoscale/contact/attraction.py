@@ -8,7 +8,8 @@ that plastic flow has moved, are summed one by one.
 Retardation: flats lose the energy A_H / (12 pi s^2) / (1 + c s), with c = 5.32 over the wavelength
 (Gregory 1981, doi:10.1016/0021-9797(81)90018-7; its integral by Derjaguin is Gregory's sphere and
 plate). So 1/s^3 becomes (1 + 3/2 c s) / (1 + c s)^2 / s^3, which is 1/s^3 - (c/2) (1/s^2 - 1/(s +
-1/c)^2)."""
+1/c)^2).
+"""
 
 import math
 
@@ -200,7 +201,8 @@ def attracting(sites, place, pressure, pixels, touching):
 
     Without `touching` sites under pressure do not, but for the strip along their edges where there
     is no contact: it counts with the gap of the site beyond the edge. `place` holds the position of
-    each site of the cell in the list that `pressure` belongs to, or -1."""
+    each site of the cell in the list that `pressure` belongs to, or -1.
+    """
     weight = np.ones(sites.size)
     if touching:
         return weight

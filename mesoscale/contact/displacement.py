@@ -2,7 +2,8 @@
 
 Surfaces that share one flat have one separation and not one force, so a pad is closed by
 displacement. Opening depends on how deep the surface was pressed before: that is the memory of the
-contact."""
+contact.
+"""
 
 from dataclasses import dataclass
 

@@ -10,7 +10,8 @@ def work(branch: Branch, net: bool = False) -> tuple[float, float]:
 
     The work is against the repulsion, or that of the net force, as spent on closing and regained on
     opening. Trapezoids; the uncertainty is a third of what leaving out every second point changes,
-    as for any rule of second order (Richardson)."""
+    as for any rule of second order (Richardson).
+    """
     h = branch.separation_nm
     force = branch.net_nN if net else branch.repulsive_nN
     coarse = np.append(np.arange(0, len(h) - 1, 2), len(h) - 1)
@@ -26,7 +27,8 @@ def dissipated_energy(cycle: Cycle) -> tuple[float, float]:
     """Work lost between closing and opening, and its uncertainty, nN nm (1e-18 J).
 
     Against the repulsion; where attraction deforms the contact and has an energy (`mechanics:
-    adhesive`), of both."""
+    adhesive`), of both.
+    """
     net = "jump_loss_aJ" in cycle.flags
     (spent, error_spent) = work(cycle.closing, net)
     (regained, error_regained) = work(cycle.opening, net)

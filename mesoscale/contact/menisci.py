@@ -4,7 +4,8 @@ In equilibrium with the vapour a meniscus has Kelvin's radius r_K = -gamma V_m /
 fills every gap below d_c = r_K (cos theta1 + cos theta2) + 2 t_w, where each wall has an adsorbed
 film t_w, and Laplace's pressure p_c = gamma / r_K pulls the walls together there (Israelachvili,
 Intermolecular and Surface Forces, 2011, ch. 17). Where the walls part faster than the liquid
-evaporates, its volume stays, d_c grows and p_c falls."""
+evaporates, its volume stays, d_c grows and p_c falls.
+"""
 
 import math
 from typing import NamedTuple
@@ -28,7 +29,8 @@ class Menisci(NamedTuple):
     tension : gamma (cos theta1 + cos theta2), nN/nm.
     dispersion : Hamaker constant across the liquid over that across air.
     keeps_volume : whether an opening keeps the volume of the liquid; else it stays in equilibrium
-        with the vapour."""
+        with the vapour.
+    """
 
     pull_GPa: float
     reach_nm: float

@@ -44,7 +44,8 @@ def trace(
     undone and repeated smaller. The last step is solved for the requested force (the force can jump
     when asperities merge: then the closer side of the jump is taken). A step in which flow is stuck
     is undone and repeated smaller, too; the path ends where it is stuck within 1 % of the
-    roughness."""
+    roughness.
+    """
     path = Path()
     final = stop_force
     if start is None:
@@ -111,7 +112,8 @@ def reopen(contact: Contact, steps: int, last: Row) -> Path:
     """Lift the flat from the end of closing until nothing touches, in steps of both forces.
 
     For contacts that come back another way than they went. Where a force jumps, the step is as
-    small as a path allows."""
+    small as a path allows.
+    """
     path = Path([last._replace(sweeps=0)])
     scale = max(contact.rms, 1e-3 * contact.spacing)
     smallest = contact.SMALLEST_STEP * scale
@@ -153,7 +155,8 @@ def solve_force(
     Regula falsi (Illinois) between ``start``, the last separation, and ``below``, where the force
     is too large. Trials below the target are steps of the path and handed to ``accept``;
     those above it are undone. Where the force jumps over the target, the closer side is taken,
-    unless flow is stuck there."""
+    unless flow is stuck there.
+    """
     high = start  # force below the target
     low = below  # force above the target
     short = target - start_force

@@ -38,7 +38,8 @@ class State(NamedTuple):
     bounds : asperities whose radius is bounded.
     load : largest force of an asperity over its yield force.
     stuck : whether flow has no end: nowhere left to flow to, or (return mapping) the sweeps ran
-        out."""
+        out.
+    """
 
     force: float
     sites: int
@@ -176,7 +177,8 @@ class Contact(ABC):
         """Repulsion and attraction (nN) back over separations of a closing, without flow.
 
         The last separation is the present one, at which the contact is afterwards, too. Shape (2,
-        n)."""
+        n).
+        """
         self.hold_liquid(separations[-1])
         self.adopt_changes()
         touching = self.touching_separation

@@ -22,7 +22,8 @@ of equal, distant spots that together have this area and this resistance of Barb
 A film's resistance is added as if each spot had one potential, which is the least that spots and
 film have together; for one spot that is a film of its own, a twelfth of the spot's own resistance
 is missing at most (Holm, Electric Contacts, 1967: 0.27 rho / a at uniform current, 0.25 at one
-potential)."""
+potential).
+"""
 
 from dataclasses import dataclass
 
@@ -57,7 +58,8 @@ def stiffness_of(branch: Branch) -> Stiffness:
 
     The force is straight in the approach while the same sites touch. So where a neighbouring step
     has the same area, the chord to it is the slope; elsewhere that of a parabola through three
-    steps stands for it."""
+    steps stands for it.
+    """
     up = np.argsort(branch.separation_nm)[::-1]
     force = branch.repulsive_nN[up]
     approach = -branch.separation_nm[up]
@@ -79,7 +81,8 @@ def diffusive_share(knudsen: Array) -> Array:
 
     As Nikolic and Allen (Phys. Rev. B 60 (1999) 3963) fit it to Boltzmann's equation. Electrons
     followed one by one give a resistance that is up to 4 % higher
-    (tests/mesoscale/contact/test_resistance.py)."""
+    (tests/mesoscale/contact/test_resistance.py).
+    """
     return (1.0 + 0.83 * knudsen) / (1.0 + 1.33 * knudsen)
 
 

@@ -42,7 +42,8 @@ def spots_under(inputs: ContactInputs, settings: ContactSettings, cycle: Cycle) 
     """Sites of the nominal surface that the flat reaches on the closing of `cycle`.
 
     The surface is cut as it was: flow and elastic displacement, which the force does hold, do not
-    change the picture."""
+    change the picture.
+    """
     surface = random_surface(inputs, settings, NOMINAL_SEED)
     height = surface.mean() - surface  # contact is at the minima of the heights
     closing = cycle.closing

@@ -66,7 +66,8 @@ class FailureNumerics:
     confidence : that no more fail than allowed, by what is common to all devices and not known.
     near : difference of logarithms to which attractions and springs are sought.
     far : deviations beyond which a probability is 1 in double precision, so that a number would be
-        endless."""
+        endless.
+    """
 
     first: int = 48
     fewest: int = 32
@@ -118,7 +119,8 @@ class Attracted:
         Raises
         ------
         InputError : the pad is pressed beyond what is known of it, or the electrode cannot be
-            solved."""
+            solved.
+        """
         while True:
             try:
                 if self._still_closed is None:
@@ -159,7 +161,8 @@ class Population:
     release_V : a switch that is still closed at this voltage has failed.
     press : of the pads.
     solved : probabilities (m, dimension) of switches whose pads were pressed at the hold voltage,
-        and these pads."""
+        and these pads.
+    """
 
     table: InputTable
     settings: DeviceSettings

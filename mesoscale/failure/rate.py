@@ -5,7 +5,8 @@ Sticking is a yes or no, from which no rare event can be learned. So a response 
 reserve of switches (`mesoscale.failure.population`). One fails by itself where its reserve is below
 zero, and with k times the attraction where it is below ln k: one response serves all laws of
 attraction and hold voltages. It is learned from switches on pads that are pressed for them: those
-of the answer, and further ones where a failure is likely. Such switches also correct it."""
+of the answer, and further ones where a failure is likely. Such switches also correct it.
+"""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
@@ -185,7 +186,8 @@ def furthest_allowed(values: Array, probability: Array, allowed: float) -> float
     the first has more.
 
     Between values, which rise or fall, the logarithm of the probability is interpolated; both of
-    shape (n,)."""
+    shape (n,).
+    """
     logarithm = np.log(np.maximum(np.maximum.accumulate(probability), LEAST))
     wanted = float(np.log(allowed))
     if logarithm[0] > wanted:

@@ -4,7 +4,8 @@ An asperity at its hardness H whose indentation is kept relaxes by Norton's law,
 (p/H)^(m + 1), so that p = H (1 + m t/t0)^(-1/m). Every asperity is held to this envelope, or to the
 logarithmic one H / (1 + c ln(1 + t/t0)): the hardness of eq. 4 falls with the time under load, the
 asperities flow, and the flat sinks until it carries its force again. Closing and opening are fast:
-they meet the full hardness."""
+they meet the full hardness.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field

@@ -45,7 +45,8 @@ def collect(
     Raises
     ------
     InputError : a stage's gate failed and is not accepted, a stage lacks an input, or a range
-        crosses a physical bound."""
+        crosses a physical bound.
+    """
     rows = []
     pairs = dict(settings.pairs)
     for names, rank in joint_samples(settings.rows(law)).items():
@@ -175,7 +176,8 @@ def input_table(topography: Mapping[str, Any] | None = None, **rows: InputRow) -
     Raises
     ------
     InputError : unknown name, a range that crosses a physical bound, or roughness that the scans do
-        not determine."""
+        not determine.
+    """
     paper: dict[str, InputRow | None] = dict(PAPER_ROWS)
     stages = {}
     if rows.get("hardness", "paper") != "paper":

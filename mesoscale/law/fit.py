@@ -3,7 +3,8 @@
 d_c, C_r and rho_r are nearly degenerate in eq. 13: shifting d_c by x multiplies C_r by exp(-x /
 rho_r) and leaves the curve almost as it is. So d_c is not fitted beside the other two but *taken
 from the curve* by a stated definition (`contact_separation`), and C_r and rho_r are fitted given
-d_c."""
+d_c.
+"""
 
 import json
 from dataclasses import dataclass, field, replace
@@ -66,7 +67,8 @@ def contact_separation(
     ----------
     separation_nm, repulsive_nN : one branch in any order, shape (n,).
     touch_nm : the engine's exact value, if it is known for this branch; else that of the nearest
-        point outside."""
+        point outside.
+    """
     order = np.argsort(separation_nm)[::-1]
     h = np.asarray(separation_nm, float)[order]
     f = np.asarray(repulsive_nN, float)[order]

@@ -20,7 +20,8 @@ def band_rows(columns: Mapping[str, Array], points: int = 301) -> Iterator[dict[
     Parameters
     ----------
     columns : of uncertainty/samples.csv, shape (samples,) each; samples without a positive C_r and
-        rho_r are left out."""
+        rho_r are left out.
+    """
     for branch in BRANCHES:
         parameters = [columns[f"{branch}_{name}"] for name in PARAMETERS]
         values = np.array([*parameters, columns["hamaker"]], float)

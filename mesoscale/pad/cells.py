@@ -8,7 +8,8 @@ little pressure (docs/pad.md).
 
 Places of a film differ, too: each cell is a place of its own, with an RMS height from the film's
 distribution. Rough places are few and carry most of the load, so more of the cells are rough ones,
-and each of those counts for less."""
+and each of those counts for less.
+"""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -60,7 +61,8 @@ def sample_cells(
     Parameters
     ----------
     pad_cells : cells that the pad has. Places rougher than one in so many are left out: few pads
-        have one."""
+        have one.
+    """
     from scipy.special import ndtr, ndtri
 
     rng = np.random.default_rng(np.random.SeedSequence([first_seed, 0x9A11]))

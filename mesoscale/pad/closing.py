@@ -1,7 +1,8 @@
 """The cells of a pad, closed to the separations they share and opened from its depths.
 
 A pad has some 10^4 to 10^5 cells; the few that are computed stand for all of them, each with its
-weight."""
+weight.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass

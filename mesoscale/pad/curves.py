@@ -241,5 +241,6 @@ def attracting(pad: PadCurves, times: float) -> PadCurves:
 def rows_at(places: Array | float, known: Array, rows: Array) -> Array:
     """Rows that stand at `known` places, at other ones; beyond, their first and last values.
 
-    Of the shape (rows,) + that of `places`."""
+    Of the shape (rows,) + that of `places`.
+    """
     return np.stack([np.interp(places, known, row) for row in rows])

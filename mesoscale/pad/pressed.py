@@ -62,7 +62,8 @@ def curves_of(cells: PadCells, flats: Flats) -> PadCurves:
     nearer or farther out, and whose curves are its own, shifted. The shifts are those of a smoothed
     bootstrap: normal, of Silverman's width, with all cells drawn together so that the variance of
     first contacts stays (Silverman, Density Estimation, 1986, eq. 3.28, sec. 6.4.1). Places of
-    another RMS height shift in proportion to it."""
+    another RMS height shift in proportion to it.
+    """
     separation = cells.grid.separation_nm[::-1]
     depth = cells.grid.depth_nm[::-1]
     closing = np.zeros((2, separation.size))

@@ -266,7 +266,8 @@ def _predicted(values: Array, positive: bool) -> tuple[float, float, float]:
     What is positive by nature is taken by its logarithm, with Student's distribution. Separations
     are skewed as the RMS height is, and negative in full contact: only their order counts. One more
     lies between the j-th of n from below and the j-th from above with probability 1 - 2 j / (n +
-    1)."""
+    1).
+    """
     count = len(values)
     if positive:
         logs = np.log(values)

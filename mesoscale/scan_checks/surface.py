@@ -44,7 +44,8 @@ def periodic_part(heights: np.ndarray) -> np.ndarray:
     """Heights less the smoothest surface with their jumps (doi:10.1007/s10851-010-0227-1).
 
     What is left meets itself across the edges without a jump, and is nearly unchanged away from
-    them."""
+    them.
+    """
     nx, ny = heights.shape
     jumps = np.zeros_like(heights)
     jumps[0] += heights[-1] - heights[0]

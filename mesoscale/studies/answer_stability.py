@@ -3,7 +3,8 @@ says why.
 
 Beams are those around the published default, on a made-up pad: a change of stress or shape is hard
 only for the beam that it is made for. The device of the scene stands at its own extremes on its own
-pad."""
+pad.
+"""
 
 from collections.abc import Iterator
 from functools import partial

@@ -43,7 +43,8 @@ def hard_cases(point: Point, contact: ContactSettings, pad: PadCurves) -> list[H
     Parameters
     ----------
     point, contact, pad : of the scene: its central switch, the contact on the grid of its pads, and
-        its own pad."""
+        its own pad.
+    """
     scattered = Point({**point.values, RMS_SCATTER.name: 0.6}, point.gap_cutoff_nm, point.device)
     return [*hard_lumps(), *hard_tables(pad), _pressed("unequal places", scattered, contact)]
 

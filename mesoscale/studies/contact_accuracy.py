@@ -2,7 +2,8 @@
 
 The quantities are the law of the closing branch, the end of closing, the energy lost and the
 pull-off, on several surfaces. Where the scene has a switch, pads are pressed with the same choice,
-and the release is a quantity, too."""
+and the release is a quantity, too.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -71,7 +72,8 @@ def accuracy_points(
     ----------
     inputs, settings : of the scene's contact.
     pads : contact on the grid of the scene's pads, and its releases (`releases_on_pads`); None:
-        there is no switch."""
+        there is no switch.
+    """
     outputs = partial(cycle_outputs, inputs)
     yield from rows_of([*_knobs(settings, law_quantities(inputs), outputs, "surfaces")], progress)
     if pads is not None:

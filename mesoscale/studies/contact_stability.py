@@ -53,7 +53,8 @@ def violations(
 
     ``start``: the surface before the cycle, for the check of volume (needs `Cycle.heights`), and to
     judge a gain of energy on a finer path: the error of a sum over few points is unknown where
-    asperities merge and the force jumps."""
+    asperities merge and the force jumps.
+    """
     broken = []
     closing, opening = cycle.closing, cycle.opening
     if not all(

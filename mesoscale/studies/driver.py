@@ -37,7 +37,8 @@ class Quantity:
     scale : what the error is divided by, in the unit of the number; None: nothing, or with % the
         reference itself.
     volts : what an error of one unit moves in the release of the scene's switch, V; None: not
-        known."""
+        known.
+    """
 
     name: str
     unit: str
@@ -239,7 +240,8 @@ class HardCase:
     name, description : what it is, and what is hard about it.
     checks : what must hold.
     judge : runs it; whether all held, with the numbers behind the verdict. One that raises has
-        failed."""
+        failed.
+    """
 
     name: str
     description: str

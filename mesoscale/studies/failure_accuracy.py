@@ -2,7 +2,8 @@
 
 The response is that of the switches of the answer, whose pads are there: the stage presses a
 hundred more. All values are judged at the attraction with which as many switches as allowed fail by
-this response."""
+this response.
+"""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -124,7 +125,8 @@ def _learned(response: ReserveResponse, sampled: Sampled, times: float, one: Cos
     the cost `one`.
 
     Failures by the whole response are weighed by what the other one says of them (importance
-    sampling), which costs nothing beside a search of its own."""
+    sampling), which costs nothing beside a search of its own.
+    """
     count = len(response.reserves)
     hold_V = response.population.hold_V
 

@@ -2,7 +2,8 @@
 cost.
 
 Each choice in use is compared with one finer, so that the rows are those of an accuracy table with
-one value. The targets `accuracy` and `stability` tell more."""
+one value. The targets `accuracy` and `stability` tell more.
+"""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -38,7 +39,8 @@ def of_contact(inputs: ContactInputs, settings: ContactSettings) -> Iterator[Stu
     """Rows of a cycle at central inputs, by its steps of force and by its grid.
 
     The finer grid shows the same surface. It is left out where attraction deforms the contact:
-    there it takes minutes."""
+    there it takes minutes.
+    """
     outputs = partial(cycle_outputs, inputs)
     waves = settings.model_copy(update={"q1_per_nm": shared_wave(settings)})
     usual = outputs(waves, NUMERICS)

@@ -2,7 +2,8 @@
 
 Cells, steps, depths and sites are judged by the release at central inputs on pads of several
 surfaces, which are the same for all values of a choice. The number of points is judged by the
-quantiles of the release over all points."""
+quantiles of the release over all points.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -205,7 +206,8 @@ def _sites(point: Point, contact: ContactSettings, cells: int) -> Iterator[Knob]
     left.
 
     All grids show these same surfaces. Twice as many sites a side take eight times as long, and
-    twenty times where asperities are coupled: these are not tried on more than the scene has."""
+    twenty times where asperities are coupled: these are not tried on more than the scene has.
+    """
     half = contact.pixels // 2
     if contact.pixels % 2 or half < 32:
         return

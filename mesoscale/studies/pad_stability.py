@@ -259,7 +259,8 @@ def gains_energy(
     """Whether a cell gives back more work than it took, beyond what the sums of both leave open.
 
     Between two separations the force may have jumped anywhere, as sites touch, flow or let go. So
-    each step leaves open half of its length times the change of the force."""
+    each step leaves open half of its length times the change of the force.
+    """
     heights = surface_of(inputs, contact, cell)
     last = grid.separation_nm.size - 1
     finer = max(min(FINER, MOST_STEPS // last), 1)

@@ -2,7 +2,8 @@
 at a time.
 
 Synthetic scans have a known truth. What is told are the deviations of the analysis from it over
-several surfaces."""
+several surfaces.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache, partial, reduce
@@ -66,7 +67,8 @@ def accuracy_points(
     ----------
     settings : of the scene; its synthetic scans say how many there are, and of how many pixels.
     volts : what an error of 1 % of q0, slope or RMS height moves in the release of the scene's
-        switch, V."""
+        switch, V.
+    """
     quantities = [
         Quantity(name, "%", volts=(volts or {}).get(name)) for name in ("q0", "slope", "rms")
     ]

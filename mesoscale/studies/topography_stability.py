@@ -41,7 +41,8 @@ class Case:
     """Scans, what they show, and what the analysis must answer.
 
     `expected` is "recovers" (known truth within `WITHIN`), "doubts" (the gate fails, with `word`
-    among the reasons) or "refuses" (an input error with `word` in it)."""
+    among the reasons) or "refuses" (an input error with `word` in it).
+    """
 
     name: str
     description: str

@@ -104,7 +104,8 @@ def _runs(
     """The mean by the responses, by the number of direct runs.
 
     The runs of a choice are halved at random. Half the difference of the means by the halves is an
-    estimate of the error of the mean by all of them."""
+    estimate of the error of the mean by all of them.
+    """
     x, y = direct
     ranges = table.ranges()
 
@@ -145,7 +146,8 @@ def _degree(direct: Direct, again: Array, table: InputTable) -> Knob:
     """Responses of each degree against runs that they have not seen.
 
     The mean square deviation includes the scatter between surfaces. Pairs of surfaces at equal
-    inputs tell this scatter, and it is subtracted."""
+    inputs tell this scatter, and it is subtracted.
+    """
     x, y = direct
     ranges = table.ranges()
     deviation = np.nanstd(y, axis=0)

@@ -8,7 +8,8 @@ u. In balance, for every virtual deflection v,
     N = N0 + EA / (2 L) int (z'^2 - z0'^2) dx
 
 with p the contact pressure (positive: apart) and q the electrostatic pull. N is one number for the
-whole beam. Nodal values are exact for uniform loads without tension."""
+whole beam. Nodal values are exact for uniform loads without tension.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -109,7 +110,8 @@ class Beam:
     @cached_property
     def mechanics(self) -> tuple[Array, Array, Array, Array, Array, float, float, Array, int]:
         """Hermite's shapes, elements against bending and unit tension, weights times width, these
-        times products of two shapes, and what `newton_step` takes after them."""
+        times products of two shapes, and what `newton_step` takes after them.
+        """
         shapes = np.array([_shapes(size, self.within) for size in self.sizes_m])
         bending, pulled = (
             np.array(parts) for parts in zip(*map(_stiffness, self.sizes_m.tolist()), strict=True)
@@ -148,7 +150,8 @@ class Beam:
 
         Bending 384 EI s / b L^4 (cantilever 8 EI s / b L^4), and 8 N s / b L^2 of the axial force
         N, that at rest and that of a parabola of sag s, which is 8 s^2 / 3 L longer. Compression
-        counts as no force: a beam about to buckle is not without a scale."""
+        counts as no force: a beam about to buckle is not without a scale.
+        """
         sag = float(self.rest_m.max())
         length = self.length_m
         stretched_N = self.stretching_N_m * 8.0 * sag**2 / (3.0 * length)

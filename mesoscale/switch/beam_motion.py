@@ -3,7 +3,8 @@
 The beam of `mesoscale.switch.beam` meets the pad place by place, and every place remembers its own
 deepest closing. The landed area is a result. The way down is followed by the place that comes down
 farthest, past pull-in to contact. From just beyond pull-in the beam creeps to the balance at the
-hold voltage, as it snaps. Then the voltage is lowered until no place is in contact."""
+hold voltage, as it snaps. Then the voltage is lowered until no place is in contact.
+"""
 
 from typing import NamedTuple
 
@@ -241,7 +242,8 @@ class MovingBeam:
         """Bring a node down by a distance from rest; the square of the voltage that does so.
 
         Whether it is settled comes second: not to the last digit, as where the beam buckles, is
-        enough."""
+        enough.
+        """
         more_V2 = np.inf
         missing_m = np.inf
         for _ in range(NEWTON_STEPS):
@@ -341,7 +343,8 @@ class MovingBeam:
     def _halved(self, hold_V: float) -> _Held:
         """Halve the voltage until the beam opens, and return to the last voltage but one.
 
-        An opening is elastic, so the state at a lower voltage is reached from any higher one."""
+        An opening is elastic, so the state at a lower voltage is reached from any higher one.
+        """
         closed = [self._state(hold_V)]
         while True:
             before_V = closed[-1].voltage

@@ -75,7 +75,8 @@ class BeamSwitch(Switch):
         as that goes.
 
         It is 0 for a pad that is closed so near to its mean plane that nothing deeper can be
-        planned, and for a beam that does not pull in: its states have the reason."""
+        planned, and for a beam that does not pull in: its states have the reason.
+        """
         deepest = continued(pad)
         try:
             moving = self._on(LocalPad(deepest))

@@ -7,7 +7,8 @@ The plate at mean separation s from the dielectric is in balance when
 with F the force that opens it: that of its spring, k (g - s), and that of the pad, on which it lies
 flat. V^2 is then a single-valued function of s. A state is stable where it falls with s; where it
 turns are pull-in and release. Nothing is extrapolated: a held state beyond the computed closing, or
-an opening from a depth that was not computed, is refused."""
+an opening from a depth that was not computed, is refused.
+"""
 
 from dataclasses import dataclass
 
@@ -163,7 +164,8 @@ def _pull_in_V2(
 ) -> float:
     """Square of the voltage at the fold of the way down.
 
-    It lies far above the pad, where nothing but the spring acts."""
+    It lies far above the pad, where nothing but the spring acts.
+    """
     fold = int(np.argmax(np.where(near, -np.inf, down_V2)))
     around = np.linspace(grid[fold - 1], grid[min(fold + 1, grid.size - 1)], FOLD_POINTS)
     return float(_balancing_V2(plate, around, pad.closing_GPa(around)).max())

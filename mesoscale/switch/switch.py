@@ -139,7 +139,8 @@ def never_closes(settings: DeviceSettings, pull_in_V: float) -> str:
     """One line on a hold voltage below pull-in, which never closes the switch; else empty.
 
     A switch that is closed by more and then held by less has the deepest closing, and so the
-    release, of the former."""
+    release, of the former.
+    """
     hold_V = settings.hold_voltage_V
     if hold_V is None or hold_V >= (1.0 - PULL_IN_ERROR) * pull_in_V:
         return ""

@@ -5,7 +5,8 @@ Grigoriu 1998, doi:10.1061/(ASCE)0733-9399(1998)124:2(121)). Unlike heights deal
 give every surface the very same summit, the highest point is then as random as that of g, and grows
 with the area. F changes the correlation: with the Hermite coefficients c_n of F, a correlation r of
 g becomes R = sum c_n^2 r^n / sum c_n^2. So g is drawn with the correlation whose R is the wanted
-one."""
+one.
+"""
 
 from collections.abc import Callable
 from functools import lru_cache

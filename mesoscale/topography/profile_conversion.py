@@ -9,7 +9,8 @@ doi:10.1115/1.3451608; Jacobs, Junge and Pastewka 2017, doi:10.1088/2051-672X/aa
 nm^3 at k in 1/nm. Its inverse takes a derivative of noisy data, and what a power law turns into, a
 factor, fails on a plateau. So C is sought instead whose C1 fits: straight between nodes in log q
 and log C, by Whittle's (Gamma) likelihood, with changes of the logarithmic slope from node to node
-held small."""
+held small.
+"""
 
 import numpy as np
 

@@ -69,7 +69,8 @@ class SpectrumTable:
     Parameters
     ----------
     q, psd : (m,) wave vectors (1/nm) and C (nm^4), at least two points of positive values in rising
-        order of q."""
+        order of q.
+    """
 
     def __init__(self, q: Sequence[float] | np.ndarray, psd: Sequence[float] | np.ndarray):
         self.q = np.asarray(q, dtype=float)

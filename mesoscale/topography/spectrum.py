@@ -3,7 +3,8 @@
 All spectra are two-dimensional, C(q) in nm^4, normalised so that the sum of C (2 pi / L)^2 over all
 wave vectors is the mean square height (Parseval).  Averaging C over directions gives the isotropic
 spectrum; its slope is the physical quantity from which either convention of the Hurst exponent
-follows."""
+follows.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -68,7 +69,8 @@ def hann_spectrum(cleaned: Scan, sections: int = 25, flat: float = 0.0) -> Spect
     """The spectrum of a cleaned scan that the fits use, without what line offsets disturb.
 
     Sections have the paper's side (section 4.2). With a Hann window they overlap more than its 100
-    nearly flat ones: more than 25 add nothing."""
+    nearly flat ones: more than 25 add nothing.
+    """
     return radial_spectrum(
         cleaned.heights_nm, cleaned.lengths_nm, sections, 0.75, flat, skip_lines=True
     )

@@ -76,7 +76,8 @@ def synthesize_spectrum(
     """Periodic Gaussian surface with the shape of any isotropic spectrum C(q), nm^4 at q in 1/nm.
 
     `RoughSpectrum.psd` and `SpectrumTable.psd` are such functions, their sum the spectrum of two
-    rough surfaces. The rest is as in `synthesize`; the same seed gives the same noise."""
+    rough surfaces. The rest is as in `synthesize`; the same seed gives the same noise.
+    """
     squared, step = squared_waves(pixels, length_nm, q1)
     amplitude = np.concatenate([[0.0], np.sqrt(psd(step * np.sqrt(squared)))])
     if not np.isfinite(amplitude).all() or not amplitude.any():

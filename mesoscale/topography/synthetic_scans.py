@@ -70,7 +70,8 @@ def surface_patch(
     """Heights (pixels, pixels) in nm of a Gaussian surface sampled at points, not periodic.
 
     The spectrum is folded at the Nyquist wave vector as point sampling folds it, so that a coarse
-    scan of a surface that is rough below its pixels is exact, RMS included."""
+    scan of a surface that is rough below its pixels is exact, RMS included.
+    """
     # the periodic surface is larger, so that scans are not periodic
     least_pixels = math.ceil(1.25 * pixels)
     n = scipy.fft.next_fast_len(least_pixels, True) or least_pixels
@@ -135,7 +136,8 @@ def dilate(surface: np.ndarray, tip_radius_nm: float, step_nm: float) -> np.ndar
     """What a paraboloidal tip of the given radius traces: max over u of h(x+u) - u^2 / 2R.
 
     A paraboloid separates into one pass per axis. What lies below the pixels does not touch the
-    tip."""
+    tip.
+    """
     if tip_radius_nm <= 0:
         return surface.copy()
     reach = math.sqrt(2 * tip_radius_nm * np.ptp(surface)) / step_nm

@@ -3,7 +3,8 @@
 The likelihood of Tobin (Econometrica 26, 24, 1958, doi 10.2307/1907382): a normal density for each
 known value, the probability of lying below zero for each other one. It is concave in the
 coefficients over the scatter and in one over the scatter (Olsen, Econometrica 46, 1211, 1978, doi
-10.2307/1911445), so it has one maximum."""
+10.2307/1911445), so it has one maximum.
+"""
 
 from dataclasses import dataclass
 
@@ -35,7 +36,8 @@ class Censored:
     scatter : standard deviation about them; each term takes one of the known values, as in least
         squares.
     values : known ones, and the expected ones of the others, shape (m,); least squares of these
-        give the coefficients."""
+        give the coefficients.
+    """
 
     coefficients: Array
     covariance: Array

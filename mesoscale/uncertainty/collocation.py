@@ -47,7 +47,8 @@ def elementary_effects(y: Array) -> Array:
     """mu* per input, (n,): mean elementary effect between neighbouring nodes, inputs on [0, 1].
 
     With the nodes y0 in the middle, y1 and y2 at the ends, half the range apart: mu* = abs(y0 - y1)
-    + abs(y2 - y0)."""
+    + abs(y2 - y0).
+    """
     below = np.abs(y[0] - y[1::2])
     above = np.abs(y[2::2] - y[0])
     return below + above

@@ -3,7 +3,8 @@
 In Table 3 the closing columns "C_a" and "C_r" fit Table 2 only when their labels are exchanged (dev
 = sqrt(sum mu*^2 / 12) holds to 1 % for the other outputs); both are then in 1e-5 GPa. For the
 changes delta_C_a and delta_C_r neither reading is certain, in Table 2 as in Table 3: both are
-given."""
+given.
+"""
 
 from collections.abc import Iterable, Mapping
 
@@ -33,7 +34,8 @@ def table3(
     """mu* by output and input of config/paper/table3.csv (its row of units is skipped).
 
     By default the closing labels C_a and C_r are exchanged, as argued above; `as_printed` keeps
-    them."""
+    them.
+    """
     values: dict[str, dict[str, float]] = {}
     for row in rows:
         if row["parameter"].startswith("unit"):

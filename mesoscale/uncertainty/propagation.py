@@ -32,7 +32,8 @@ class NodeOutputs:
     Attributes
     ----------
     values : shape (seeds, nodes, len(FITTED)): the closing parameters, then the opening ones; NaN
-        where missing."""
+        where missing.
+    """
 
     seeds: list[int]
     values: Array
@@ -97,7 +98,8 @@ def output_responses(
     """Responses of the outputs of Table 2, behind indices and effects, from the exported ones.
 
     A change on opening has a response of its own: as a small difference of two large numbers it
-    would inherit the errors of both."""
+    would inherit the errors of both.
+    """
     changes = to_paper_outputs(direct[1])[:, OPENING]
     inputs = direct[0]
     on_change = [_regression(inputs, change, ranges, any_sign=True) for change in changes.T]
@@ -180,7 +182,8 @@ def linear_outputs(values: Array, ranges: Array, x: Array) -> Array:
     Parameters
     ----------
     values : the parameters at the nodes, shape (2n + 1, len(FITTED)); one that a node lacks is NaN
-        everywhere."""
+        everywhere.
+    """
     responses = []
     for y in values.T:
         responses.append(level1_response(y, ranges) if np.isfinite(y).all() else None)
@@ -197,7 +200,8 @@ def output_rows(
     """Rows of uncertainty/outputs.csv: Table 2 beside the paper's, in units of seeds' scatter.
 
     mean and dev are the paper's method; response_* are those of the exported responses, averaged
-    over random surfaces; cell_* those of the direct runs, each a cell of its own."""
+    over random surfaces; cell_* those of the direct runs, each a cell of its own.
+    """
     y = nodes.paper_outputs
     propagated = to_paper_outputs(result.outputs)
     cells = to_paper_outputs(direct[1])

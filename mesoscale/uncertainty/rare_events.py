@@ -10,7 +10,8 @@ Subset simulation (Au and Beck, Prob. Eng. Mech. 16 (2001) 263) gives the first 
 from h. One run of it states half of its own scatter, because the points of its chains are alike; so
 several independent runs are made, and the scatter between them counts. Runs of the model at points
 from h give the second factor, which corrects the process (Dubourg, Sudret and Deheeger, Prob. Eng.
-Mech. 33 (2013) 47). It is near 1 with a small scatter where the process is good."""
+Mech. 33 (2013) 47). It is near 1 with a small scatter where the process is good.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

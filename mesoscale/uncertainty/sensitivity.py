@@ -89,7 +89,8 @@ def sensitivity_rows(
     mu* is the mean over seeds of every seed's own value on the nodes of level 1 (the paper's one
     star), beside its scatter. Sobol' indices are those of the exported responses, averaged over
     random surfaces; their intervals (5 to 95 %) come from resampling the samples behind them
-    together with the direct runs."""
+    together with the direct runs.
+    """
     y = nodes.paper_outputs
     ranges = table.ranges()
     inputs = len(table.rows)

@@ -44,7 +44,8 @@ def held_out_predictions(direct: Direct, ranges: Array, settings: UncertaintySet
     """Parameters of every direct run by responses that never saw it, (m, len(FITTED)).
 
     The responses are fitted anew, terms and coefficients, without each fifth of the runs (five-fold
-    cross-validation)."""
+    cross-validation).
+    """
     x, y = direct
     predicted = np.full_like(y, np.nan)
     folds = np.arange(len(x)) % 5
@@ -76,7 +77,8 @@ def validation_rows(
     Notes
     -----
     Every direct run has its own surface, so `q2` (1 - mean squared error / variance of the runs)
-    includes the scatter between surfaces and cannot reach 1; `explained` leaves that part out."""
+    includes the scatter between surfaces and cannot reach 1; `explained` leaves that part out.
+    """
     truth, predicted = map(
         to_paper_outputs, (direct[1], held_out_predictions(direct, table.ranges(), settings))
     )

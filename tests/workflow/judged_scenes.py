@@ -3,7 +3,8 @@
 A scene is refused in single lines that begin with its file, or accepted as it stands: every value
 that an independent reader (text only, no types) finds in the file is the value that the run would
 use, and the published JSON Schema agrees. Anything else is a fault: another exception, a refusal of
-several lines, a value that was read as another."""
+several lines, a value that was read as another.
+"""
 
 import json
 import re

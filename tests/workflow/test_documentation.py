@@ -74,7 +74,8 @@ def plan(make_workflow, tmp_path_factory):
 @pytest.mark.parametrize(("page", "command"), COMMANDS)
 def test_a_command_of_a_page_is_understood(page, command, plan):
     """Make has its target, the command its options, materials and keys; a scene ships and can be
-    planned, or the page writes it."""
+    planned, or the page writes it.
+    """
     if command.startswith("make"):
         done = subprocess.run(
             ["make", "-n", *shlex.split(command)[1:]], cwd=ROOT, capture_output=True, text=True

@@ -3,7 +3,8 @@
 One run is left alone; a second is killed with SIGKILL once in each stage and resumed. Both must end
 with the same results. The second run takes over the melts and closings of the hardness stage, which
 `test_ownership` and `test_closing` kill, and the quenched cell of the first run. It has no points,
-whose pads are as the central one."""
+whose pads are as the central one.
+"""
 
 import json
 import shutil

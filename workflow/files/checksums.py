@@ -6,7 +6,8 @@ the result appears, so that a result without a checksum is none of ours, and one
 it was damaged afterwards.
 
 Files of the user have no record beside them. `content_checksums` tells their content, by which
-results follow it."""
+results follow it.
+"""
 
 import hashlib
 import json
@@ -41,7 +42,8 @@ def content_checksums(paths: Iterable[str | Path], remembered: Path = CONTENTS) 
     again.
 
     The date of the inode (ctime) counts, too: no program can set it, as `cp -p` and `rsync -a` set
-    the other one."""
+    the other one.
+    """
     known = _remembered(remembered)
     checksums: dict[str, str] = {}
     news: dict[str, list[Any]] = {}

@@ -3,7 +3,8 @@
 
 A file is written under a temporary name in its own directory, synced to disk and renamed, so that
 the existence of a result means that it is complete (a half-written HDF5 file opens without
-complaint)."""
+complaint).
+"""
 
 import csv
 import io
@@ -282,7 +283,8 @@ def load_h5(
     Raises
     ------
     ValueError : the file is not a complete result file, or its datasets are too large or lie in
-        other files."""
+        other files.
+    """
     import h5py
 
     groups: dict[str, dict[str, np.ndarray]] = {}

@@ -22,7 +22,8 @@ class Results:
 
     Only files named at the start are seen, so that a report depends on its declared inputs and on
     nothing that happens to lie beside them. `at_hand` is the content of JSON and YAML files that
-    are not written yet."""
+    are not written yet.
+    """
 
     def __init__(
         self,

@@ -1,7 +1,8 @@
 """Figures as inline SVG that follow the page: its font, its colours, light and dark.
 
 Matplotlib draws in marker colours, each of which becomes a CSS variable of the page afterwards.
-Numbers of a figure are in the files named below it."""
+Numbers of a figure are in the files named below it.
+"""
 
 import base64
 import io

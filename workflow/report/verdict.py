@@ -2,7 +2,8 @@
 and at a run's end.
 
 It is the release, and the sticking, of the scene's electrode on the pad over all that is uncertain.
-Where this interval cannot be had, the value at central inputs stands, with the reason."""
+Where this interval cannot be had, the value at central inputs stands, with the reason.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

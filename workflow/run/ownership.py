@@ -7,7 +7,8 @@ job and its LAMMPS: as long as the last of them lives, nothing else starts .scen
 scene whose results these are
 
 The system frees such locks (flock) with the last process that holds them, even after SIGKILL.  A
-job also ends when its run is killed, so that the next run need not wait for it."""
+job also ends when its run is killed, so that the next run need not wait for it.
+"""
 
 import fcntl
 import os

@@ -46,7 +46,8 @@ class Terminal(logging.Handler):
     Attributes
     ----------
     refusal : why the planned run is longer than that; empty where it is not, or a cluster takes its
-        jobs."""
+        jobs.
+    """
 
     def __init__(self, workflow: Any, costs: Costs, nothing_to_do: str, hours: float) -> None:
         super().__init__()

@@ -1,7 +1,8 @@
 """What is wrong with a scene beyond its single keys: contradictions, and what no machine can carry.
 
 Everything here is known before the first job. Imports the table of the inputs (half a second): for
-the main process."""
+the main process.
+"""
 
 import math
 from collections.abc import Iterator, Mapping

@@ -90,7 +90,8 @@ class Table:
         """The columns of rows in the order of the schema, members of a family as they first appear.
 
         A column that may be empty is there even if no row has it; in a table without rows all are
-        that must be. A name that is not known comes last, for `misfit` to find."""
+        that must be. A name that is not known comes last, for `misfit` to find.
+        """
         names = dict.fromkeys(name for row in rows for name in row)
         names |= {
             column.name: None
@@ -110,7 +111,8 @@ class Table:
         Parameters
         ----------
         rows : text by column, as `csv.DictReader` gives it: None where a row is too short, a key
-            None where too long."""
+            None where too long.
+        """
         for column in self.columns:
             if not column.optional and not any(map(column.covers, header)):
                 return f"column {column.name} is missing"

@@ -2,7 +2,8 @@
 
 In: inputs.csv, pad/model.h5 (GPa against nm; V), config/effects.yaml, hardness/fit.json where the
 scene uses it. Out: answer/pad_switch.json, answer/budget.csv (V), answer/errors.csv (V),
-answer/rough_pad.va, answer/rough_pad.sub."""
+answer/rough_pad.va, answer/rough_pad.sub.
+"""
 
 from pathlib import Path
 

@@ -1,7 +1,8 @@
 """Assemble the pad from its points.
 
 In: inputs.csv, pad/points/*.h5 (GPa against nm; V). Out: pad/model.h5, pad/inputs.csv (with the
-film's typical place, and how much places differ), pad/curves.csv (MPa against nm)."""
+film's typical place, and how much places differ), pad/curves.csv (MPa against nm).
+"""
 
 from mesoscale.inputs.table import to_rows
 from mesoscale.pad.pressed import curve_rows

@@ -2,7 +2,8 @@
 it.
 
 In: hardness/fit.json, elastic/e_star.json, topography/parameters.json (those that the scene wants);
-the files of samples that it names, as samples_<input>. Out: inputs.csv."""
+the files of samples that it names, as samples_<input>. Out: inputs.csv.
+"""
 
 import copy
 

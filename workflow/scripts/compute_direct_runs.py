@@ -1,7 +1,8 @@
 """Compute a chunk of direct contact cycles and keep their law.
 
 In: inputs.csv.  Out: uncertainty/direct/chunk_NNN.csv, or chunk_again.csv with the same inputs on
-other surfaces (inputs, seed, parameters of both branches, statuses)."""
+other surfaces (inputs, seed, parameters of both branches, statuses).
+"""
 
 from mesoscale.inputs.table import from_rows
 from mesoscale.uncertainty.designs import FIRST_RANDOM_SEED, FIRST_SECOND_SURFACE, random_runs

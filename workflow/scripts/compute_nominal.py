@@ -4,7 +4,8 @@ and 11; a picture.
 In: inputs.csv.  Out: contact/nominal.h5 (groups <model>/closing|opening and load_<F
 nN>/closing|opening; nm, nN, nm^2), with inputs, seed, largest force and flags as attributes of the
 group of each curve; contact/spots.h5 (the surface and where the flat has reached it, on the closing
-to the largest force); contact/errors.csv (numerical errors)."""
+to the largest force); contact/errors.csv (numerical errors).
+"""
 
 from dataclasses import asdict
 

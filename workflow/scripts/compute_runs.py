@@ -1,7 +1,8 @@
 """Compute a chunk of contact cycles of the collocation.
 
 In: inputs.csv.  Out: law/runs/chunk_NNN.h5 (groups run_NNNN/closing and run_NNNN/opening; nm,
-nN, nm^2)."""
+nN, nm^2).
+"""
 
 from dataclasses import asdict
 

@@ -2,7 +2,8 @@
 cycles.
 
 In: inputs.csv, law/runs/chunk_NNN.h5, contact/nominal.h5 (nm, nN). Out: law/parameters.csv, one
-row per run and branch; law/nominal.csv, one row per nominal curve and branch."""
+row per run and branch; law/nominal.csv, one row per nominal curve and branch.
+"""
 
 from mesoscale.inputs.table import from_rows
 from mesoscale.law.branches import stored_rows

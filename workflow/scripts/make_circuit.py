@@ -1,7 +1,8 @@
 """Make the switch for circuit simulators: central, corners and draws, and its slow C-V loop.
 
 In: inputs.csv, pad/model.h5. Out: circuit/models/*.sub and *.va, circuit/circuit.json,
-circuit/circuit.csv, circuit/loop.csv (fF, V)."""
+circuit/circuit.csv, circuit/loop.csv (fF, V).
+"""
 
 from dataclasses import asdict
 from pathlib import Path

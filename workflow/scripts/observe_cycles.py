@@ -1,7 +1,8 @@
 """Compute a chunk of contact cycles over the prior and keep what can be measured of them.
 
 In: calibration/priors.csv.  Out: calibration/cycles/chunk_NNN.csv (inputs, seed, observables; nm,
-nN, GPa)."""
+nN, GPa).
+"""
 
 from mesoscale.calibration.observables import observe_runs
 from mesoscale.calibration.posterior import FIRST_SEED

@@ -1,7 +1,8 @@
 """Press the pads of some points, and solve the switch on each.
 
 In: inputs.csv.  Out: pad/points/chunk_NNN.h5 (GPa against nm; V). Number 0 is the point at central
-inputs, whose job also writes report.html, as far as it is known then."""
+inputs, whose job also writes report.html, as far as it is known then.
+"""
 
 from pathlib import Path
 

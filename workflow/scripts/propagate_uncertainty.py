@@ -3,7 +3,8 @@
 In: inputs.csv, law/parameters.csv, the paper's Tables 2 and 3; of uncertainty/:
 direct/chunk_NNN.csv, direct/chunk_again.csv. Out, in uncertainty/: outputs.csv (Table 2),
 sensitivity.csv (Table 3), surrogate.json, samples.csv, validation.csv,
-law.csv (nm, GPa/nm, GPa)."""
+law.csv (nm, GPa/nm, GPa).
+"""
 
 import numpy as np
 

@@ -2,7 +2,8 @@
 depends on.
 
 In: result files of all stages that the scene needs. Out: report.html, self-contained; scene.yaml
-with the resolved settings, package versions, git commit."""
+with the resolved settings, package versions, git commit.
+"""
 
 from pathlib import Path
 

@@ -3,7 +3,8 @@
 In: the tables of measurements, calibration/priors.csv, calibration/cycles/chunk_NNN.csv; with
 voltages of switches calibration/pads/chunk_NNN.h5 (GPa against nm; V). Out:
 calibration/posterior.json, samples.csv, summary.csv (prior and posterior of the inputs),
-predictive.csv (what the next surface and switch show)."""
+predictive.csv (what the next surface and switch show).
+"""
 
 from mesoscale.calibration.measurements import load_measurements
 from mesoscale.calibration.observables import cycles_of_rows

@@ -1,7 +1,8 @@
 """Relax one amorphous cell by DFT and scan its E(V).
 
 In:  elastic/quenched/NAME.{xyz,csv}.  Out: elastic/structures/NAME.{xyz (Å),json},
-elastic/scans/NAME.csv (Å3, eV)."""
+elastic/scans/NAME.csv (Å3, eV).
+"""
 
 from pathlib import Path
 

@@ -4,7 +4,8 @@ extreme cases.
 In: of studies of pad, answer, circuit, failure and contact inputs.csv and pad/model.h5; of
 uncertainty inputs.csv and the direct runs; of topography nothing (synthetic scans with known
 truth); of hardness and elastic their materials, and what the stage made. Out: accuracy/STAGE.csv
-(s), stability/STAGE.csv."""
+(s), stability/STAGE.csv.
+"""
 
 import shutil
 

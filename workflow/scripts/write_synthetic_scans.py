@@ -1,7 +1,8 @@
 """Scan rough surfaces of known spectrum with a synthetic AFM.
 
 In: nothing.  Out: topography/scans/*.gwy (Gwyddion files, metres), topography/truth.json (1/nm,
-nm)."""
+nm).
+"""
 
 from pathlib import Path
 

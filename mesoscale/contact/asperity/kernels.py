@@ -184,7 +184,8 @@ def shape(asperities, number, level, mechanics):
 
     The radius is bounded so that no asperity is stiffer than a rigid flat punch of its own area, R
     <= 9 A / (4 pi delta): sites of mean curvature <= 0 (flattened tops) have no radius of their
-    own."""
+    own.
+    """
     count = asperities.sites[number]
     area = count * mechanics.site_area
     indentation = level - asperities.lowest[number]
@@ -221,7 +222,8 @@ def total_force(asperities, level, mechanics, capped):
     """Repulsive force; ``capped``: at most H A each (eq. 4).
 
     Returns the force (nN), sites, asperities, bounds on R in use, and the largest F / (H A) before
-    the cap."""
+    the cap.
+    """
     force = 0.0
     sites = 0
     alive = 0
@@ -265,7 +267,8 @@ def _add_flow(heights, n, spacing, peak, amplitude, narrow, rule, changes, g1, g
     """Add amplitude * (G1 - c G2) around a peak, with c such that the sum over the grid is zero.
 
     Return mapping: scaled so that the peak moves by exactly the amplitude. ``g1``, ``g2``: room for
-    the two Gaussians. Returns the patch's half-width."""
+    the two Gaussians. Returns the patch's half-width.
+    """
     wide = rule.ratio * narrow
     half = min(int(np.ceil(REACH * wide / spacing)), (n - 1) // 2)
     balance = (_gaussian(narrow, half, spacing, g1) / _gaussian(wide, half, spacing, g2)) ** 2
@@ -384,7 +387,8 @@ def _find_yielding(heights, level, asperities, mechanics, rule, work, actives):
     """List the asperities above their hardness by the site of their peak; returns how many.
 
     None yields where every site touches: flow keeps the volume, and there is nowhere left to flow
-    to."""
+    to.
+    """
     yielding = 0
     for k in range(actives):
         number = work.active[k]
@@ -414,7 +418,8 @@ def _sites_to_raise(heights, asperities, number, goal, margin, work):
     """List the sites of an asperity that lie below a height, the lowest first; returns how many.
 
     Depths are compared in whole margins, and among equals the site's number decides: rounding does
-    not."""
+    not.
+    """
     first = asperities.first[number]
     count = asperities.sites[number]
     if count == 1:

@@ -11,7 +11,8 @@ that is convex: the repulsive contact under given stresses, which the coupled en
 minimum has a lower E than the last gap (a convex-concave procedure, Yuille and Rangarajan,
 doi:10.1162/08997660360581958). The iteration therefore ends in a stable state next to the last one.
 Where the branch ends it goes on to the next, and the energy between is lost. Anderson's mixing
-(doi:10.1145/321296.321305) makes it faster; a mix that raises the energy is left out."""
+(doi:10.1145/321296.321305) makes it faster; a mix that raises the energy is left out.
+"""
 
 import math
 from collections import deque
@@ -177,7 +178,8 @@ class AdhesiveContact(CoupledContact):
 
         Both nN nm. Up to a third of abs(F2 - F1) step / 2 may be the curvature of F (a parabola),
         with either sign; beyond half of it the contact has jumped. Flow loses energy by itself, so
-        steps that flow tell nothing."""
+        steps that flow tell nothing.
+        """
         was = self.saved[0]
         now = self.now
         step = now.separation - was.separation
@@ -234,7 +236,8 @@ class AdhesiveContact(CoupledContact):
         the forces beside it.
 
         A peak of the force, or a jump amid a step, can leave just the loss that a smooth force has:
-        then only the change of the force tells that the step is too long."""
+        then only the change of the force tells that the step is too long.
+        """
         start, unsettled = self.separation, self.unsettled
         row = self.away(separation)
         unknown = max(map(abs, self._loss(self.flows and separation < start)))
@@ -410,7 +413,8 @@ def attract(heights, separation, moved, pull, hamaker, walls, liquid, changes, r
     Returns
     -------
     Elastic and adhesive energy of the attraction, nN/nm, the sum of `reached`, GPa, and how many
-    sites change by more than each of two `changes` from `pull`."""
+    sites change by more than each of two `changes` from `pull`.
+    """
     strength, (least, offset, rate, reach) = hamaker / (6.0 * np.pi), walls
     (share, laplace), outer = liquid, max(reach, least) + offset
     edge = 0.5 * strength / (outer * outer * (1.0 + rate * outer))

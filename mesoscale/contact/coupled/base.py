@@ -1,7 +1,8 @@
 """The elastic half-space below the sites of a map, which repeats or stands alone.
 
 Displacements by all pressures are one transform there and back. A map alone is transformed on
-twice its sides, where its copies do not reach it (Hockney; doi:10.1016/S0043-1648(99)00113-1)."""
+twice its sides, where its copies do not reach it (Hockney; doi:10.1016/S0043-1648(99)00113-1).
+"""
 
 import math
 from abc import ABC, abstractmethod

@@ -11,7 +11,8 @@ def label(sites, place, pressure, pixels, number):
     """Number the clusters of connected sites under pressure, from 0; -1 for the sites apart.
 
     `place` holds the position of each site of the cell in `sites`, or -1. Returns how many clusters
-    there are."""
+    there are.
+    """
     clusters = 0
     number[:] = -1
     waiting = np.empty(sites.size, np.int32)
@@ -88,7 +89,8 @@ def flatten(heights, sites, separation, displacement, pressure, limit, changes):
 
     What flows is left out of the surface. Up to E* tan(slope)/Y of some 30 the half-space around an
     indentation takes its volume up by expanding elastically (K. L. Johnson, Contact Mechanics,
-    1985, section 6.3)."""
+    1985, section 6.3).
+    """
     for k in range(sites.size):
         site = sites[k]
         gap = heights[site] + separation + displacement[k]

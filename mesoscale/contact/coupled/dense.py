@@ -7,7 +7,8 @@ doi:10.1016/j.cma.2004.08.006), solves it with one linear system for the sites b
 a time. Conjugate gradients solve this system, because they need some tens of products with a matrix
 whose factors cost as much as a hundred. These products are in single precision: each step starts
 from gaps in double precision, so that only the number of steps can suffer. `grid` holds the same
-for whole grids, and what takes over where the sets do not come to rest."""
+for whole grids, and what takes over where the sets do not come to rest.
+"""
 
 import numpy as np
 from numba import njit
@@ -97,7 +98,8 @@ def classify(gap, pressure, displacement, limit, stiffness, n, state):
 
     From one bound to the other a site goes by way of the state between: where steps jump over it,
     all sites at the limit can change places with those apart for ever (seen in second cycles, where
-    whole tops yield again at once)."""
+    whole tops yield again at once).
+    """
     moved = 0
     for k in range(n):
         open_gap = gap[k] + displacement[k]
@@ -177,7 +179,8 @@ def close_gaps(block, around, stencil, gap, goal, share):
     preconditions.
 
     Ends where the largest gap is below `goal`, or below a share of the first one: the next step
-    goes on from there, and the block need not be exact."""
+    goes on from there, and the block need not be exact.
+    """
     x = np.zeros(gap.size)
     z = np.empty(gap.size)
     r = -gap

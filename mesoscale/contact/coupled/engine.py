@@ -4,7 +4,8 @@ The gap g = h + d + u holds the displacement u of a half-space of modulus E* und
 is the separation of the mean planes. Where p = 0 the surfaces are apart (g >= 0), where 0 < p < H
 they touch (g = 0), and where p = H, the hardness, the surface yields (g <= 0). Unknown are only the
 sites that can touch: a force F raises the surface nowhere by more than F times the depth of the
-Green's function, so all sites higher than that are apart."""
+Green's function, so all sites higher than that are apart.
+"""
 
 import math
 from functools import cached_property, partial
@@ -112,7 +113,8 @@ class CoupledContact(Contact):
         """Largest force (nN) to which the contact is followed.
 
         Full elastic contact: there the separation of the mean planes is 0 and stays so. With a
-        hardness, `BEARING_SHARE` of what it carries on the whole cell if this is less."""
+        hardness, `BEARING_SHARE` of what it carries on the whole cell if this is less.
+        """
         full = (1.0 - 1e-6) * self.e_star * self.roughness.flattening * self.length**2
         if not (self.flows or self.capped):
             return full
@@ -276,7 +278,8 @@ class CoupledContact(Contact):
         clusters of the separation before, mostly go one way. Attraction can hold clusters together
         that part once they are as soft as one: then no state has the hardness of its clusters, and
         those that have touched in the last rounds keep the lower one. Returns the rounds and
-        whether they settled."""
+        whether they settled.
+        """
         for rounds in range(1, self.ROUNDS + 1):
             if not self.hardness.constant:
                 self._solve(self.COARSER)
@@ -425,7 +428,8 @@ class CoupledContact(Contact):
         """Attractive force in nN, negative (eq. 1), at the current separation or before contact.
 
         The gap is the deformed one at sites whose undeformed gap is small; the others count
-        undeformed, through the histogram (`NEAR_CUTOFFS` states the error)."""
+        undeformed, through the histogram (`NEAR_CUTOFFS` states the error).
+        """
         law = self.adhesion
         if law is None:
             return 0.0

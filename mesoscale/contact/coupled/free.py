@@ -4,7 +4,8 @@ The map lies in a corner of a periodic cell of at least twice its side, whose ot
 low to touch. The half-space is free: its influences are those of Love for pressed squares (Johnson,
 Contact Mechanics, 1985, eq. 3.25), exact up to the side of the map, so that neighbouring cells do
 not count (Hockney; doi:10.1016/S0043-1648(99)00113-1). The displacement vanishes far away: the
-separation is that of the flat from the undeformed mean plane."""
+separation is that of the flat from the undeformed mean plane.
+"""
 
 import math
 from functools import cached_property

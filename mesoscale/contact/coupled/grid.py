@@ -268,7 +268,8 @@ def _follow(
     makes.
 
     Of few sites it is taken from the table, of many in single precision, by `Split` where the
-    change is small."""
+    change is small.
+    """
     pressure, change = pressed
     size = np.abs(change)
     if np.count_nonzero(size) * places.size <= TABLE_SHARE * grid.field.size:
@@ -358,7 +359,8 @@ def project(
     any guess.
 
     Dostal and Schoeberl, doi:10.1007/s10589-005-5395-6. `apply` makes displacements of pressures,
-    `norm` bounds its largest eigenvalue (nm/GPa)."""
+    `norm` bounds its largest eigenvalue (nm/GPa).
+    """
     fixed = 1.0 / norm
     pressure = np.clip(guess, 0.0, limit)
     displacement = apply(pressure)

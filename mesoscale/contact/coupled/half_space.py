@@ -3,7 +3,8 @@
 A pressure of wave vector q bends the surface by 2 / (E* abs(q)) times itself (K. L. Johnson,
 Contact Mechanics, 1985, section 13.2), times the softness of its layers (`layers`). The mean is
 left out: it shifts the half-space as a whole, and the separation of the mean planes is what is
-prescribed."""
+prescribed.
+"""
 
 from functools import lru_cache
 
@@ -85,7 +86,8 @@ def convolve(
     pressure : (rows, N), single or double precision, as `compliance` (N, N // 2 + 1), nm/GPa
     rows, wanted : numbers of rows, rising
     room : for the spectrum, as large as `compliance`, complex in double precision; its contents are
-        lost"""
+        lost
+    """
     spectrum = room.view(np.result_type(pressure, np.complex64))[: compliance.size].reshape(
         compliance.shape
     )
@@ -117,7 +119,8 @@ def stiffness_between_neighbours(table: np.ndarray) -> np.ndarray:
 
     The stiffness of the half-space falls off with the third power of the distance. So these
     precondition a contact nearly as well as the stiffness of all sites: 11 to 16 steps to 1e-6 for
-    10 to 15, at 1 to 75 % contact."""
+    10 to 15, at 1 to 75 % contact.
+    """
     row, col = np.divmod(np.arange(9), 3)
     between = table[np.abs(row[:, None] - row), np.abs(col[:, None] - col)]
     return np.linalg.inv(between)[4]

@@ -4,7 +4,8 @@ wave.
 A pressure p cos(qx) on an isotropic stack makes plane strain. With Airy's function F = f(z) cos(qx)
 the stresses are f (normal, but for its sign) and f' (shear), and f'''' - 2 q^2 f'' + q^4 f = 0 in
 each layer (Timoshenko and Goodier, Theory of Elasticity, 1970, section 24). Stresses and
-displacements are continuous from layer to layer. Lengths are in units of 1/q here."""
+displacements are continuous from layer to layer. Lengths are in units of 1/q here.
+"""
 
 from functools import lru_cache
 
@@ -83,7 +84,8 @@ def _waves(thickness: Array | None, depth: Array) -> Array:
     (waves, 4, 4).
 
     They are exp(-z), z exp(-z), and the same rising from the bottom; in thin layers cosh z, sinh z,
-    z cosh z, z sinh z."""
+    z cosh z, z sinh z.
+    """
     thin = np.zeros(depth.shape, bool) if thickness is None else thickness < THIN
     waves = np.empty((depth.size, 4, 4))
     for column, sign in ((0, -1.0), (2, 1.0)):

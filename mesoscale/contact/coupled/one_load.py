@@ -5,7 +5,8 @@ g = 0 where p > 0, g >= 0 where p = 0. The separation d of the mean planes is wh
 constraint costs. Active sets find it as in `grid`, each linear system by conjugate gradients among
 pressures that leave the load as it is (Polonsky and Keer, doi:10.1016/S0043-1648(99)00113-1, take
 the same step). Nested grids, each of half the sites a side, find the sets where transforms cost
-little. Steps are in single precision and add to pressures and gaps in double precision."""
+little. Steps are in single precision and add to pressures and gaps in double precision.
+"""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable

@@ -3,7 +3,8 @@
 The Green's function is split as in an Ewald sum. A table has its short range, 1/q times erf(q s),
 which falls off with the distance r as exp(-r^2 / 4 s^2). Transforms of a coarser grid have the
 rest, between cubic splines around the sites (the particle-mesh method of Essmann et al.,
-doi:10.1063/1.470117)."""
+doi:10.1063/1.470117).
+"""
 
 import math
 

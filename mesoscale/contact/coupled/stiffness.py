@@ -4,7 +4,8 @@ grid.
 The stiffness of a half-space grows with the wave number. Between neighbours alone it levels off
 for waves of many sites, which then take the more steps the finer the grid is. So the difference
 is added for the waves that a coarser grid holds, as in a two-grid method (Briggs, Henson and
-McCormick, A Multigrid Tutorial, 2000). It costs the transforms of the coarser grid."""
+McCormick, A Multigrid Tutorial, 2000). It costs the transforms of the coarser grid.
+"""
 
 import math
 

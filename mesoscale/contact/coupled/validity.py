@@ -8,7 +8,8 @@ authors' package Adhesion prints it, calls a surface sticky where (h' dr / (kapp
 dr)^(2/3) is below about 1, with l_a = w/E*, d = 4 h'/h'' and dr the range. Derived again from its
 picture the bound is pi (3/16)^(2/3) = 1.03. h'' is the RMS Laplacian here (the radius of a summit
 is 2/h''); with half of it, which that package calls curvature, a surface would need 1.6 times the
-adhesion."""
+adhesion.
+"""
 
 import math
 from typing import NamedTuple
@@ -65,7 +66,8 @@ def adhesion_numbers(
     The law of attraction gives the pressure at contact s = A_H / (6 pi D0^3), the work of adhesion
     w, which is A_H / (12 pi D0^2) offset and A_H / (4 pi D0^2) clamped, and the range w / s; the
     radius of a summit is 2 / h''. Liquid has the work p_c d_c and the range d_c: Tabor's parameter
-    is that of the stronger, rims attract with both."""
+    is that of the stronger, rims attract with both.
+    """
     law = settings.attraction
     cutoff = settings.gap_cutoff_nm
     menisci = menisci_of(settings.air)

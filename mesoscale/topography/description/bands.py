@@ -76,7 +76,8 @@ class Seen:
         """Share of the bands' chance in the mean square: 1 over the variance that a window adds.
 
         Of a window w it is <w^2>^2 / <w^4>: 18/35 for Hann's, once a side, and `COVER` for the
-        tapers of a line."""
+        tapers of a line.
+        """
         return COVER if self.line else (18 / 35) ** 2
 
     def share(self, q: np.ndarray, first: float | None = None) -> np.ndarray:

@@ -3,7 +3,8 @@
 A cell holds the shortest waves that were measured several times, and as much of the film's RMS
 height as its grid and the electrode allow: cells without the long waves release too early (`python
 -m evidence pad.cell_side`). Waves shorter than the measured ones are an assumption, and its effect
-is stated."""
+is stated.
+"""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -104,7 +105,8 @@ def share_on_cells(
     Parameters
     ----------
     merged : the measured spectrum, where it is used; None: eq. 9, flat beyond the longest wave of a
-        cell."""
+        cell.
+    """
     if merged is not None:
         measured = merged.moment(0, low=merged.seen, psd=merged.psd)
         total = float(measured + merged.tail(merged.psd))
@@ -184,7 +186,8 @@ def rms_in_cells(
     """RMS height (nm) of a levelled map or line within cells of a side, without and with noise.
 
     Noise is at most what neighbouring points differ by. None where a cell has next to no points. A
-    measurement smaller than the cell is taken as a whole."""
+    measurement smaller than the cell is taken as a whole.
+    """
     sides = [
         round(n * cell_nm / length) for n, length in zip(heights.shape, lengths_nm, strict=True)
     ]

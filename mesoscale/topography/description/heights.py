@@ -21,7 +21,8 @@ class HeightTest:
         RMS height.
     expected, spread : (3,) mean and standard deviation of the same on 39 Gaussian surfaces.
     anisotropy : RMS slope along the steepest direction over that across it; 1 for an isotropic
-        surface."""
+        surface.
+    """
 
     name: str
     skewness: float
@@ -97,7 +98,8 @@ def not_gaussian(tests: Sequence[HeightTest]) -> str:
     """In words what of the heights no Gaussian surface has; empty where nothing stands out.
 
     A statistic stands out where the scans together are two standard deviations away, and far enough
-    to change a contact."""
+    to change a contact.
+    """
     if not tests:
         return ""
     total_away = np.sum([test.away for test in tests], axis=0)

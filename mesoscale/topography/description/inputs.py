@@ -5,7 +5,8 @@ waves of a place grow together: RMS heights differ, q0 and slope are the film's.
 standard deviation is estimated with the statistical errors of single measurements taken off. It
 holds what differs between instruments, too.
 
-`merged` is the measured spectrum, where the description uses it, and None where it uses eq. 9."""
+`merged` is the measured spectrum, where the description uses it, and None where it uses eq. 9.
+"""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -63,7 +64,8 @@ def rows_of(
 
     The RMS height is that of the waves of a cell of side `cell_nm`, and of a film whose spectrum is
     flat beyond, as the pad makes it (`pad.cells`). With a measured spectrum q0 and hurst are
-    coordinates that bend the spectrum about the eq. 9 nearest to it, as far as its band allows."""
+    coordinates that bend the spectrum about the eq. 9 nearest to it, as far as its band allows.
+    """
     if merged is None:
         estimates = topography.estimates
         names = [name for name in ("q0", "hurst", "rms") if name in estimates]
@@ -135,7 +137,8 @@ def trusted_end(spectra: Sequence[TrustedSpectrum]) -> dict[str, Any]:
     """End of the measured spectrum: the largest trusted wave vector, its cause and its interval.
 
     The interval holds the ends of the other measurements of that kind, and for a tip what an error
-    of its radius makes of the wave vector at which the roughness is as curved as the tip."""
+    of its radius makes of the wave vector at which the roughness is as curved as the tip.
+    """
     finest = max(spectra, key=lambda item: item.high)
     high_ends = [item.high for item in spectra if item.high > 0.5 * finest.high]
     shift = 1.0
@@ -160,7 +163,8 @@ def cutoff_row(topography: Topography, spectra: Sequence[TrustedSpectrum]) -> Ro
     """Distribution of the cut-off q1: the seen end of the power law, else that of the instrument.
 
     In the second case the surface goes on beyond: such a q1 says which roughness is known, and not
-    where it ends."""
+    where it ends.
+    """
     if topography.line_fit is not None and not topography.q1_limited:
         return {"distribution": "fixed", "a": topography.q1}
     low, high = trusted_end(spectra)["interval"]
@@ -204,7 +208,8 @@ def rms_scatter_row(topography: Topography, merged: OneSpectrum | None) -> Row:
     """Distribution of the standard deviation of ln RMS between places.
 
     Uniform over its interval; half of a normal distribution of the same upper end where it is not
-    told from 0. Beyond MOST_APART measurements have no common level."""
+    told from 0. Beyond MOST_APART measurements have no common level.
+    """
     fitted = topography.likelihood
     largest = MOST_APART / 2
     between = PlaceScatter()

@@ -34,7 +34,8 @@ class PlaceScatter:
     Attributes
     ----------
     weights : (len(SCATTERS),) probability of each; None where only one place is measured, of which
-        nothing follows."""
+        nothing follows.
+    """
 
     weights: np.ndarray | None = None
 

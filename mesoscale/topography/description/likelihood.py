@@ -6,7 +6,8 @@ amplitude, drawn from a log-normal population, because amplitudes of real places
 than their statistical error.
 
 A line profile enters with the spectrum C1(k) along it, which is compared with what equation 9 gives
-along a line. Its converted spectrum C(q) is smoothed, which rounds the knee."""
+along a line. Its converted spectrum C(q) is smoothed, which rounds the knee.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -152,7 +153,8 @@ def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[T
     """Raise the lower bound of scans that begin beyond the knee, to where the blur is small.
 
     On the plateau the window's blur does nothing; at the first shells of a scan too small to show
-    the plateau it is large, and mixes plateau and power law."""
+    the plateau it is large, and mixes plateau and power law.
+    """
     unblurred = []
     for item in spectra:
         begins_late = item.low > q0 / 2 and not item.spectrum.sharp
@@ -167,7 +169,8 @@ def fit(
     """Fit plateau, q0 and slope to the trusted ranges; None where there are too few shells to fit.
 
     Below `knee` (1/nm), where it is known roughly, the corrections that the discrepancy stands for
-    do not act. A decade has `per_decade` bins that share one."""
+    do not act. A decade has `per_decade` bins that share one.
+    """
     from scipy.optimize import minimize
 
     spectra = [item for item in spectra if item.trusted.sum() >= 3]
@@ -332,7 +335,8 @@ def q0_interval(
     """Ends of q0 (1/nm) where the deviance, lowest over the slope, rises by `reach` deviations.
 
     The curvature at the minimum does not do: where the knee is gradual (shallow spectra, lines) the
-    deviance is far from a parabola, and its ends are up to three times as far away on one side."""
+    deviance is far from a parabola, and its ends are up to three times as far away on one side.
+    """
     from scipy.optimize import brentq, minimize_scalar
 
     data = _Data([item for item in spectra if item.trusted.sum() >= 3], fitted.q0)

@@ -90,7 +90,8 @@ def pooled(data: Points) -> tuple[np.ndarray, np.ndarray]:
     """Mean over scans in each bin: ln q and ln C, with the differing levels of the scans taken out.
 
     Scans of different places differ in level; a bin that only some of them reach would step. Levels
-    are estimated together with the bins' means (two-way least squares)."""
+    are estimated together with the bins' means (two-way least squares).
+    """
     bins, index = np.unique(data.bin, return_inverse=True)
     scans, member = np.unique(data.scan, return_inverse=True)
     equations = np.zeros((len(data.log_c) + 1, len(bins) + len(scans)))
@@ -191,7 +192,8 @@ def _threshold(freedom: int) -> float:
 def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float, bool] | None:
     """Meeting point of plateau and power law: ln q0, the plateau's level, and whether it settled.
 
-    The bins of both lines depend on the knee, so that it may swing between two places."""
+    The bins of both lines depend on the knee, so that it may swing between two places.
+    """
     log_q0 = float(x[end]) - 0.2
     level = 0.0
     settled = False

@@ -10,7 +10,8 @@ carries f over a gap between instruments with an uncertainty that grows into it.
 Waves about as long as the longest measurement are changed by levelling and hardly measured one by
 one, but their sum is: its levelled heights have the mean square that the spectrum must give from
 about 0.7 waves a side on. Where nothing is measured, the spectrum of a rough surface is flat or
-falls as steeply as a self-affine one, and nothing else."""
+falls as steeply as a self-affine one, and nothing else.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -54,7 +55,8 @@ class OneSpectrum:
     longest : smallest wave vector that a mean square height tells of (1/nm); None where only bands
         tell.
     logs : (draws, m) values of ln C that the measurements allow, where they are not normally
-        distributed; else None."""
+        distributed; else None.
+    """
 
     q: np.ndarray
     log_psd: np.ndarray
@@ -175,7 +177,8 @@ class OneSpectrum:
         """Integral of 2 pi q C q^power over low .. high (1/nm) of C (..., m), flat below q[0].
 
         Power 0 is the mean square height (nm^2), 2 the mean square slope, 4 that of the Laplacian
-        (1/nm^2). Of the waves at q (1/nm) the share `counted` enters."""
+        (1/nm^2). Of the waves at q (1/nm) the share `counted` enters.
+        """
         if psd is None:
             psd = self.psd
         start = float(low or self.q[0])
@@ -213,7 +216,8 @@ class OneSpectrum:
         """Logarithmic slopes of the ends of spectra (..., m), over the last 0.3 decades.
 
         A spectrum that ends before its power law says nothing of it: the slopes are then spread
-        over all possible ones."""
+        over all possible ones.
+        """
         end = self.q > self.q[-1] * 10**-0.31
         logs = np.log(psd[..., end]).reshape(-1, np.count_nonzero(end))
         slopes = np.polyfit(np.log(self.q[end]), logs.T, 1)[0]
@@ -320,7 +324,8 @@ def _between(normal: np.ndarray, right: np.ndarray, places: int) -> PlaceScatter
     Parameters
     ----------
     normal, right : normal equations of bands and, last, levels of the places, which have no prior
-        yet."""
+        yet.
+    """
     if places == 1:
         return PlaceScatter()
     levels = np.diag(np.arange(len(normal)) >= len(normal) - places).astype(float)
@@ -343,7 +348,8 @@ def unseen_slope(
     Parameters
     ----------
     log_q, log_psd, variance : ln q, ln C and the variance of ln C of the bands of the longest
-        measurement."""
+        measurement.
+    """
     end = slice(None, BANDS_PER_DECADE // 2)
     possible = np.linspace(-4.0, 0.0, 33)
     q = log_q[end]

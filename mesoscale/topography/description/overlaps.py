@@ -27,7 +27,8 @@ class Overlap:
     ratio : C of the second over that of the first, geometric mean over the shared bands.
     expected : factor within which they should agree, by their own errors alone, at 90 %.
     misfit : reduced chi^2 of one ratio for all shared bands: far above 1 where the spectra differ
-        in shape."""
+        in shape.
+    """
 
     first: str
     second: str

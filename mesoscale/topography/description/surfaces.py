@@ -9,7 +9,8 @@ simulation of as many places of one film, with the scatter and the errors found 
 
 A scatter that is estimated hides two films whose places differ by as much as the films do. With six
 maps the means must be about ten times the scatter apart (python -m evidence topography.surfaces has
-the error rates)."""
+the error rates).
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -10,7 +10,8 @@ the image are 1 + Cov(L, F) / Var(F) times as high.
 Beside dilated surfaces (14; slopes 2.3 to 3.7, RMS 2 to 10 nm, tips of 2 to 10 nm, skewness 0.35 to
 0.9) this lift of ln C, 0.05 to 0.5, is right to 15 % from the true heights; from those of images of
 1 um 0.85 of it is found, 0.74 to 1.1; of grooves all of it (python -m evidence topography.coverage
---kinds grooved)."""
+--kinds grooved).
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -78,7 +79,8 @@ def tip_lift(
     fitted : eq. 9 of the images.
     seen, cutoff : where the trusted spectrum and the images end, 1/nm.
     quantiles : (len(Z),) heights of the images at each normal variable of `Z`, in units of their
-        RMS."""
+        RMS.
+    """
     rms = float(np.sqrt(mean_square(fitted.plateau, fitted.q0, fitted.slope, cutoff)))
     image = _smooth(quantiles * rms)
     near = LIFT.further * seen
@@ -219,7 +221,8 @@ def with_radius_error(
     """The same estimates; intervals hold an error of every tip's radius (`Lift.radius_error`).
 
     All is analysed again with radii smaller and larger by that; half of the difference, as the half
-    width of a uniform distribution, is added to the interval in quadrature."""
+    width of a uniform distribution, is added to the interval in quadrature.
+    """
     if not topography.estimates or not any(item.tip_radius_nm > 0 for item in spectra):
         return topography
     sharp, blunt = (analyse(item, settings).estimates for item in _sharper_and_blunter(spectra))

@@ -10,7 +10,8 @@ Three signs, each of which measured maps lack (evidence: `python -m evidence top
   one period.
 
 What a filter passes is taken as G = exp(-(q / q_f)^p): the spectrum that was smoothed is C / G, as
-far as G is known."""
+far as G is known.
+"""
 
 from dataclasses import dataclass, replace
 

@@ -84,7 +84,8 @@ def blur(slope: float, shell: np.ndarray) -> np.ndarray:
     """ln of what the Hann window and the shells' width add to a power law at shell number `shell`.
 
     The window spreads each wave vector over its neighbours (variance 1/3 shell^2 along each axis),
-    the shell averages over its width (variance 1/12); both lift a convex spectrum."""
+    the shell averages over its width (variance 1/12); both lift a convex spectrum.
+    """
     return np.log1p((slope**2 / 6 + slope * (slope + 1) / 24) / shell**2)
 
 

@@ -188,7 +188,8 @@ def alignment_effect(scan: Scan, settings: TopographySettings) -> tuple[float, f
 
     Offsets between lines are the instrument's; where there are none, this is roughness that is
     lost. A line that crosses few grains has its median between them, so that aligning medians lifts
-    grains or lowers them."""
+    grains or lowers them.
+    """
     if settings.line_alignment == "none":
         return 0.0, 0.0
     scan = measured_part(scan)

@@ -47,7 +47,8 @@ def columns_of(where: str, text: Text, stated: str | None) -> Columns:
     Raises
     ------
     InputError : no column of heights, or several; no positions beside them; rows of another number
-        of values."""
+        of values.
+    """
     if text.odd:
         raise InputError(
             f"{where}: {text.odd} lines among the {len(text.rows)} rows of {text.width} values have"

@@ -2,7 +2,8 @@
 
 Readers of 40 formats meet files that point at themselves, unfold to gigabytes, or fill the terminal
 with warnings. The process is a fork, which costs some milliseconds and needs no second import of
-the readers."""
+the readers.
+"""
 
 import multiprocessing
 import os

@@ -2,7 +2,8 @@
 
 Programs write a number where nothing was measured: -9999, 0, 1e30, or the ends of the integers of a
 format. Such a number betrays itself twice. Many points have it where any other value occurs once,
-and the surface jumps to it."""
+and the surface jumps to it.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -185,7 +186,8 @@ def _largest_rectangle(known: np.ndarray) -> tuple[slice, slice]:
     """The largest rectangle of a mask (nx, ny) in which all is true.
 
     Row by row, each column is as high as what is true above it; a stack finds the largest rectangle
-    under these."""
+    under these.
+    """
     best = 0
     largest = (slice(0, 0), slice(0, 0))
     high = np.zeros(known.shape[1], dtype=int)

@@ -106,7 +106,8 @@ def _without_missing(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, tuple[st
     """Heights with few missing points filled from neighbours along the line, and this in words.
 
     Numbers that stand for missing points are told. Where more are missing, they stay NaN, and so do
-    those at the ends."""
+    those at the ends.
+    """
     z, stand_ins = without_stand_ins(z)
     steps = stand_in_steps(stand_ins, len(z))
     missing = ~np.isfinite(z)

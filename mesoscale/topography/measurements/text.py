@@ -1,7 +1,8 @@
 """Text as programs of many countries export it: rows of numbers, and what the lines above them say.
 
 Decimal commas, semicolons, quotes, encodings and exponents such as 1.0D-3 are understood. A word
-among numbers stands for a missing point, so that no row of a map is lost."""
+among numbers stands for a missing point, so that no row of a map is lost.
+"""
 
 import csv
 import re

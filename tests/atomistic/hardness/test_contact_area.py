@@ -83,7 +83,8 @@ def test_sphere_cut_by_a_plane():
     """Rigid overlap d of a sphere R has the area pi (2 R d - d^2).
 
     Discs of 1.5 Å found 80 % of it.  A rigid cut has no layer of atoms at the counterface, as a
-    pressed body has (docs/hardness.md), so some of its rim stays empty."""
+    pressed body has (docs/hardness.md), so some of its rim stays empty.
+    """
     rng = np.random.default_rng(2)
     sphere, ratios = 25.0, []
     for overlap in (4.0, 6.0):

@@ -150,7 +150,8 @@ def test_the_damped_coulomb_sum_is_that_of_long_range_to_a_tenth_of_a_bond(
     The glass of a test is another one on another processor, where its cut gave 12 %.
 
     A neutral cut still has a dipole, whose uniform field PPPM keeps and the damped sum leaves out,
-    as charges that compensate the surface would.  It is taken off."""
+    as charges that compensate the surface would.  It is taken off.
+    """
     of = {"pmmcs": ("potential", "glass"), "matsui_akaogi": ("other_potential", "other_titania")}
     own, cell = (request.getfixturevalue(fixture) for fixture in of[name])
     atoms = cut_asperity(cell, 2, 0.0, 14.0, 1) if slab else cell

@@ -132,7 +132,8 @@ def test_surface_likelihood_is_the_dense_normal_density(model, prior):
     constant.
 
     Data are linearised where they and the prior put them, which moves the error of a tenth by a
-    hundredth of itself."""
+    hundredth of itself.
+    """
     posterior = model.posterior([replace(pull_offs([60.0, 75.0, 90.0]), discrepancy=0.2)])
     x = prior.sample(5, 1)
     prediction = posterior.surfaces.responses(x)

@@ -3,7 +3,8 @@ the engine.
 
 Uniform pressure on a disc displaces the half-space by complete elliptic integrals (K. L. Johnson,
 Contact Mechanics, 1985, eq. 3.29). The stresses t of all rings follow from one Newton iteration:
-rings in contact have no gap, all others t = -s(gap)."""
+rings in contact have no gap, all others t = -s(gap).
+"""
 
 import numpy as np
 from numpy.typing import NDArray

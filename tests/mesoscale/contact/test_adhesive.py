@@ -209,7 +209,8 @@ class Energy:
     the highest.
 
     The mean of the gap is given, so that the highest takes up what the others leave. W(g) is
-    written out here."""
+    written out here.
+    """
 
     def __init__(self, surface, separation, length, inputs, law, rate):
         self.surface, self.separation, self.inputs = surface.ravel(), separation, inputs

@@ -188,7 +188,8 @@ def test_an_elastic_sphere_pulls_off_with_the_work_of_its_flats(law, cutoff, sha
     walls D0 apart.
 
     Clamped spends twice this work again within D0. On a grid a contact of few sites is a few per
-    cent off."""
+    cent off.
+    """
     radius, pixels, spacing = 100.0, 128, 0.5
     x = (np.arange(pixels) - pixels // 2) * spacing
     bowl = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * radius)
@@ -222,7 +223,8 @@ def test_a_flattened_sphere_pulls_off_over_the_dome_that_springs_back(work, cuto
 
     s = 4 H a / (pi E*) (pi/2 - E(r/a)), E the complete elliptic integral. The attraction over the
     dome is the pull-off, but for what the rim outside adds, a tenth. The clamped law pulls with
-    more than twice as much."""
+    more than twice as much.
+    """
     hardness, radius, load, pixels, length = 6.0, 10.0, 300.0, 64, 32.0
     a = np.sqrt(load / (np.pi * hardness))
     hamaker = 12 * np.pi * cutoff**2 * work

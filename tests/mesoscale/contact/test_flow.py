@@ -93,7 +93,8 @@ def test_a_width_below_the_grid_stalls_and_says_so(floor, settles, flow):
 
     R = 1/16 nm gives s1 = 0.14 nm on a 1 nm grid. The return mapping scales the vanishing
     difference of the two up to the wanted peak movement, so it ends, but by moving one site and its
-    neighbours."""
+    neighbours.
+    """
     heights = np.zeros((64, 64))
     heights[20, 20] = -8.0
     settings = ContactSettings(

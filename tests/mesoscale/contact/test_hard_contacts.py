@@ -2,7 +2,8 @@
 
 Each is closed in few large steps by both ways of solving, a matrix of the known sites and
 transforms of the whole grid. Both must settle, meet the conditions of contact at every site, and
-agree."""
+agree.
+"""
 
 from dataclasses import replace
 

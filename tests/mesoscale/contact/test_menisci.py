@@ -180,7 +180,8 @@ def young_laplace(radius: float) -> float:
 
     Its meridian turns from the flat (angle pi) to the sphere at the filling angle, with the
     curvature 1/r_K more than that around the axis (Orr, Scriven and Rivas 1975,
-    doi:10.1017/S0022112075000572)."""
+    doi:10.1017/S0022112075000572).
+    """
 
     def meridian(start: float, filling: float):
         def slope(angle, point):

@@ -37,7 +37,8 @@ def conducted(touching, length_nm):
     spots (N, N).
 
     On each side a current density j of wave vector q makes a potential rho j / q; the mean of the
-    potential is that of the planes far away."""
+    potential is that of the planes far away.
+    """
     n = len(touching)
     number = np.hypot(*np.meshgrid(np.fft.fftfreq(n, 1 / n), np.fft.fftfreq(n, 1 / n)))
     number[0, 0] = np.inf

@@ -85,7 +85,8 @@ def test_a_wave_solves_the_half_space(share):
     stated.
 
     A pressure that ends like a square root is integrated on a grid with an error of its spacing to
-    the 3/2, whose factor depends on where the edge lies between two sites."""
+    the 3/2, whose factor depends on where the edge lies between two sites.
+    """
     mean = theory.wave_mean_pressure(share, **WAVE)
     for sites in (1024, 4096):
         x = (np.arange(sites) + 0.5) * WAVE["wavelength"] / sites

@@ -1,7 +1,8 @@
 """Files that are cut, flipped, blown up or misnamed, and the judge of what reading them gives.
 
 A file is refused in one line, or what it gives is a surface: finite heights and spectra, of a
-plausible size."""
+plausible size.
+"""
 
 import random
 from collections.abc import Callable

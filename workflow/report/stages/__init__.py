@@ -1,7 +1,8 @@
 """What the page says about each stage: its text, figures, tables and files.
 
 Every module offers `describe(results) -> Section | None`; None where the scene has no results of
-the stage."""
+the stage.
+"""
 
 from workflow.report.stages import (
     answer,
