@@ -378,8 +378,20 @@ class Switch(Shown):
             else ": ".join(["not known", *reasons])
         )
         yield f"Switch on a pad of {cells} cells: {does}"
+        if states and self.release_V == 0.0:
+            reserve = self.content["reserve"]
+            yield f"It would let go with {reserve['bears_times']:.2g} of its attraction"
+            yield from map(_freed_words, reserve["freed_by"])
         if states:
             yield from (f"DOUBT: {reason}" for reason in reasons)
+
+
+def _freed_words(row: dict[str, Any]) -> str:
+    """Which value of a property frees a switch that sticks."""
+    name = row["key"]
+    if row["frees"] is None:
+        return f"{name} = {row['value']:.3g}: no other value in reach frees it"
+    return f"{name} = {row['value']:.3g}: at {row['frees']:.3g} it lets go"
 
 
 def pixels_for(cutoff: Mapping[str, float] | None, side_nm: float) -> int:
