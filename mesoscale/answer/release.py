@@ -133,7 +133,7 @@ def answer(model: PadModel) -> Answer:
         len(solved),
         tuple(refused),
         int(model.states("deepened").sum()),
-        sum(point.pad.cells.count for point in solved if point.pad),
+        sum(point.pad.count for point in solved if point.pad),
         error_V,
         fit.explained,
         fit.noise,
