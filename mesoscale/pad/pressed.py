@@ -65,9 +65,14 @@ class Pad:
         """Mean of pressures (cells, ...) over the pad."""
         return np.einsum("c,c...->...", self.weight, pressures)
 
-    @cached_property
+    @property
     def curves(self) -> PadCurves:
-        """Its mean pressure, by more cells than were computed.
+        """Its mean pressure."""
+        return self._curves
+
+    @cached_property
+    def _curves(self) -> PadCurves:
+        """The same, by more cells than were computed.
 
         A pad has 10^4 to 10^5 cells, and they touch first at all separations. The wells of a dozen
         stand apart, so that their mean is too deep. So each cell stands for others that touch first
