@@ -337,7 +337,8 @@ def _way(
         if not np.isfinite(contact.separation):  # it stays where the highest site just touches
             key = "loads_nN" if by_load else "approach_nm"
             raise InputError(
-                f"{key} = {step:g}: too little to press one site of this map; give more, or check its units"
+                f"{key} = {step:g}: too little to press one site of this map; give more, or check"
+                " its units"
             )
         settled = path.reached and path.unconverged == 0
         if by_load:

@@ -229,14 +229,13 @@ def _reasons(central: Solved) -> list[str]:
     if central.refused or central.pad is None:
         return [central.refused]
     reasons = []
-    cells = central.pad.cells
-    if unsettled := int((~cells.settled).sum()):
+    if unsettled := int((~central.pad.settled).sum()):
         reasons.append(f"{unsettled} cells in which flow did not come to rest")
     if min(central.halves_V) == 0.0 < max(central.halves_V):
         reasons.append(
-            f"the {cells.count} computed cells do not decide whether the switch sticks: on one half"
-            f" of them it does, on the other it lets go at {max(central.halves_V):.3g} V; raise"
-            " pad.cells"
+            f"the {central.pad.count} computed cells do not decide whether the switch sticks: on"
+            f" one half of them it does, on the other it lets go at {max(central.halves_V):.3g} V;"
+            " raise pad.cells"
         )
     return reasons
 
