@@ -488,10 +488,7 @@ def _measurement(
 ) -> Measurement:
     """A topography of SurfaceTopography in nm, by the unit of file, columns or scene."""
     unit = topography.unit or instrument.unit
-    if unit:
-        factors = (nm_of(where, unit), nm_of(where, unit))
-    else:
-        factors = _column_factors(where, head)
+    factors = _factors_to_nm(where, unit, head)
     if factors is None:
         kind = "profile" if topography.dim == 1 else "map"
         raise InputError(
@@ -563,8 +560,10 @@ def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profi
     return profile
 
 
-def _column_factors(where: str, head: bytes) -> tuple[float, float] | None:
-    """Factors to nm of positions and heights by column heads; None without."""
+def _factors_to_nm(where: str, unit: str | None, head: bytes) -> tuple[float, float] | None:
+    """Factors to nm of positions and heights by a unit, or else by column heads; None without."""
+    if unit:
+        return nm_of(where, unit), nm_of(where, unit)
     text = text_of(head)
     if text is None or not 1 < text.width <= BROADEST_TABLE or not text.heads:
         return None
