@@ -6,6 +6,7 @@ picture.
 
 import argparse
 import csv
+import json
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -17,12 +18,13 @@ from mesoscale.answer.release import Answer, answer
 from mesoscale.answer.switches import PadModel
 from mesoscale.answer.what_if import with_device
 from mesoscale.errors import InputError
-from mesoscale.settings import DeviceSettings, SceneContact
-from workflow.report.available import results_in
+from mesoscale.settings import DeviceSettings
+from workflow.report.available import Results, results_in
 from workflow.report.numbers import show
-from workflow.report.verdict import interval_of, volts
+from workflow.report.verdict import does, interval_of, volts
 from workflow.run.contact_settings import contact_on
 from workflow.run.pads import ScenePoints, load_model, points_of
+from workflow.scene import SceneError, load_scene
 from workflow.schemas import UnfitTable
 
 COLUMNS = (
@@ -49,21 +51,22 @@ class PressedScene:
     InputError : no pads were pressed, or not by this version.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, given: str) -> None:
+        scene = load_scene(given)
+        folder = Path("results") / scene.name
         results = results_in(folder)
-        if not results.has("pad/model.h5", "pad/inputs.csv"):
-            raise InputError(
-                f"{folder}: no pads were pressed here; asperity run {folder.name} answer"
-            )
-        scene = results.record["scene"]
-        self.device = DeviceSettings(**scene["device"])
-        self.count = int(scene["pad"]["points"])
+        if not results.has("pad/model.h5", "pad/inputs.csv", "inputs.csv"):
+            raise InputError(f"{folder}: no pads are pressed; first: asperity run {given} answer")
+        self.name = scene.name
+        self.device = scene.device
+        self.count = scene.pad.points
         described = {}
         if results.uses("topography"):
             described = results.json("topography/parameters.json")
-        self._contact = contact_on(SceneContact(**scene["contact"]), described)
+        self._contact = contact_on(scene.contact, described)
         self._inputs = str(folder / "pad/inputs.csv")
         self._model = load_model([str(folder / "pad/model.h5")], self.points_of(self.device))
+        _check_unchanged(results, self._model, given)
 
     def points_of(self, device: DeviceSettings) -> ScenePoints:
         """The points of a device."""
@@ -75,6 +78,22 @@ class PressedScene:
             return self._model
         points = self.points_of(device)
         return with_device(self._model, points.by_number[0], points.design)
+
+
+def _check_unchanged(results: Results, model: PadModel, given: str) -> None:
+    """See that the pads are of the scene as it is now.
+
+    Raises
+    ------
+    InputError
+    """
+    stated = results.h5("pad/model.h5")[2]["point_0000"]
+    device = model.central.point.device.model_dump(mode="json", exclude={"spread"})
+    values = model.central.point.values
+    if json.loads(stated["device"]) != device or json.loads(stated["inputs"]) != values:
+        raise InputError(
+            f"{given}: changed since its pads were pressed; first: asperity run {given} answer"
+        )
 
 
 def what_if(scene: PressedScene, word: str) -> Iterator[dict[str, Any]]:
@@ -138,9 +157,10 @@ def line_of(name: str, row: dict[str, Any]) -> str:
     device = value if value == AS_RUN else f"{name} = {value}"
     if row["reason"]:
         return f"{device}: no answer: {row['reason']}"
-    interval = interval_of(volts(row["release_5_V"]), volts(row["release_95_V"]))
+    ends = volts(row["release_5_V"]), volts(row["release_95_V"])
+    interval = interval_of(*ends).replace("\u00a0", " ")
     words = (
-        f"{device}: closes at {show(row['pull_in_V'])} V, release {volts(row['release_V'])}"
+        f"{device}: closes at {show(row['pull_in_V'])} V and {does(row['release_V'])}"
         f" {interval}, {row['stuck']:.0%} stick"
     )
     if row["continued"]:
@@ -189,22 +209,21 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("scene")
     parser.add_argument("changes", nargs="+")
     chosen = parser.parse_args(arguments)
-    folder = Path("results") / Path(chosen.scene).stem
     try:
-        scene = PressedScene(folder)
+        scene = PressedScene(chosen.scene)
         for word in chosen.changes:
             name = word.removeprefix("device.").partition("=")[0]
             rows = []
             for row in what_if(scene, word):
                 rows.append(row)
                 print(wrapped(shown(line_of(name, row))), flush=True)
-            table = Path(f"{folder.name}_{name}.csv")
+            table = Path(f"{scene.name}_{name}.csv")
             write_table(table, rows)
             written = [str(table)]
             if draw_figure(table.with_suffix(".png"), name, rows):
                 written.append(str(table.with_suffix(".png")))
             print(f"written: {', '.join(written)}")
-    except (InputError, UnfitTable, OSError) as error:
+    except (InputError, SceneError, UnfitTable, OSError) as error:
         print(f"ERROR {shown(str(error))}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
