@@ -37,7 +37,7 @@ def ran(tmp_path_factory):
     write_csv(folder / "results/tiny/pad/inputs.csv", to_rows(table))
     contact = contact_on(scene.contact, {})
     points = ScenePoints(table, contact, scene.device, scene.pad.points)
-    numbered = points.by_number.items()
+    numbered = list(points.by_number.items())
     solved = dict(zip(points.by_number, solve_points(numbered, points.on_grid, 2), strict=True))
     write_solved(folder / "results/tiny/pad/model.h5", solved, {}, points.design)
     return folder

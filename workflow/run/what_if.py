@@ -27,7 +27,7 @@ from workflow.run.pads import ScenePoints, load_model, points_of
 from workflow.scene import SceneError, load_scene
 from workflow.schemas import UnfitTable
 
-COLUMNS = (
+COLUMNS: tuple[str, ...] = (
     "value",
     "pull_in_V",
     "release_5_V",

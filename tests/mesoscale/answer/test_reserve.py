@@ -8,6 +8,7 @@ from mesoscale.errors import InputError
 from mesoscale.pad.curves import attracting
 from mesoscale.settings import DeviceSettings
 from mesoscale.switch import release_or_nan_V, switch_of
+from mesoscale.switch.plate import PlateStates
 from tests.mesoscale.answer.test_release import MIDDLE, PLATE, SEPARATION
 
 SOFT_BEAM = DeviceSettings(thickness_um=2.5, hold_voltage_V=70.0)
@@ -62,9 +63,10 @@ def test_a_plate_is_freed_by_the_spring_that_balances_its_pad():
     scale = 1.3 * bears_times(SOFT_PLATE, pad)
     pad = attracting(pad, scale)
     row = next(freed_by_device(SOFT_PLATE, pad, states.pull_in_V))
-    hold_nm = switch_of(SOFT_PLATE).states_on(pad).hold_nm
-    rising = np.linspace(hold_nm, 100.0, 20_000)
-    pull_N = -SOFT_PLATE.area_um2 * 1e-12 * 1e9 * pad.opening_GPa(rising, hold_nm)
+    held = switch_of(SOFT_PLATE).states_on(pad)
+    assert isinstance(held, PlateStates)
+    rising = np.linspace(held.hold_nm, 100.0, 20_000)
+    pull_N = -SOFT_PLATE.area_um2 * 1e-12 * 1e9 * pad.opening_GPa(rising, held.hold_nm)
     needed = (pull_N / ((1e3 * SOFT_PLATE.gap_um - rising) * 1e-9)).max()
     assert row["frees"] == pytest.approx(needed, rel=0.02)
 
