@@ -372,11 +372,10 @@ class Switch(Shown):
         states = self.states
         reasons = self.content["gate"]["reasons"]
         opens = f"opens at {self.release_V:.3g} V" if self.release_V > 0 else "sticks"
-        does = (
-            f"closes at {states['pull_in_V']:.3g} V, {opens}"
-            if states
-            else ": ".join(["not known", *reasons])
-        )
+        does = ": ".join(["not known", *reasons])
+        if states:
+            closes = "touches" if "touches" in states else "closes"
+            does = f"{closes} at {states['pull_in_V']:.3g} V, {opens}"
         yield f"Switch on a pad of {cells} cells: {does}"
         if states:
             yield from (f"DOUBT: {reason}" for reason in reasons)
