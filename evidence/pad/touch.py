@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import block_array, csc_matrix, diags_array
+from scipy.sparse import block_array, csc_matrix, diags
 from scipy.sparse.linalg import splu
 
 from evidence.pad.loop import central_pad
@@ -167,9 +167,9 @@ class Differences:
     @cached_property
     def fourth(self) -> Any:
         """Fourth difference; ends are clamped or free."""
-        bands = diags_array(
+        bands = diags(
             [1.0, -4.0, 6.0, -4.0, 1.0],
-            offsets=[-2, -1, 0, 1, 2],
+            (-2, -1, 0, 1, 2),
             shape=(self.nodes, self.nodes),
         ).tolil()
         bands[0, 0] = 7.0
@@ -183,10 +183,7 @@ class Differences:
     @cached_property
     def second(self) -> Any:
         """Second difference between ends at rest."""
-        return (
-            diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(self.nodes, self.nodes))
-            / self.h**2
-        )
+        return diags([1.0, -2.0, 1.0], (-1, 0, 1), shape=(self.nodes, self.nodes)) / self.h**2
 
     def electric(self, separation: Array) -> tuple[Array, Array]:
         """Pull per length of 1 V^2, and its derivative."""
@@ -216,7 +213,7 @@ class Differences:
             a, a_slope = self.attraction(self.rest + w)
             curve = self.second @ (w + self.shape)
             left = self.bending * (self.fourth @ w) + squared * q + a
-            matrix = self.bending * self.fourth + diags_array(squared * q_slope + a_slope)
+            matrix = self.bending * self.fourth + diags(squared * q_slope + a_slope)
             if not self.free:
                 # what it carried at rest was in balance with its shape at rest
                 left -= force * curve - self.tension * (self.second @ self.shape)

@@ -279,9 +279,7 @@ class MovingBeam:
                 return way, True
             way.append(state)
         if _highest(way) == len(way) - 1:
-            raise InputError(
-                f"device: no voltage brings the beam down by {down_nm:.4g} nm; {BESIDE}"
-            )
+            raise _unreachable(way[-1].down_nm)
         return way, False
 
     def _lower(self, node: int, down_nm: float, above: _Lowered) -> _Lowered | None:
@@ -333,9 +331,7 @@ class MovingBeam:
         """
         state = self._lower(node, down_nm, above)
         if state is None:
-            raise InputError(
-                f"device: no voltage brings the beam down by {down_nm:.4g} nm; {BESIDE}"
-            )
+            raise _unreachable(down_nm)
         return state
 
     def _check_rest(self) -> None:
@@ -479,6 +475,10 @@ class MovingBeam:
 def _lower_V(voltage: float, hold_V: float) -> float:
     """Half of a voltage, or none where little holds the beam."""
     return 0.5 * voltage if voltage > UNHELD_SHARE * hold_V else 0.0
+
+
+def _unreachable(down_nm: float) -> InputError:
+    return InputError(f"device: no voltage brings the beam down beyond {down_nm:.4g} nm; {BESIDE}")
 
 
 def _highest(way: list[_Lowered]) -> int:
