@@ -167,23 +167,22 @@ class Differences:
     @cached_property
     def fourth(self) -> Any:
         """Fourth difference; ends are clamped or free."""
-        bands = diags(
-            [1.0, -4.0, 6.0, -4.0, 1.0],
-            (-2, -1, 0, 1, 2),
-            shape=(self.nodes, self.nodes),
-        ).tolil()
+        bands = np.zeros((self.nodes, self.nodes))
+        for offset, weight in zip((-2, -1, 0, 1, 2), (1.0, -4.0, 6.0, -4.0, 1.0), strict=True):
+            bands += weight * np.eye(self.nodes, k=offset)
         bands[0, 0] = 7.0
         if self.free:
             bands[-2, -4:] = [1.0, -4.0, 5.0, -2.0]
             bands[-1, -4:] = [0.0, 2.0, -4.0, 2.0]
         else:
             bands[-1, -1] = 7.0
-        return bands.tocsc() / self.h**4
+        return csc_matrix(bands / self.h**4)
 
     @cached_property
     def second(self) -> Any:
         """Second difference between ends at rest."""
-        return diags([1.0, -2.0, 1.0], (-1, 0, 1), shape=(self.nodes, self.nodes)) / self.h**2
+        bands = np.eye(self.nodes, k=-1) - 2.0 * np.eye(self.nodes) + np.eye(self.nodes, k=1)
+        return csc_matrix(bands / self.h**2)
 
     def electric(self, separation: Array) -> tuple[Array, Array]:
         """Pull per length of 1 V^2, and its derivative."""

@@ -11,7 +11,7 @@ from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.curves import PadCurves, attracting, continued
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.beam import Beam, beam_of
+from mesoscale.switch.beam import COARSE_ELEMENTS, ELEMENTS, Beam, beam_of
 from mesoscale.switch.beam_kernels import OPENING_NM
 from mesoscale.switch.beam_motion import MovingBeam, PullIn
 from mesoscale.switch.switch import States, Switch, never_closes
@@ -60,6 +60,12 @@ class BeamSwitch(Switch):
         self.beam = beam_of(settings) if beam is None else beam
         self.opening_nm = opening_nm
         self.tolerance = tolerance
+
+    @classmethod
+    def from_settings(cls, settings: DeviceSettings, coarse: bool) -> "BeamSwitch":
+        """The beam of these settings, with `COARSE_ELEMENTS` or `ELEMENTS`."""
+        elements = COARSE_ELEMENTS if coarse else ELEMENTS
+        return cls(settings, beam_of(settings, elements))
 
     @cached_property
     def pull_in(self) -> PullIn:

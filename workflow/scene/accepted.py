@@ -22,8 +22,9 @@ def accepted_values(field: FieldInfo) -> str:
     if unit:
         words += f" in {unit}"
     if bounds := _bounds(field.metadata):
-        # bounds of a list stand apart from those of its entries
-        words += f"{';' if get_origin(annotation) in (tuple, list) else ''} {bounds}"
+        if get_origin(annotation) in (tuple, list):
+            words += ";"  # bounds of a list stand apart from those of its entries
+        words += f" {bounds}"
     if annotation is str:
         words = words.replace(" entries", " characters")
     if annotation is not field.annotation:
@@ -79,9 +80,9 @@ def _strip_optional(annotation: Any) -> Any:
 
 def _as_model(annotation: Any) -> type[BaseModel] | None:
     annotation = _strip_optional(annotation)
-    return (
-        annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
-    )
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return None
 
 
 def field_at(location: tuple[Any, ...]) -> FieldInfo | None:
@@ -100,4 +101,6 @@ def model_at(location: tuple[Any, ...]) -> type[BaseModel] | None:
     if not location:
         return Scene
     field = field_at(location)
-    return _as_model(field.annotation) if field else None
+    if field is None:
+        return None
+    return _as_model(field.annotation)
