@@ -124,11 +124,9 @@ def _known(answer: dict[str, Any]) -> str:
 
 
 def _sticking(answer: dict[str, Any]) -> str:
-    """How many of one batch may stick; so many switches cannot tell less than three in them."""
-    tellable = 1.0 - 0.05 ** (1.0 / answer["points"])  # none of n: 95 % confidence, "rule of three"
+    """How many of one batch may stick."""
     limit = answer["known"]["stuck_share"]["0.95"]
-    value = max(limit["value"], tellable)
-    allowed = max(limit["high"], tellable)
+    value, allowed = limit["value"], limit["high"]
     if value > DECIDED:
         return "A whole batch may stick."
     words = f"With 95 % confidence, less than {_rate(value)} of one batch stick."
