@@ -384,7 +384,8 @@ class Switch(Shown):
         opens = "sticks"
         if self.release_V > 0:
             opens = f"opens at {self.release_V:.3g} V"
-        yield f"{head}: closes at {states['pull_in_V']:.3g} V, {opens}"
+        closes = "touches" if "touches" in states else "closes"
+        yield f"{head}: {closes} at {states['pull_in_V']:.3g} V, {opens}"
         if self.release_V == 0.0:
             reserve = self.content["reserve"]
             yield f"It would let go with {reserve['bears_times']:.2g} of its attraction"
