@@ -41,6 +41,8 @@ def describe(results: Results) -> Iterator[Block]:
     )
     if answer := switch.get("answer"):
         yield from _answer(answer)
+    if measured := switch.get("measured"):
+        yield from _measured(measured)
     if opened := switch.get("adhesion"):
         yield table(
             "Adhesion of the pad at central inputs, opened from each load",
@@ -55,6 +57,29 @@ def describe(results: Results) -> Iterator[Block]:
     yield (
         "Where the scene does not state how its devices vary (device.spread), their spread is an"
         " assumption."
+    )
+
+
+def _measured(told: dict[str, Any]) -> Iterator[Block]:
+    """What was measured of the device, and what of its properties remains unknown."""
+    for name, row in told["measured"].items():
+        quantity, _, unit = name.rpartition("_")
+        yield (
+            f"Measured {quantity.replace('_', '-')}: {show(row['value'])} ± {show(row['error'], 2)}"
+            f" {unit}. As stated, such devices have {show(row['by_stated_device'])} ±"
+            f" {show(row['deviation_of_stated_devices'], 2)} {unit}."
+        )
+    if told["doubt"]:
+        yield f"Doubt: {told['doubt']}."
+    yield table(
+        "Properties of the device after what was measured",
+        told["properties"],
+        {
+            "property": "name",
+            "stated": cell("stated"),
+            "after": cell("typical"),
+            "of its spread remains": lambda row: f"{row['remains']:.0%}",
+        },
     )
 
 
