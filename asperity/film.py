@@ -5,9 +5,11 @@ calls.
 import hashlib
 import html
 from abc import ABC, abstractmethod
+from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +21,7 @@ from mesoscale.answer.switches import PadModel, solve_point, surfaces_of
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
 from mesoscale.errors import InputError
-from mesoscale.extras import needs
+from mesoscale.extras import MissingExtra, needs
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import PAPER_ROWS, check_resolved, film_table, input_table
@@ -75,7 +77,27 @@ class Shown(ABC):
         return next(self.lines())
 
     def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(chr(10).join(self.lines()))}</pre>"
+        text = f"<pre>{html.escape(chr(10).join(self.lines()))}</pre>"
+        return text + self._picture()
+
+    def _picture(self) -> str:
+        """Its plot, small, as an HTML image; empty where it has none or nothing draws it."""
+        plot = getattr(self, "plot", None)
+        if plot is None:
+            return ""
+        try:
+            figure = plot()
+        except MissingExtra:
+            return ""
+        from matplotlib.pyplot import close
+
+        file = BytesIO()
+        figure.savefig(file, format="png", dpi=60)
+        close(figure)  # a notebook would show it a second time
+        content = b64encode(file.getvalue()).decode("ascii")
+        return (
+            f'<img alt="{html.escape(next(self.lines()))}" src="data:image/png;base64,{content}">'
+        )
 
 
 class Film(Shown):
