@@ -72,16 +72,16 @@ def test_pull_in_alone_does_not_tell_the_stiffness_from_the_gap():
 
 
 def test_made_up_devices_lie_in_their_own_posteriors():
-    """Twenty devices, four properties each: the 90 % interval holds 78 to 99 % of the truths."""
+    """Eight devices, four properties each: of 90 % intervals at least 24 of 32 hold the truth."""
     rng = np.random.default_rng(5)
     settings, held = device(), []
-    truths = properties_at(settings, rng.random((20, len(settings.varied))))
+    truths = properties_at(settings, rng.random((8, len(settings.varied))))
     for truth in truths:
         value = observed(with_properties(settings, truth))["pull_in_V"] + rng.normal()
         measured = device(measured={"pull_in_V": (value, 1.0)})
         low, high = np.quantile(properties(narrowed(measured), measured), (0.05, 0.95), axis=0)
         held.append((low < truth) & (truth < high))
-    assert 0.78 < np.mean(held) < 0.99
+    assert np.sum(held) >= 24
 
 
 @pytest.mark.parametrize(
