@@ -44,12 +44,15 @@ def take(log: Path, outputs: Iterable[str], key: str) -> str:
         note = _note(folder / log.relative_to(own))
         if folder == own or not note.is_file() or note.read_text(encoding="utf-8") != key:
             continue
-        files = [folder / name for name in wanted]
-        if not all(record_of(file).is_file() and not is_damaged(file) for file in files):
+        try:
+            files = [folder / name for name in wanted]
+            if not all(record_of(file).is_file() and not is_damaged(file) for file in files):
+                continue
+            for file, name in zip(files, wanted, strict=True):
+                with atomic_path(own / name) as path:
+                    shutil.copyfile(file, path)
+        except FileNotFoundError:  # lost, or just being made again there
             continue
-        for file, name in zip(files, wanted, strict=True):
-            with atomic_path(own / name) as path:
-                shutil.copyfile(file, path)
         return str(folder)
     return ""
 
