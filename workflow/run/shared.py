@@ -38,18 +38,18 @@ def take(log: Path, outputs: Iterable[str], key: str) -> str:
     -------
     The folder of that scene; empty where none has all of them, whole.
     """
-    own = log.parents[1]
-    wanted = [Path(output).relative_to(own) for output in outputs]
-    for folder in sorted(own.parent.iterdir()) if key else ():
-        note = _note(folder / log.relative_to(own))
-        if folder == own or not note.is_file() or note.read_text(encoding="utf-8") != key:
+    scene_folder = log.parents[1]
+    wanted = [Path(output).relative_to(scene_folder) for output in outputs]
+    for folder in sorted(scene_folder.parent.iterdir()) if key else ():
+        note = _note(folder / log.relative_to(scene_folder))
+        if folder == scene_folder or not note.is_file() or note.read_text(encoding="utf-8") != key:
             continue
         try:
             files = [folder / name for name in wanted]
             if not all(record_of(file).is_file() and not is_damaged(file) for file in files):
                 continue
             for file, name in zip(files, wanted, strict=True):
-                with atomic_path(own / name) as path:
+                with atomic_path(scene_folder / name) as path:
                     shutil.copyfile(file, path)
         except FileNotFoundError:  # lost, or just being made again there
             continue
