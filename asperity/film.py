@@ -112,11 +112,12 @@ class Film(Shown):
                 " length_y_nm), name), or press them by asp.press(heights, side_nm, loads_nN,"
                 " e_star)"
             )
-        sources = [
-            file
-            for item in stated
-            for file in ([item] if isinstance(item, Scan) else files_in(item))
-        ]
+        sources: list[Any] = []
+        for item in stated:
+            if isinstance(item, Scan):
+                sources.append(item)
+            else:
+                sources += files_in(item)
         if not sources:
             raise InputError(
                 f"{', '.join(map(str, stated)) or 'files'}: nothing to read; give scans of a"
@@ -124,7 +125,9 @@ class Film(Shown):
             )
         check_count(", ".join(str(item) for item in stated[:3]), sources)
         names = tuple(item.name if isinstance(item, Scan) else item for item in sources)
-        tip = {} if tip_nm is None else {"tip_radius_nm": tip_nm}
+        tip = {}
+        if tip_nm is not None:
+            tip["tip_radius_nm"] = tip_nm
         self.settings = TopographySettings(scans=names, **tip, **settings)
         self.measurements: list[Measurement] = []
         arrays = {}
@@ -160,11 +163,12 @@ class Film(Shown):
         """A summary, what each measurement shows, and the doubts."""
         used = self.description["description"]
         doubts = self.description["doubts"]
-        several = any(doubt["code"] == "several_surfaces" for doubt in doubts)
+        surfaces = "one surface"
+        if any(doubt["code"] == "several_surfaces" for doubt in doubts):
+            surfaces = "SEVERAL SURFACES"
         yield (
             f"Film (measurements: {len(self.measurements)}, doubts: {len(doubts)}): as far as can"
-            f" be told of {'SEVERAL SURFACES' if several else 'one surface'}; described by"
-            f" {used['meaning']}"
+            f" be told of {surfaces}; described by {used['meaning']}"
         )
         yield from measurement_lines(self.description)
         yield from self.doubts
@@ -287,11 +291,11 @@ class FilmContact(Shown):
         """Where it touches, how much of it, and how hard it pulls."""
         closing = self.cycle.closing
         share = float((self.pressure_GPa > 0).mean())
+        doubt = "" if self.cycle.converged else "; NOT CONVERGED"
         yield (
             f"Contact: touches at {self.cycle.first_contact_nm:.4g} nm;"
             f" {closing.repulsive_nN[-1]:.4g} nN press it to {closing.separation_nm[-1]:.4g} nm,"
-            f" {share:.2%} in contact; pulls off with {pull_off(self.cycle.opening):.3g}"
-            f" nN{'' if self.cycle.converged else '; NOT CONVERGED'}"
+            f" {share:.2%} in contact; pulls off with {pull_off(self.cycle.opening):.3g} nN{doubt}"
         )
 
     def plot(self) -> Any:
@@ -364,31 +368,38 @@ class Switch(Shown):
     @property
     def release_V(self) -> float:
         """Voltage at which it lets go; 0 where it sticks, NaN where it is not known."""
-        return self.states["release_V"] if self.states else float("nan")
+        if not self.states:
+            return float("nan")
+        return self.states["release_V"]
 
     def lines(self) -> Iterator[str]:
         """Pull-in, release, and why not to trust them."""
         cells = self.content["cells_computed"]
         states = self.states
         reasons = self.content["gate"]["reasons"]
-        opens = f"opens at {self.release_V:.3g} V" if self.release_V > 0 else "sticks"
-        does = (
-            f"closes at {states['pull_in_V']:.3g} V, {opens}"
-            if states
-            else ": ".join(["not known", *reasons])
-        )
-        yield f"Switch on a pad of {cells} cells: {does}"
-        if states:
-            yield from (f"DOUBT: {reason}" for reason in reasons)
+        head = f"Switch on a pad of {cells} cells"
+        if not states:
+            yield ": ".join([head, "not known", *reasons])
+            return
+        opens = "sticks"
+        if self.release_V > 0:
+            opens = f"opens at {self.release_V:.3g} V"
+        yield f"{head}: closes at {states['pull_in_V']:.3g} V, {opens}"
+        for reason in reasons:
+            yield f"DOUBT: {reason}"
 
 
 def pixels_for(cutoff: Mapping[str, float] | None, side_nm: float) -> int:
     """The fewest pixels a side that resolve a film's cut-off, uniform or fixed, on a cell; the most
     where none do.
     """
-    end = max(cutoff["a"], cutoff.get("b", 0.0)) if cutoff else np.inf
-    fits = (n for n, margin in PIXELS.items() if np.pi * n / side_nm >= margin * end)
-    return next(fits, max(PIXELS))
+    if not cutoff:
+        return max(PIXELS)
+    shortest_per_nm = max(cutoff["a"], cutoff.get("b", 0.0))
+    for pixels, margin in PIXELS.items():
+        if np.pi * pixels / side_nm >= margin * shortest_per_nm:
+            return pixels
+    return max(PIXELS)
 
 
 def _load(source: str | Scan, number: int, settings: TopographySettings) -> list[Measurement]:
@@ -406,8 +417,6 @@ def _origin(source: str | Scan) -> dict[str, str]:
 
 def _row(value: Any) -> Any:
     """A number as a distribution."""
-    return (
-        InputRow(distribution="fixed", values=(value,))
-        if isinstance(value, (int, float))
-        else value
-    )
+    if isinstance(value, (int, float)):
+        return InputRow(distribution="fixed", values=(value,))
+    return value

@@ -20,7 +20,6 @@ from mesoscale.law.parameters import PARAMETERS
 from mesoscale.pad.cells import sample_cells
 from mesoscale.pad.closing import press_cells
 from mesoscale.pad.grid import PadGrid
-from mesoscale.pad.pressed import curves_of, flats_of
 from mesoscale.settings import ContactSettings, Settings
 
 Config = Mapping[str, Any]
@@ -165,8 +164,7 @@ def _pad(inputs: ContactInputs, config: Config) -> Sequence[Any]:
     separations = np.array(_separations(config))
     grid = PadGrid(separations, np.array([separations.size - 1]))
     cells = sample_cells(inputs, count, first)
-    closed = press_cells(inputs, contact, grid, cells)
-    curves = curves_of(closed, flats_of(inputs, contact))
+    curves = press_cells(inputs, contact, grid, cells).curves
     return [1e3 * branch.sum(axis=0)[::-1] for branch in (curves.closing, curves.opening[0])]
 
 

@@ -81,10 +81,8 @@ class PressedMap(Shown):
     def lines(self) -> Iterator[str]:
         """One line a load."""
         nx, ny = self.pressure_GPa.shape[1:]
-        yield (
-            f"Map of {nx} x {ny} sites; loads:"
-            f" {len(self.loads_nN)}{'' if self.converged else '; NOT CONVERGED'}"
-        )
+        doubt = "" if self.converged else "; NOT CONVERGED"
+        yield f"Map of {nx} x {ny} sites; loads: {len(self.loads_nN)}{doubt}"
         for k, (load, share) in enumerate(zip(self.loads_nN, self.area_share, strict=True)):
             yield (
                 f"{load:.4g} nN: {share:.2%} in contact, up to {self.pressure_GPa[k].max():.3g}"
@@ -217,9 +215,20 @@ def press(
     surface, spacing = _surface(
         heights, counterface, side_nm, bool(periodic), contact_at, steps.size, few
     )
-    hardness = {"h_macro": 0.0 if h_macro is None else h_macro, "h_prime": h_prime}
-    inputs = ContactInputs(hamaker=0.0, e_star=e_star, **hardness, q0=1.0, hurst=0.5, rms=0.0)
-    settings = ContactSettings(model="elastic" if h_macro is None else "plastic").model_copy(
+    model = "plastic"
+    if h_macro is None:
+        model = "elastic"
+        h_macro = 0.0
+    inputs = ContactInputs(
+        hamaker=0.0,
+        e_star=e_star,
+        h_macro=h_macro,
+        h_prime=h_prime,
+        q0=1.0,
+        hurst=0.5,
+        rms=0.0,
+    )
+    settings = ContactSettings(model=model).model_copy(
         update={"pixels": len(surface), "length_nm": spacing * len(surface)}
     )
     check_hardness(inputs, settings)
@@ -280,7 +289,8 @@ def _each(
 ) -> Iterator[_State]:
     """The elastic map at each load or approach, by itself."""
     spacing = settings.length_nm / settings.pixels
-    base = (Repeated if periodic else Alone)(surface.shape, spacing, float(inputs.e_star))
+    map_kind = Repeated if periodic else Alone
+    base = map_kind(surface.shape, spacing, float(inputs.e_star))
     lowest = float(surface.min())
     flat = float(surface.mean())
     for number, step in enumerate(steps.tolist()):
@@ -295,7 +305,9 @@ def _each(
         if not pressed.settled:
             yield from _way(surface, periodic, steps[number:], by_load, inputs, settings)
             return
-        force = step if by_load else float(pressed.pressure.sum()) * spacing**2
+        force = step
+        if not by_load:
+            force = float(pressed.pressure.sum()) * spacing**2
         yield _State(force, pressed.separation, pressed.pressure, pressed.gap, True)
 
 
@@ -309,19 +321,24 @@ def _way(
 ) -> Iterator[_State]:
     """The map at each load or approach, from one to the next in steps of separation."""
     lowest = float(surface.min())
-    contact = (CoupledContact if periodic else FreeContact)(surface, inputs, settings)
+    engine = CoupledContact if periodic else FreeContact
+    contact = engine(surface, inputs, settings)
     flows = contact.flows
+    force_steps = NUMERICS.force_steps if flows else 1
     if by_load:
         _refuse_beyond(contact, steps[-1])
     row = None
     for step in steps.tolist():
-        end = {"stop_force": step} if by_load else {"stop_separation": -lowest - step}
-        path = trace(contact, NUMERICS.force_steps if flows else 1, flows, **end, start=row)
+        if by_load:
+            path = trace(contact, force_steps, flows, stop_force=step, start=row)
+        else:
+            path = trace(contact, force_steps, flows, stop_separation=-lowest - step, start=row)
         row = path.rows[-1]
         if not np.isfinite(contact.separation):  # it stays where the highest site just touches
-            what = f"loads_nN = {step:g}" if by_load else f"approach_nm = {step:g}"
+            key = "loads_nN" if by_load else "approach_nm"
             raise InputError(
-                f"{what}: too little to press one site of this map; give more, or check its units"
+                f"{key} = {step:g}: too little to press one site of this map; give more, or check"
+                " its units"
             )
         settled = path.reached and path.unconverged == 0
         if by_load:
@@ -384,12 +401,7 @@ def _surface(
         raise InputError(
             f"contact_at = {contact_at}: accepted are highest (measured maps) and lowest"
         )
-    sites = shape[0] ** 2 if periodic else 4 * max(shape) ** 2
-    if few:
-        mechanics = "one load" if periodic else "one load on a map alone"
-        check_memory(max(shape) ** 2, mechanics, MAP_MB * (loads - 1) * surface.size)
-    else:
-        check_memory(sites, "coupled", MAP_MB * loads * surface.size)
+    _check_memory(shape, periodic, loads, few)
     if counterface is not None:
         second = checked_heights(counterface, float(sides.max()), square=False, name="counterface")
         if second.shape != shape:
@@ -399,13 +411,31 @@ def _surface(
         surface = surface + second[::-1]
     if periodic:
         check_periodic(surface)
-    return (-surface if contact_at == "highest" else surface.copy()), spacing
+    if contact_at == "highest":
+        return -surface, spacing
+    return surface.copy(), spacing
+
+
+def _check_memory(shape: tuple[int, int], periodic: bool, loads: int, few: bool) -> None:
+    """Refuse a map that needs more memory than there is."""
+    map_MB = MAP_MB * shape[0] * shape[1]
+    square = max(shape) ** 2
+    if few and periodic:
+        check_memory(square, "one load", (loads - 1) * map_MB)
+    elif few:
+        check_memory(square, "one load on a map alone", (loads - 1) * map_MB)
+    elif periodic:
+        check_memory(square, "coupled", loads * map_MB)
+    else:
+        # a map alone is solved on twice its sides
+        check_memory(4 * square, "coupled", loads * map_MB)
 
 
 def _refuse_beyond(contact: CoupledContact, force: float) -> None:
     """Refuse what the map does not carry."""
     if force > contact.capacity:
-        raise _beyond("the hardness" if contact.flows else "full contact", contact.capacity)
+        bound = "the hardness" if contact.flows else "full contact"
+        raise _beyond(bound, contact.capacity)
 
 
 def _full_contact(

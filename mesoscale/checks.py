@@ -34,7 +34,11 @@ def check_number(
     ------
     InputError
     """
-    bounds = f"{'0 or ' if zero else ''}{low:g} .. {high:g}{' ' + unit if unit != '1' else ''}"
+    bounds = f"{low:g} .. {high:g}"
+    if zero:
+        bounds = f"0 or {bounds}"
+    if unit != "1":
+        bounds = f"{bounds} {unit}"
     if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
         raise InputError(f"{name} = {_shown(value)}: accepted is a finite number, {bounds}")
     if not (low <= float(value) <= high or (zero and value == 0)):
@@ -67,13 +71,16 @@ def check_memory(sites: int, mechanics: str, maps_MB: float = 0.0) -> None:
     """
     needed = (SITE_MB[mechanics] * sites + maps_MB) / 1000
     present = machine_MB() / 1000
-    if needed > present:
-        maps = f", with {maps_MB / 1000:.3g} GB of maps," if maps_MB else ""
-        loads = ", or fewer loads" if maps_MB else ""
-        raise InputError(
-            f"a contact of {sites} sites{maps} needs {needed:.3g} GB of memory, this machine has"
-            f" {present:.3g}; take a part of the surface, or every second site{loads}"
-        )
+    if needed <= present:
+        return
+    contact = f"a contact of {sites} sites"
+    remedy = "take a part of the surface, or every second site"
+    if maps_MB:
+        contact += f", with {maps_MB / 1000:.3g} GB of maps,"
+        remedy += ", or fewer loads"
+    raise InputError(
+        f"{contact} needs {needed:.3g} GB of memory, this machine has {present:.3g}; {remedy}"
+    )
 
 
 def checked_array(name: str, values: Any, unit: str, missing: bool = False) -> np.ndarray:
@@ -86,10 +93,8 @@ def checked_array(name: str, values: Any, unit: str, missing: bool = False) -> n
     InputError
     """
     if np.ma.is_masked(values):
-        raise InputError(
-            f"{name}: {np.ma.count_masked(values)} values are masked; "
-            f"{'make them NaN' if missing else 'fill or cut missing data'}"
-        )
+        remedy = "make them NaN" if missing else "fill or cut missing data"
+        raise InputError(f"{name}: {np.ma.count_masked(values)} values are masked; {remedy}")
     try:
         array = np.asarray(values)
     except ValueError:
@@ -176,5 +181,9 @@ def check_periodic(heights: np.ndarray) -> None:
 
 
 def _shown(value: Any) -> str:
-    text = " ".join((f"{value:g}" if isinstance(value, float) else repr(value)).split())
-    return text if len(text) <= 60 else text[:57] + "..."
+    if isinstance(value, float):
+        return f"{value:g}"
+    text = " ".join(repr(value).split())
+    if len(text) <= 60:
+        return text
+    return text[:57] + "..."

@@ -4,6 +4,7 @@ import csv
 import io
 import os
 import stat
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -48,17 +49,18 @@ def foreign_columns(path: str | Path, named: str) -> Columns:
         if stat.S_ISREG(status.st_mode):
             return _kept_columns(str(path), (status.st_ino, status.st_mtime_ns, status.st_size))
         return _columns(str(path))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        why = (
-            error.strerror
-            if isinstance(error, OSError)
-            else "no text"
-            if isinstance(error, ValueError)
-            else error
-        )
-        raise InputError(f"{named}: cannot be read ({why}); give a CSV file") from None
+    except OSError as error:
+        raise InputError(_unreadable(named, error.strerror)) from None
+    except UnicodeDecodeError:
+        raise InputError(_unreadable(named, "no text")) from None
+    except csv.Error as error:
+        raise InputError(_unreadable(named, str(error))) from None
     except InputError as error:
         raise InputError(f"{named}: {error}") from None
+
+
+def _unreadable(named: str, why: str | None) -> str:
+    return f"{named}: cannot be read ({why}); give a CSV file"
 
 
 @lru_cache(maxsize=2)
@@ -73,25 +75,33 @@ def _columns(path: str) -> Columns:
         raise InputError(f"more than {MAX_TABLE_BYTES >> 20} MB; give fewer rows")
     text = io.StringIO(content.decode("utf-8-sig"), newline="")
     reader = csv.reader(line for line in text if line.strip() and not line.startswith("#"))
-    names = [
-        name.strip() or f"column {place}" for place, name in enumerate(next(reader, []), start=1)
-    ]
+    header = next(reader, [])
+    names = [name.strip() or f"column {place}" for place, name in enumerate(header, start=1)]
     for name in names:
         if names.count(name) > 1:
             raise InputError(
                 f"{names.count(name)} columns are named {name}; rename or remove all but one"
             )
-    rows: list[list[Any]] = list(reader)
-    for number, row in enumerate(rows, start=1):
-        if len(row) != len(names):
-            if any(value.strip() for value in row[len(names) :]):
-                raise InputError(
-                    f"row {number} has {len(row)} values, the header {len(names)} names; write"
-                    " decimal points, one value a column"
-                )
-            rows[number - 1] = (row + [None] * len(names))[: len(names)]
-    return (
-        dict(zip(names, zip(*rows, strict=True), strict=True))
-        if rows
-        else {name: () for name in names}
-    )
+    rows = [_as_long_as(names, number, row) for number, row in enumerate(reader, start=1)]
+    if not rows:
+        return {name: () for name in names}
+    return dict(zip(names, zip(*rows, strict=True), strict=True))
+
+
+def _as_long_as(names: list[str], number: int, row: list[str]) -> Sequence[str | None]:
+    """A row with a value for each column: None where it is too short, without empty ones beyond.
+
+    Raises
+    ------
+    InputError : it has values beyond the last column.
+    """
+    count = len(names)
+    if len(row) == count:
+        return row
+    if any(value.strip() for value in row[count:]):
+        raise InputError(
+            f"row {number} has {len(row)} values, the header {count} names; write decimal points,"
+            " one value a column"
+        )
+    missing = [None] * (count - len(row))
+    return [*row[:count], *missing]

@@ -33,8 +33,11 @@ def differences(first: Path, second: Path) -> Iterator[str]:
     """One line for each result file that two folders do not share, or share with other content."""
     names = [_result_files(folder) for folder in (first, second)]
     for name in sorted(names[0] | names[1]):
-        if not all(name in present for present in names):
-            yield f"{name}: only in {first if name in names[0] else second}"
+        if name not in names[1]:
+            yield f"{name}: only in {first}"
+            continue
+        if name not in names[0]:
+            yield f"{name}: only in {second}"
             continue
         try:
             difference = first_difference(*(content(folder / name) for folder in (first, second)))
@@ -115,15 +118,11 @@ def first_difference(first: Any, second: Any, place: str = "") -> str:
     """Where two contents differ first and how, in words; empty where they are the same."""
     if isinstance(first, dict) and isinstance(second, dict):
         if list(first) != list(second):
-            gone, new = (
-                ", ".join(sorted(folder_a.keys() - other.keys()))
-                for folder_a, other in ((first, second), (second, first))
-            )
-            return (
-                f"{place} keys in another order"
-                if not gone + new
-                else f"{place} keys gone: {gone:.99}; new: {new:.99}"
-            )
+            gone = ", ".join(sorted(first.keys() - second.keys()))
+            new = ", ".join(sorted(second.keys() - first.keys()))
+            if not gone and not new:
+                return f"{place} keys in another order"
+            return f"{place} keys gone: {gone:.99}; new: {new:.99}"
         pairs = ((f"{place}/{key}", first[key], second[key]) for key in first)
     elif isinstance(first, list) and isinstance(second, list):
         if len(first) != len(second):
@@ -137,16 +136,22 @@ def first_difference(first: Any, second: Any, place: str = "") -> str:
 
 
 def _value_difference(first: Any, second: Any, place: str) -> str:
-    if isinstance(first, bytes) and isinstance(second, bytes):
-        return "" if first == second else f"{place} other bytes".strip()
+    if isinstance(first, bytes) and isinstance(second, bytes) and first != second:
+        return f"{place} other bytes".strip()
     a = np.asarray(first)
     b = np.asarray(second)
-    equal_values = a.tolist() == b.tolist() if a.dtype == object else a.tobytes() == b.tobytes()
-    if (a.dtype, a.shape) == (b.dtype, b.shape) and equal_values:
+    if (a.dtype, a.shape) == (b.dtype, b.shape) and _same_values(a, b):
         return ""
     if a.dtype.kind == b.dtype.kind == "f" and a.shape == b.shape and a.ndim:
         return f"{place} differs by up to {np.nanmax(np.abs(a - b), initial=0):.3g}"
     return f"{place} {first!r:.60} | {second!r:.60}"
+
+
+def _same_values(a: np.ndarray, b: np.ndarray) -> bool:
+    """Whether two arrays of one type and shape are the same to the bit."""
+    if a.dtype == object:  # of which the bytes are addresses
+        return a.tolist() == b.tolist()
+    return a.tobytes() == b.tobytes()
 
 
 def _said(folder: Path) -> str:
@@ -158,9 +163,9 @@ def _said(folder: Path) -> str:
             f"{folder.name}: its switch cannot be read ({type(error).__name__}): damaged, or of"
             " another version"
         )
-    return f"{folder.name}: {answer.sentence if answer else 'no switch on a pad'}".replace(
-        "\u00a0", " "
-    )
+    if answer is None:
+        return f"{folder.name}: no switch on a pad"
+    return f"{folder.name}: {answer.sentence}".replace("\u00a0", " ")
 
 
 def main() -> None:
@@ -179,11 +184,8 @@ def main() -> None:
             )
         print(shown(_said(folder)))
     lines = list(differences(chosen.first, chosen.second))
-    print(
-        "\n".join(map(shown, lines))
-        if lines
-        else "no difference beyond provenance and machine times"
-    )
+    for line in lines or ["no difference beyond provenance and machine times"]:
+        print(shown(line))
     sys.exit(bool(lines))
 
 

@@ -8,11 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic.fields import FieldInfo
 
 from asperity.guards.errors import InputError
 from asperity.guards.foreign_text import did_you_mean
 from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
 
+_BOUNDS = {"[": "ge", "(": "gt", "]": "le", ")": "lt"}  # the keywords of `pydantic.Field`
 _INTERVAL = re.compile(r"([\[(])(\S+), (\S+)([\])])(?: (.+))?")
 
 
@@ -31,20 +33,19 @@ def key(default: Any, meaning: str, accepted: str = "", **field_options: Any) ->
     unit: str | None = accepted
     if match := _INTERVAL.fullmatch(accepted):
         left, low, high, right, unit = match.groups()
-        bounds = {"ge" if left == "[" else "gt": low, "le" if right == "]" else "lt": high}
+        bounds = {_BOUNDS[left]: low, _BOUNDS[right]: high}
         field_options |= {
             bound: _number(end) for bound, end in bounds.items() if not end.endswith("inf")
         }
-    return Field(
-        default,
-        description=meaning,
-        json_schema_extra={"unit": unit} if unit else None,
-        **field_options,
-    )
+    if unit:
+        field_options["json_schema_extra"] = {"unit": unit}
+    return Field(default, description=meaning, **field_options)
 
 
 def _number(text: str) -> int | float:
-    return int(text) if re.fullmatch(r"-?[0-9_]+", text) else float(text)
+    if re.fullmatch(r"-?[0-9_]+", text):
+        return int(text)
+    return float(text)
 
 
 class _OneLine(type(BaseModel)):
@@ -76,7 +77,9 @@ def _suggestion(kind: type[BaseModel], error: Any) -> str:
 
 def _shown(value: Any) -> str:
     text = " ".join(repr(value).split())
-    return text if len(text) <= 60 else text[:57] + "..."
+    if len(text) <= 60:
+        return text
+    return text[:57] + "..."
 
 
 class Settings(BaseModel, metaclass=_OneLine):
@@ -95,17 +98,25 @@ class Settings(BaseModel, metaclass=_OneLine):
         for name, field in cls.model_fields.items():
             extra = field.json_schema_extra
             unit = extra.get("unit") if isinstance(extra, dict) else None
-            value = field.get_default(call_default_factory=True)
-            default = type(value).__name__ if isinstance(value, BaseModel) else _shown(value)
-            head = f"{name} : {'required' if field.is_required() else f'default {default}'}"
-            lines += [
-                head if unit is None else f"{head}, {unit}",
-                f"    {field.description or ''}".rstrip(),
-            ]
+            head = f"{name} : {_default(field)}"
+            if unit is not None:
+                head = f"{head}, {unit}"
+            lines.append(head)
+            lines.append(f"    {field.description or ''}".rstrip())
         if lines:
             cls.__doc__ = "\n".join(
                 [inspect.cleandoc(cls.__doc__ or ""), "", "Parameters", "----------", *lines]
             )
+
+
+def _default(field: FieldInfo) -> str:
+    """What counts where a key is not given, in words."""
+    if field.is_required():
+        return "required"
+    value = field.get_default(call_default_factory=True)
+    if isinstance(value, BaseModel):
+        return f"default {type(value).__name__}"
+    return f"default {_shown(value)}"
 
 
 Content = TypeVar("Content", bound=Settings)
@@ -131,7 +142,8 @@ def load_settings(kind: type[Content], path: Path, what: str, example: str) -> C
         first = error.errors()[0]
         where = " ".join(".".join(map(str, first["loc"])).split())
         message = first["msg"].removeprefix("Value error, ")
-        got = (
-            "" if first["type"] in ("missing", "value_error") else f" (got {first['input']!r:.80})"
-        )
-        raise InputError(f"{path}: {where + ': ' if where else ''}{message}{got}") from None
+        if where:
+            message = f"{where}: {message}"
+        if first["type"] not in ("missing", "value_error"):
+            message = f"{message} (got {first['input']!r:.80})"
+        raise InputError(f"{path}: {message}") from None

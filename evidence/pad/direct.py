@@ -20,14 +20,13 @@ from scipy.stats import qmc
 from evidence.pad.large_surfaces import random_cells
 from evidence.pad.runs import finished
 from mesoscale.answer.points import Point, point_of, values_at
-from mesoscale.answer.switches import close_for, surfaces_of
+from mesoscale.answer.switches import surfaces_of
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.cells import Cell, sample_cells
 from mesoscale.pad.closing import press_cells
 from mesoscale.pad.curves import PadCurves
-from mesoscale.pad.pilots import Pilots
-from mesoscale.pad.pressed import flats_of
+from mesoscale.pad.pilots import Pilots, closed_until
 from mesoscale.settings import ContactSettings
 from mesoscale.switch import switch_of
 
@@ -57,7 +56,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
                 folder.name,
                 "answer",
                 k,
-                one.pad.cells.count if one.pad else 0,
+                one.pad.count if one.pad else 0,
                 release,
                 one.error_V,
                 0.0,
@@ -108,11 +107,16 @@ def release_V(
     Pilots tell how far they are closed: of cells drawn alike, the first have hardly a rough place.
     """
     try:
-        first = close_for(switch_of(point.device.level), Pilots(inputs, settings, pilots))
-        grid = first.grid()
-        pad, flats = press_cells(inputs, settings, grid, cells), flats_of(inputs, settings)
-        closing, opening = pad.mean(pad.closing)[:, ::-1], pad.mean(pad.opening)[::-1, :, ::-1]
-        curves = PadCurves(grid.separation_nm[::-1], closing, grid.depth_nm[::-1], opening, flats)
+        level = switch_of(point.device.level)
+        grid = closed_until(level.carried_by, Pilots(inputs, settings, pilots)).grid()
+        pad = press_cells(inputs, settings, grid, cells)
+        curves = PadCurves(
+            separation_nm=grid.separation_nm[::-1],
+            closing=pad.mean(pad.closing)[:, ::-1],
+            depth_nm=grid.depth_nm[::-1],
+            opening=pad.mean(pad.opening)[::-1, :, ::-1],
+            flats=pad.flats,
+        )
         return switch_of(point.device).states(curves).release_V
     except InputError:
         return np.nan

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from mesoscale.contact import ContactInputs
 from mesoscale.pad.cells import FIRST_SEED, Cell
-from mesoscale.pad.closing import PadCells, press_cells
+from mesoscale.pad.closing import press_cells
 from mesoscale.pad.grid import PadGrid
 from mesoscale.pad.pilots import plan_grid
+from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
@@ -63,7 +64,7 @@ def random_cells(count: int, first_seed: int) -> list[Cell]:
 
 def closed(
     inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cells: Sequence[Cell]
-) -> PadCells:
+) -> Pad:
     """A pad of cells."""
     return press_cells(inputs, contact, grid, cells)
 
@@ -101,7 +102,7 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
     return found
 
 
-def comparison_rows(cells: PadCells, large: PadCells) -> Iterator[dict[str, Any]]:
+def comparison_rows(cells: Pad, large: Pad) -> Iterator[dict[str, Any]]:
     """Rows from the cells and the large surfaces at the same separations."""
     size = SIDE**2
     pads = cells.count // size

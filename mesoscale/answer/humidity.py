@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.answer.release import probability
-from mesoscale.answer.switches import PadModel, solve_point, surfaces_of
+from mesoscale.answer.switches import PadModel, Solved, solve_point, surfaces_of
 from mesoscale.contact.menisci import reach_nm
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.adhesion import adhesion_of
@@ -28,11 +28,11 @@ HALVINGS = 3  # of the step of humidity in which the switch begins to stick
 def levels(table: InputTable, contact: ContactSettings) -> Array:
     """Humidities over the range of the input, rising; without this input that of the air alone."""
     if "humidity" not in table.names:
-        return np.array([contact.air.humidity if contact.air else 0.0])
+        air = contact.air or AirSettings(humidity=0.0)
+        return np.array([air.humidity])
     low, high = table.rows[table.names.index("humidity")].distribution.span()
-    return (
-        low + (high - low) * np.linspace(0.0, 1.0, 7) ** 2
-    )  # a few per cent of humidity change most
+    # a few per cent of humidity change most
+    return low + (high - low) * np.linspace(0.0, 1.0, 7) ** 2
 
 
 def humidity_rows(
@@ -53,29 +53,27 @@ def humidity_rows(
     rows: list[dict[str, Any]] = []
     humidities = levels(table, contact)
     air = contact.air or AirSettings()
-    openings = ("balance",) if contact.mechanics == "adhesive" else get_args(Opening)
+    openings = get_args(Opening)
+    if contact.mechanics == "adhesive":
+        openings = ("balance",)
     steps = (len(humidities) + HALVINGS) * len(openings)
 
     def solve(humidity: float, share: dict[str, float]) -> None:
-        point = replace(
-            model.central.point, values={**model.central.point.values, "humidity": humidity}
-        )
+        values = {**model.central.point.values, "humidity": humidity}
+        point = replace(model.central.point, values=values)
+        humid = air.model_copy(update={"humidity": humidity})
         for opening in openings:
             chosen = contact.model_copy(update={"air": air.model_copy(update={"opening": opening})})
             solved = solve_point(point, chosen, 2 * point_cells, surfaces_of(0))
-            opened = adhesion_of(solved.pad.curves)[0] if solved.pad else None
-            rows.append(
-                {
-                    "humidity": humidity,
-                    "opening": opening,
-                    "reach_nm": reach_nm(air.model_copy(update={"humidity": humidity})),
-                    "release_V": solved.states.release_V if solved.states else None,
-                    "error_V": solved.error_V if solved.states else None,
-                    "energy_mJ_m2": opened.energy_uJ_m2 * 1e-3 if opened else None,
-                    "pull_off_kPa": opened.pull_off_kPa if opened else None,
-                    **(share if opening == air.opening else {}),
-                }
-            )
+            row: dict[str, Any] = {
+                "humidity": humidity,
+                "opening": opening,
+                "reach_nm": reach_nm(humid),
+                **_numbers(solved),
+            }
+            if opening == air.opening:
+                row |= share
+            rows.append(row)
             if progress:
                 progress(len(rows) / steps, f"{humidity:.0%} humidity, {opening}")
 
@@ -86,6 +84,21 @@ def humidity_rows(
         if step is not None:
             solve(0.5 * sum(step), {})
     return sorted(rows, key=lambda row: row["humidity"])
+
+
+def _numbers(solved: Solved) -> dict[str, float | None]:
+    """What the switch and the adhesion of its pad are; None where they are not known."""
+    numbers: dict[str, float | None] = dict.fromkeys(
+        ("release_V", "error_V", "energy_mJ_m2", "pull_off_kPa")
+    )
+    if solved.states:
+        numbers["release_V"] = solved.states.release_V
+        numbers["error_V"] = solved.error_V
+    if solved.pad:
+        opened = adhesion_of(solved.pad.curves)[0]
+        numbers["energy_mJ_m2"] = opened.energy_uJ_m2 * 1e-3
+        numbers["pull_off_kPa"] = opened.pull_off_kPa
+    return numbers
 
 
 def sticking_between(rows: Sequence[dict[str, Any]]) -> tuple[float, float] | None:
@@ -104,19 +117,20 @@ def sticking_between(rows: Sequence[dict[str, Any]]) -> tuple[float, float] | No
 def _shares(model: PadModel, humidities: Array) -> list[dict[str, float]]:
     """Share of the points nearest to each humidity whose switch sticks, with its 95 % interval."""
     stuck = model.states("release_V") == 0.0
-    at = np.array(
+    humidity_of_points = np.array(
         [model.points[k].point.values.get("humidity", humidities[0]) for k in model.solved]
     )
-    nearest = np.abs(at[:, None] - humidities).argmin(axis=1) if at.size else at.astype(int)
+    apart = np.abs(humidity_of_points.reshape(-1, 1) - humidities)
+    nearest = apart.argmin(axis=1)
     shares = []
     for number in range(len(humidities)):
-        sticking_here = stuck[nearest == number]
-        said = (
-            probability(int(sticking_here.sum()), sticking_here.size) if sticking_here.size else {}
-        )
-        names = {"value": "stuck", "low": "stuck_low", "high": "stuck_high"}
-        shares.append(
-            {name: said[key] for key, name in names.items() if said}
-            | {"points": sticking_here.size}
-        )
+        stuck_nearby = stuck[nearest == number]
+        share: dict[str, float] = {}
+        if stuck_nearby.size:
+            sticking = probability(int(stuck_nearby.sum()), stuck_nearby.size)
+            share["stuck"] = sticking["value"]
+            share["stuck_low"] = sticking["low"]
+            share["stuck_high"] = sticking["high"]
+        share["points"] = stuck_nearby.size
+        shares.append(share)
     return shares

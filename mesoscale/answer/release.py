@@ -100,11 +100,10 @@ def answer(model: PadModel) -> Answer:
     release = model.states("release_V")
     stuck = model.states("release_V") == 0.0
     errors = np.array([point.error_V for point in solved])
-    error_V = (
-        float(np.sqrt(np.mean(errors[np.isfinite(errors)] ** 2)))
-        if np.isfinite(errors).any()
-        else 0.0
-    )
+    known_errors = errors[np.isfinite(errors)]
+    error_V = 0.0
+    if known_errors.size:
+        error_V = float(np.sqrt(np.mean(known_errors**2)))
     names, varies, varying = model.design.names, model.design.varies, model.design.varying
     fit = fit_additive(model.design.probability[model.solved][:, varying], release)
     cells = fit.deviation(release, np.where(np.isfinite(errors), errors, error_V))
@@ -133,7 +132,7 @@ def answer(model: PadModel) -> Answer:
         len(solved),
         tuple(refused),
         int(model.states("deepened").sum()),
-        sum(point.pad.cells.count for point in solved if point.pad),
+        sum(point.pad.count for point in solved if point.pad),
         error_V,
         fit.explained,
         fit.noise,
@@ -144,8 +143,11 @@ def answer(model: PadModel) -> Answer:
 def describe(values: Array) -> dict[str, Any]:
     """Deviation and quantiles."""
     quantiles = np.quantile(values, ENDS)
+    deviation = 0.0
+    if values.size > 1:
+        deviation = float(values.std(ddof=1))
     return {
-        "std": float(values.std(ddof=1)) if values.size > 1 else 0.0,
+        "std": deviation,
         "quantiles": {f"{q:g}": float(value) for q, value in zip(ENDS, quantiles, strict=True)},
     }
 
@@ -182,30 +184,35 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
     """Content of answer/pad_switch.json; without points there is no answer."""
     central = model.central
     settings = central.point.device
-    cells = central.pad.cells if central.pad else None
-    said, status = None, "the scene asks for no points (pad.points: 0)"
+    content = None
+    status = "the scene asks for no points (pad.points: 0)"
     if model.points:
         try:
-            said = asdict(answer(model))
+            content = asdict(answer(model))
             status = "ok"
         except InputError as error:
             status = str(error)
+    cells_computed = 0
+    adhesion = []
+    by_key = []
+    if central.pad:
+        cells_computed = central.pad.count
+        adhesion = [asdict(opened) for opened in adhesion_of(central.pad.curves)]
+    if central.pad and central.states:
+        by_key = release_by_key(settings, central.pad.curves)
+    reasons = _reasons(central)
     return {
         "electrode": ELECTRODES[settings.kind],
-        "cells_computed": cells.count if cells else 0,
+        "cells_computed": cells_computed,
         "cells_of_pad": settings.pad_um2 * 1e6 / cell_area_nm2,
         "central": _central(central),
         "by_attraction": [
             {"times": times, "release_V": _release_V(central, times)} for times in WORKS
         ],
-        "adhesion": (
-            [asdict(opened) for opened in adhesion_of(central.pad.curves)] if central.pad else []
-        ),
-        "by_key": (
-            release_by_key(settings, central.pad.curves) if central.states and central.pad else []
-        ),
-        "gate": {"passed": not (reasons := _reasons(central)), "reasons": reasons},
-        "answer": said,
+        "adhesion": adhesion,
+        "by_key": by_key,
+        "gate": {"passed": not reasons, "reasons": reasons},
+        "answer": content,
         "answer_status": status,
     }
 
@@ -222,14 +229,13 @@ def _reasons(central: Solved) -> list[str]:
     if central.refused or central.pad is None:
         return [central.refused]
     reasons = []
-    cells = central.pad.cells
-    if unsettled := int((~cells.settled).sum()):
+    if unsettled := int((~central.pad.settled).sum()):
         reasons.append(f"{unsettled} cells in which flow did not come to rest")
     if min(central.halves_V) == 0.0 < max(central.halves_V):
         reasons.append(
-            f"the {cells.count} computed cells do not decide whether the switch sticks: on one half"
-            f" of them it does, on the other it lets go at {max(central.halves_V):.3g} V; raise"
-            " pad.cells"
+            f"the {central.pad.count} computed cells do not decide whether the switch sticks: on"
+            f" one half of them it does, on the other it lets go at {max(central.halves_V):.3g} V;"
+            " raise pad.cells"
         )
     return reasons
 

@@ -17,15 +17,13 @@ from mesoscale.pad.cells import FIRST_SEED, sample_cells
 from mesoscale.pad.closing import press_cells
 from mesoscale.pad.grid import DEPTHS
 from mesoscale.pad.pilots import Pilots, closed_until
-from mesoscale.pad.pressed import Pad, flats_of
+from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings
-from mesoscale.switch import States, Switch, release_or_nan_V, switch_of
+from mesoscale.switch import States, release_or_nan_V, switch_of
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
-MARGIN = 1.25
-"""Over what the switch presses with: the mean of the few pilot cells is off by 15 %."""
 UNDECIDED_SHARE = 0.008
 """Error of a release, over the pull-in voltage, from which a pad has more cells: 0.6 V of the
 default switch."""
@@ -138,24 +136,10 @@ def press_pad(
     inputs, settings = point.contact_of(contact)
     pad_cells = point.device.pad_um2 * 1e6 / settings.length_nm**2
     drawn = sample_cells(inputs, cells, first_seed, pad_cells)
-    pilots = close_for(switch_of(point.device.level), Pilots(inputs, settings, drawn, step_nm))
-    closed = press_cells(inputs, settings, pilots.grid(depths), drawn, progress)
-    return Pad(closed, flats_of(inputs, settings))
-
-
-def close_for(switch: Switch, pilots: Pilots) -> Pilots:
-    """The pilots of a pad, closed until they carry a switch.
-
-    Raises
-    ------
-    InputError : they never do, or their asperities merge before.
-    """
-
-    def carry_it(closed: Pilots) -> bool:
-        repel = closed.repel(float(switch.least_GPa(closed.separation_nm)))
-        return repel and closed.carry(MARGIN * switch.pressed_GPa(closed.curves))
-
-    return closed_until(carry_it, pilots)
+    switch = switch_of(point.device.level)
+    pilots = closed_until(switch.carried_by, Pilots(inputs, settings, drawn, step_nm))
+    grid = pilots.grid(depths)
+    return press_cells(inputs, settings, grid, drawn, progress)
 
 
 def surfaces_of(number: int) -> int:

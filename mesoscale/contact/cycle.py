@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from mesoscale.checks import check_memory, check_number, check_seed
+from mesoscale.contact.engines import contact_on
 from mesoscale.contact.numerics import NUMERICS, Numerics
-from mesoscale.contact.path import reopen, trace
+from mesoscale.contact.path import open_again, trace
 from mesoscale.contact.pressed import Contact, Row
 from mesoscale.contact.surface import ContactAt, given_surface, random_surface
 from mesoscale.errors import InputError
@@ -197,7 +198,9 @@ def run_cycle(
     contact = contact_on(surface, inputs, settings, numerics)
     capacity = contact.capacity
     first_contact = contact.touching_separation
-    approach = [row for gap in _gaps(contact)[::-1] for row in contact.way(first_contact + gap)]
+    approach = []
+    for gap in contact.gaps_apart_nm[::-1]:
+        approach += contact.way(first_contact + gap)
     closing = trace(contact, numerics.force_steps, plastic, stop_force=min(force, capacity))
     reached = closing.reached and force <= capacity
     miss = abs(closing.rows[-1].force - force) / force
@@ -208,33 +211,13 @@ def run_cycle(
     remarks = contact.remarks()
     if contact.adhesion and contact.adhesion.menisci:
         remarks["filled_share"] = contact.filled_share(last.separation)
-    repeated = closing.repeated
-    unconverged = closing.unconverged
+    back = open_again(contact, closing, approach, numerics.force_steps)
     if not contact.REVERSIBLE:
-        path = reopen(contact, numerics.force_steps, last)
-        opening = path.rows
-        repeated = repeated + path.repeated
-        unconverged = unconverged + path.unconverged
-        departure = []
-        for gap in _gaps(contact):
-            departure += contact.way(path.rows[-1].separation + gap)
-        unconverged += contact.unsettled
         remarks["jump_loss_aJ"] = float(contact.lost)
-    elif (changed > 0 or contact.keeps_liquid) and last.force > 0:
-        contact.hold_liquid(last.separation)
-        contact.adopt_changes()
-        departure = [contact.away(contact.touching_separation + gap) for gap in _gaps(contact)]
-        path = trace(
-            contact, numerics.force_steps, False, last.force, stop_separation=last.separation
-        )
-        # the last row of the way down is the state in which closing ended
-        opening = [last._replace(sweeps=0), *path.rows[-2::-1]]
-    else:  # nothing flowed: the way back is the way there
-        departure = approach[::-1]
-        opening = [row._replace(sweeps=0) for row in closing.rows[::-1]]
+    unconverged = closing.unconverged + back.unconverged
     last_contact = first_contact
     if last.force > 0:
-        last_contact = opening[-1].separation
+        last_contact = back.touching[-1].separation
     flags = {
         "force_reached": reached,
         "force_miss": abs(last.force - force) / force,
@@ -242,14 +225,14 @@ def run_cycle(
         "largest_load": closing.load,
         "full_contact": closing.full or (settings.model == "elastic" and force > capacity),
         "radius_bound_events": closing.bounds,
-        "repeated_steps": repeated,
+        "repeated_steps": closing.repeated + back.repeated,
         "changed_sites": changed,
         "repulsion_drop": _largest_drop([row.force for row in closing.rows]),
         **remarks,
     }
     return Cycle(
         closing=_branch(contact, [*approach, *closing.rows]),
-        opening=_branch(contact, [*opening, *departure]),
+        opening=_branch(contact, [*back.touching, *back.apart]),
         first_contact_nm=first_contact + contact.offset,
         last_contact_nm=last_contact + contact.offset,
         flags=flags,
@@ -260,26 +243,6 @@ def run_cycle(
     )
 
 
-def contact_on(
-    surface: np.ndarray,
-    inputs: ContactInputs,
-    settings: ContactSettings,
-    numerics: Numerics = NUMERICS,
-) -> Contact:
-    """Contact on (N, N) heights in nm by the engine of `settings.mechanics`, compiled alone."""
-    if settings.mechanics == "adhesive":
-        from mesoscale.contact.coupled.adhesive import AdhesiveContact
-
-        return AdhesiveContact(surface, inputs, settings, numerics)
-    if settings.mechanics == "coupled":
-        from mesoscale.contact.coupled.engine import CoupledContact
-
-        return CoupledContact(surface, inputs, settings, numerics)
-    from mesoscale.contact.asperity.engine import AsperityContact
-
-    return AsperityContact(surface, inputs, settings, numerics)
-
-
 def _largest_drop(forces: list[float]) -> float:
     """Largest fall of a force below an earlier value, as a share of its largest value."""
     highest = np.maximum.accumulate(forces)
@@ -288,17 +251,15 @@ def _largest_drop(forces: list[float]) -> float:
     return float((highest - forces).max() / highest[-1])
 
 
-def _gaps(contact: Contact) -> np.ndarray:
-    """Distances from contact (nm), rising, of the attraction without touch."""
-    reach = contact.adhesion.reach_nm if contact.adhesion else 0.0
-    furthest = max(4.0 * contact.rms, 10.0, 1.5 * reach)
-    nearest = max(0.01 * contact.rms, 0.01)
-    return np.geomspace(furthest, nearest, 20)[::-1]
-
-
 def _branch(contact: Contact, rows: list[Row]) -> Branch:
     separation, force, attraction, sites, asperities, sweeps = zip(*rows, strict=True)
     separation = np.array(separation) + contact.offset
     area = np.array(sites) * contact.site_area
-    forces = np.array(force), np.array(attraction)
-    return Branch(separation, *forces, area, np.array(asperities), np.array(sweeps))
+    return Branch(
+        separation_nm=separation,
+        repulsive_nN=np.array(force),
+        attractive_nN=np.array(attraction),
+        contact_area_nm2=area,
+        asperities=np.array(asperities),
+        sweeps=np.array(sweeps),
+    )

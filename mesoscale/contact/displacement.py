@@ -5,12 +5,12 @@ displacement. Opening depends on how deep the surface was pressed before: that i
 contact.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.contact.cycle import contact_on
+from mesoscale.contact.engines import contact_on
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.pressed import Contact, State
 from mesoscale.errors import InputError
@@ -41,6 +41,20 @@ class Displacement:
     closing: Array
     opening: Array
     settled: bool
+
+    def at_steps(self, known_nm: Array, asked_nm: Array) -> "Displacement":
+        """The same at other separations, between which forces are straight.
+
+        Parameters
+        ----------
+        known_nm, asked_nm : falling separations, at which the forces are known and asked for.
+        """
+
+        def between(forces: Array) -> Array:
+            return np.array([np.interp(-asked_nm, -known_nm, row) for row in forces])
+
+        opening = np.array([between(branch) for branch in self.opening])
+        return replace(self, closing=between(self.closing), opening=opening)
 
 
 class Closing:

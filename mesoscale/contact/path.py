@@ -29,6 +29,22 @@ class Path:
     full: bool = False
 
 
+@dataclass(frozen=True)
+class WayBack:
+    """Opening from where closing ended, in the order of rising separation.
+
+    Attributes
+    ----------
+    touching : rows until nothing touches, the first where closing ended.
+    apart : rows beyond, where only attraction acts.
+    """
+
+    touching: list[Row]
+    apart: list[Row]
+    unconverged: int = 0
+    repeated: int = 0
+
+
 def trace(
     contact: Contact,
     steps: int,
@@ -108,11 +124,49 @@ def trace(
     return path
 
 
-def reopen(contact: Contact, steps: int, last: Row) -> Path:
+def open_again(contact: Contact, closing: Path, approach: list[Row], steps: int) -> WayBack:
+    """Lift the flat from where closing ended until nothing touches, and away.
+
+    Parameters
+    ----------
+    approach : rows of the way to first contact.
+    steps : of the force, see `trace`.
+    """
+    last = closing.rows[-1]
+    if not contact.REVERSIBLE:
+        return _open_by_its_own_way(contact, last, steps)
+    changed = contact.changed_sites > 0 or contact.keeps_liquid
+    if changed and last.force > 0:
+        return _open_without_flow(contact, last, steps)
+    # nothing has changed: the way back is the way there
+    touching = [row._replace(sweeps=0) for row in closing.rows[::-1]]
+    return WayBack(touching, approach[::-1])
+
+
+def _open_by_its_own_way(contact: Contact, last: Row, steps: int) -> WayBack:
+    """For contacts that come back another way than they went."""
+    path = _reopen(contact, steps, last)
+    apart = []
+    for gap in contact.gaps_apart_nm:
+        apart += contact.way(path.rows[-1].separation + gap)
+    return WayBack(path.rows, apart, path.unconverged + contact.unsettled, path.repeated)
+
+
+def _open_without_flow(contact: Contact, last: Row, steps: int) -> WayBack:
+    """By closing the changed surface again without flow, up to the same force."""
+    contact.hold_liquid(last.separation)
+    contact.adopt_changes()
+    touching_separation = contact.touching_separation
+    apart = [contact.away(touching_separation + gap) for gap in contact.gaps_apart_nm]
+    path = trace(contact, steps, False, last.force, stop_separation=last.separation)
+    # the last row of the way down is the state in which closing ended
+    return WayBack([last._replace(sweeps=0), *path.rows[-2::-1]], apart)
+
+
+def _reopen(contact: Contact, steps: int, last: Row) -> Path:
     """Lift the flat from the end of closing until nothing touches, in steps of both forces.
 
-    For contacts that come back another way than they went. Where a force jumps, the step is as
-    small as a path allows.
+    Where a force jumps, the step is as small as a path allows.
     """
     path = Path([last._replace(sweeps=0)])
     scale = max(contact.rms, 1e-3 * contact.spacing)

@@ -204,6 +204,14 @@ class Contact(ABC):
         return self.BEARING_SHARE * self.hardness.pressure(area) * area
 
     @property
+    def gaps_apart_nm(self) -> np.ndarray:
+        """Gaps beyond first contact, rising, at which a cycle looks at the attraction."""
+        reach = self.adhesion.reach_nm if self.adhesion else 0.0
+        furthest = max(4.0 * self.rms, 10.0, 1.5 * reach)
+        nearest = max(0.01 * self.rms, 0.01)
+        return np.geomspace(furthest, nearest, 20)[::-1]
+
+    @property
     def touching_separation(self) -> float:
         """Separation of first contact of the surface as it is now."""
         return -float(self.heights.min())

@@ -155,6 +155,11 @@ def surface_of(inputs: ContactInputs, contact: ContactSettings, cell: Cell) -> A
     return place_ratio(inputs, cell) * _surface(inputs, contact, cell)
 
 
+def first_contact_nm(inputs: ContactInputs, contact: ContactSettings, cell: Cell) -> float:
+    """Separation from the mean plane of the film at which a cell first touches."""
+    return -float(surface_of(inputs, contact, cell).min())
+
+
 @lru_cache(maxsize=16)  # the plan of a point's pad looks at the surfaces that are closed next
 def _surface(inputs: ContactInputs, contact: ContactSettings, cell: Cell) -> Array:
     return _pieces(inputs, contact).surface(cell)

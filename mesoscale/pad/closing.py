@@ -5,7 +5,7 @@ weight.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from mesoscale.contact.displacement import Displacement, close_by_separation
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.pad.cells import Cell, half_of, place_ratio, surface_of
+from mesoscale.pad.cells import Cell, place_ratio, surface_of
 from mesoscale.pad.grid import PadGrid
+from mesoscale.pad.pressed import Pad, assemble
 from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
@@ -27,55 +28,6 @@ LONGEST_PLACE_STEP_NM = 0.8
 """And the longest such step, since wells are a nanometre wide."""
 
 
-@dataclass(frozen=True)
-class PadCells:
-    """Pressures of all computed cells at the separations they share; far to near.
-
-    Attributes
-    ----------
-    grid : separations and depths.
-    weight : share of each cell in the pad, shape (cells,).
-    rms_ratio : RMS height of each cell's place over the median place's, shape (cells,).
-    first_contact_nm : first contact of each cell, shape (cells,).
-    closing : repulsive and attractive pressure (GPa, attraction negative), shape (cells, 2, n).
-    opening : the same while opening from each depth, shape (cells, k, 2, n); NaN below the depth.
-    settled : whether flow came to rest in each cell, shape (cells,).
-    """
-
-    grid: PadGrid
-    weight: Array
-    rms_ratio: Array
-    first_contact_nm: Array
-    closing: Array
-    opening: Array
-    settled: NDArray[np.bool_]
-
-    @property
-    def count(self) -> int:
-        """Number of cells."""
-        return len(self.first_contact_nm)
-
-    def mean(self, pressures: Array) -> Array:
-        """Mean of pressures (cells, ...) over the pad."""
-        return np.einsum("c,c...->...", self.weight, pressures)
-
-    def half(self, other: bool = False) -> "PadCells":
-        """The pad of one half of its cells; each stands for its neighbour of the other half, too
-        (`half_of`).
-        """
-        chosen = np.flatnonzero(half_of(self.count, other))
-        pairs = np.bincount(np.arange(self.count) // 2, self.weight)[chosen // 2]
-        return PadCells(
-            self.grid,
-            pairs / pairs.sum(),
-            self.rms_ratio[chosen],
-            self.first_contact_nm[chosen],
-            self.closing[chosen],
-            self.opening[chosen],
-            self.settled[chosen],
-        )
-
-
 def press_cells(
     inputs: ContactInputs,
     contact: ContactSettings,
@@ -83,30 +35,10 @@ def press_cells(
     cells: Sequence[Cell],
     progress: Callable[[float, str], None] | None = None,
     numerics: Numerics = NUMERICS,
-) -> PadCells:
-    """The cells of a pad, closed to its separations and opened from its depths."""
+) -> Pad:
+    """A pad whose cells are closed to its separations and opened from its depths."""
     closed = list(close_cells(inputs, contact, grid, cells, progress, numerics))
     return assemble(inputs, contact, grid, cells, closed)
-
-
-def assemble(
-    inputs: ContactInputs,
-    contact: ContactSettings,
-    grid: PadGrid,
-    cells: Sequence[Cell],
-    closed: Sequence[Displacement],
-) -> PadCells:
-    """The cells of a pad from what closing each of them gave."""
-    area = contact.length_nm**2
-    return PadCells(
-        grid,
-        np.array([cell.weight for cell in cells]),
-        np.array([place_ratio(inputs, cell) for cell in cells]),
-        np.array([cell.first_contact_nm for cell in closed]),
-        np.array([cell.closing for cell in closed]) / area,
-        np.array([cell.opening for cell in closed]) / area,
-        np.array([cell.settled for cell in closed]),
-    )
 
 
 def close_cells(
@@ -142,12 +74,10 @@ def _close(
     closed = close_by_separation(
         inputs, contact, heights, separation_nm + plane_nm, depths, numerics
     )
-    closing = _between(grid.separation_nm, separation_nm, closed.closing)
-    opening = [_between(grid.separation_nm, separation_nm, branch) for branch in closed.opening]
-    for branch, depth in zip(opening, grid.depths, strict=True):
+    between = closed.at_steps(separation_nm, grid.separation_nm)
+    for branch, depth in zip(between.opening, grid.depths, strict=True):
         branch[:, depth + 1 :] = np.nan
-    first_contact_nm = closed.first_contact_nm - plane_nm
-    return Displacement(first_contact_nm, closing, np.array(opening), closed.settled)
+    return replace(between, first_contact_nm=closed.first_contact_nm - plane_nm)
 
 
 def _own_steps(grid: PadGrid, step_nm: float) -> NDArray[np.int_]:
@@ -158,8 +88,3 @@ def _own_steps(grid: PadGrid, step_nm: float) -> NDArray[np.int_]:
         if place in grid.depths or moved_nm >= (1.0 - 1e-9) * step_nm:
             chosen.append(place)
     return np.array(chosen)
-
-
-def _between(places_nm: Array, known_nm: Array, forces: Array) -> Array:
-    """Forces (2, n) at falling separations, at other ones."""
-    return np.array([np.interp(-places_nm, -known_nm, row) for row in forces])

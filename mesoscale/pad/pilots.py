@@ -10,7 +10,7 @@ from mesoscale.contact.displacement import Closing
 from mesoscale.contact.menisci import reach_nm
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
-from mesoscale.pad.cells import Cell, surface_of
+from mesoscale.pad.cells import Cell, first_contact_nm, surface_of
 from mesoscale.pad.curves import PadCurves, closing_alone
 from mesoscale.pad.grid import DEPTHS, PadGrid, far_nm, near_nm, opened_at_loads, usual_step_nm
 from mesoscale.settings import ContactSettings
@@ -96,8 +96,12 @@ class Pilots:
         self._cells = cells
         self._attraction = attraction
         self._step_nm = step_nm or usual_step_nm(inputs.rms)
-        self._every = -(-len(cells) // PILOTS)
-        self._closed = SideBySide(inputs, contact, _some_of(cells, self._every))
+        every = -(-len(cells) // PILOTS)
+        chosen = _some_of(cells, every)
+        self._closed = SideBySide(inputs, contact, chosen)
+        others = [cell for place, cell in enumerate(cells) if place % every]
+        others_nm = [first_contact_nm(inputs, contact, cell) for cell in others]
+        self._touching_nm = np.append(self._closed.first_contact_nm, others_nm)
         self._start_nm = float(self._closed.first_contact_nm.max())
         self._asked_GPa = 0.0
         self._repulsion_GPa = 0.0
@@ -173,11 +177,9 @@ class Pilots:
         """Separations of the pad that is closed as far as they are, and opened from so many
         depths.
         """
-        others = [cell for place, cell in enumerate(self._cells) if place % self._every]
-        touching_nm = [_first_contact_nm(self._inputs, self._contact, cell) for cell in others]
         near = near_nm(
             lowest_nm=self.separation_nm,
-            touching_nm=np.append(self._closed.first_contact_nm, touching_nm),
+            touching_nm=self._touching_nm,
             step_nm=self._step_nm,
             rough_places=isinstance(self._inputs, FilmInputs),
             reach_nm=reach_nm(self._contact.air),
@@ -193,12 +195,13 @@ def closed_until(enough: Callable[[Pilots], bool], pilots: Pilots) -> Pilots:
     ------
     InputError : it never is, or their asperities merge before.
     """
-    pilots.close()
-    while not enough(pilots):
+    while True:
         pilots.close()
-    if pilots.have_enough_steps:
-        return pilots
-    return closed_until(enough, pilots.in_finer_steps())
+        while not enough(pilots):
+            pilots.close()
+        if pilots.have_enough_steps:
+            return pilots
+        pilots = pilots.in_finer_steps()
 
 
 def plan_grid(
@@ -229,8 +232,3 @@ def _some_of(cells: Sequence[Cell], every: int) -> list[Cell]:
     chosen = cells[::every]
     whole = sum(cell.weight for cell in chosen)
     return [replace(cell, weight=cell.weight / whole) for cell in chosen]
-
-
-def _first_contact_nm(inputs: ContactInputs, contact: ContactSettings, cell: Cell) -> float:
-    """Separation from the mean plane of the film at which a cell first touches."""
-    return -float(surface_of(inputs, contact, cell).min())

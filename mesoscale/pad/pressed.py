@@ -1,6 +1,7 @@
 """A pressed pad: its cells, and the curves of the pad that they stand for."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,9 +11,11 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from mesoscale.contact.attraction import wall_offset_nm
+from mesoscale.contact.displacement import Displacement
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.pad.closing import PadCells
+from mesoscale.pad.cells import Cell, half_of, place_ratio
 from mesoscale.pad.curves import Flats, PadCurves, rows_at
+from mesoscale.pad.grid import PadGrid
 from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
@@ -27,10 +30,40 @@ SHIFTS = 9
 
 @dataclass(frozen=True)
 class Pad:
-    """A pad that was pressed."""
+    """A pad that was pressed: pressures of its computed cells at the separations they share.
 
-    cells: PadCells
+    A pad has some 10^4 to 10^5 cells; the few that are computed stand for all of them, each with
+    its weight. Separations are from far to near.
+
+    Attributes
+    ----------
+    grid : separations and depths.
+    weight : share of each cell in the pad, shape (cells,).
+    rms_ratio : RMS height of each cell's place over the median place's, shape (cells,).
+    first_contact_nm : first contact of each cell, shape (cells,).
+    closing : repulsive and attractive pressure (GPa, attraction negative), shape (cells, 2, n).
+    opening : the same while opening from each depth, shape (cells, k, 2, n); NaN below the depth.
+    settled : whether flow came to rest in each cell, shape (cells,).
+    flats : what the pad is from far away.
+    """
+
+    grid: PadGrid
+    weight: Array
+    rms_ratio: Array
+    first_contact_nm: Array
+    closing: Array
+    opening: Array
+    settled: NDArray[np.bool_]
     flats: Flats
+
+    @property
+    def count(self) -> int:
+        """Number of cells."""
+        return len(self.first_contact_nm)
+
+    def mean(self, pressures: Array) -> Array:
+        """Mean of pressures (cells, ...) over the pad."""
+        return np.einsum("c,c...->...", self.weight, pressures)
 
     @property
     def curves(self) -> PadCurves:
@@ -39,63 +72,94 @@ class Pad:
 
     @cached_property
     def _curves(self) -> PadCurves:
-        return curves_of(self.cells, self.flats)
+        """The same, by more cells than were computed.
+
+        A pad has 10^4 to 10^5 cells, and they touch first at all separations. The wells of a dozen
+        stand apart, so that their mean is too deep. So each cell stands for others that touch first
+        nearer or farther out, and whose curves are its own, shifted. The shifts are those of a
+        smoothed bootstrap: normal, of Silverman's width, with all cells drawn together so that the
+        variance of first contacts stays (Silverman, Density Estimation, 1986, eq. 3.28, sec.
+        6.4.1). Places of another RMS height shift in proportion to it.
+        """
+        separation = self.grid.separation_nm[::-1]
+        depth = self.grid.depth_nm[::-1]
+        closing = np.zeros((2, separation.size))
+        opening = np.zeros((depth.size, 2, separation.size))
+        shifts_nm = _shifts_nm(self)
+        weights = self.weight / shifts_nm.shape[1]
+        for place, weight in enumerate(weights):
+            cell = self._cell(place)
+            shifts = shifts_nm[place]
+            closing += weight * sum(_closing(cell, separation - shift) for shift in shifts)
+            for number, deepest in enumerate(depth):
+                above = separation >= deepest
+                opened = _opened(cell, separation[above] - deepest, deepest - shifts)
+                opening[number][:, above] += weight * opened.sum(axis=0)
+                opening[number][:, ~above] = np.nan
+        return PadCurves(separation, closing, depth, opening, self.flats)
+
+    def _cell(self, place: int) -> PadCurves:
+        """The curves of one cell."""
+        return PadCurves(
+            separation_nm=self.grid.separation_nm[::-1],
+            closing=self.closing[place][:, ::-1],
+            depth_nm=self.grid.depth_nm[::-1],
+            opening=self.opening[place][::-1, :, ::-1],
+            flats=self.flats,
+        )
+
+    def half(self, other: bool = False) -> "Pad":
+        """The pad of one half of its cells; each stands for its neighbour of the other half, too
+        (`half_of`).
+        """
+        chosen = np.flatnonzero(half_of(self.count, other))
+        pairs = np.bincount(np.arange(self.count) // 2, self.weight)[chosen // 2]
+        return Pad(
+            self.grid,
+            pairs / pairs.sum(),
+            self.rms_ratio[chosen],
+            self.first_contact_nm[chosen],
+            self.closing[chosen],
+            self.opening[chosen],
+            self.settled[chosen],
+            self.flats,
+        )
 
     @property
     def halves(self) -> tuple[PadCurves, PadCurves]:
         """The curves of half of its cells, and of the others."""
-        first = curves_of(self.cells.half(), self.flats)
-        second = curves_of(self.cells.half(other=True), self.flats)
-        return first, second
+        return self.half().curves, self.half(other=True).curves
 
 
-def flats_of(inputs: ContactInputs, contact: ContactSettings) -> Flats:
-    """The flats of a contact."""
-    return Flats(inputs.hamaker, wall_offset_nm(contact))
+def assemble(
+    inputs: ContactInputs,
+    contact: ContactSettings,
+    grid: PadGrid,
+    cells: Sequence[Cell],
+    closed: Sequence[Displacement],
+) -> Pad:
+    """The pad of some cells, from what closing each of them gave."""
+    area = contact.length_nm**2
+    return Pad(
+        grid,
+        weight=np.array([cell.weight for cell in cells]),
+        rms_ratio=np.array([place_ratio(inputs, cell) for cell in cells]),
+        first_contact_nm=np.array([cell.first_contact_nm for cell in closed]),
+        closing=np.array([cell.closing for cell in closed]) / area,
+        opening=np.array([cell.opening for cell in closed]) / area,
+        settled=np.array([cell.settled for cell in closed]),
+        flats=Flats(inputs.hamaker, wall_offset_nm(contact)),
+    )
 
 
-def curves_of(cells: PadCells, flats: Flats) -> PadCurves:
-    """The curves of a pad from its cells.
-
-    A pad has 10^4 to 10^5 cells, and they touch first at all separations. The wells of a dozen
-    stand apart, so that their mean is too deep. So each cell stands for others that touch first
-    nearer or farther out, and whose curves are its own, shifted. The shifts are those of a smoothed
-    bootstrap: normal, of Silverman's width, with all cells drawn together so that the variance of
-    first contacts stays (Silverman, Density Estimation, 1986, eq. 3.28, sec. 6.4.1). Places of
-    another RMS height shift in proportion to it.
-    """
-    separation = cells.grid.separation_nm[::-1]
-    depth = cells.grid.depth_nm[::-1]
-    closing = np.zeros((2, separation.size))
-    opening = np.zeros((depth.size, 2, separation.size))
-    shifts_nm = _shifts_nm(cells)
-    weights = cells.weight / shifts_nm.shape[1]
-    for place, weight in enumerate(weights):
-        cell = PadCurves(
-            separation,
-            cells.closing[place][:, ::-1],
-            depth,
-            cells.opening[place][::-1, :, ::-1],
-            flats,
-        )
-        shifts = shifts_nm[place]
-        closing += weight * sum(_closing(cell, separation - shift) for shift in shifts)
-        for number, deepest in enumerate(depth):
-            above = separation >= deepest
-            opened = _opened(cell, separation[above] - deepest, deepest - shifts)
-            opening[number][:, above] += weight * opened.sum(axis=0)
-            opening[number][:, ~above] = np.nan
-    return PadCurves(separation, closing, depth, opening, flats)
-
-
-def _shifts_nm(cells: PadCells) -> Array:
+def _shifts_nm(pad: Pad) -> Array:
     """How much farther out than it the cells touch first for which each cell stands, shape (cells,
     shifts).
     """
-    count = cells.count
-    first = cells.first_contact_nm / cells.rms_ratio
-    apart = first - cells.weight @ first
-    deviation = math.sqrt(cells.weight @ apart**2 * count / max(count - 1, 1))
+    count = pad.count
+    first = pad.first_contact_nm / pad.rms_ratio
+    apart = first - pad.weight @ first
+    deviation = math.sqrt(pad.weight @ apart**2 * count / max(count - 1, 1))
     if not deviation > 0.0:
         return np.zeros((count, 1))
     width = KERNEL * count**-0.2
@@ -103,7 +167,7 @@ def _shifts_nm(cells: PadCells) -> Array:
     drawn = math.sqrt((1.0 - width**2) * count / (count - 1)) - 1.0
     normal = ndtri((np.arange(SHIFTS) + 0.5) / SHIFTS)
     kernel = width * deviation * normal / normal.std()
-    return cells.rms_ratio[:, None] * (drawn * apart[:, None] + kernel)
+    return pad.rms_ratio[:, None] * (drawn * apart[:, None] + kernel)
 
 
 def _opened(cell: PadCurves, risen_nm: Array, deepest_nm: Array) -> Array:
@@ -136,21 +200,20 @@ def curve_rows(pad: Pad) -> list[dict[str, Any]]:
     """Rows of pad/curves.csv: the curves of a pad, closing and opening from each depth, with their
     error by the cells.
     """
-    cells = pad.cells
-    rows = _branch_rows(cells, pad.curves.closing, "closing", None, cells.closing)
-    for number, depth_nm in enumerate(cells.grid.depth_nm.tolist()):
+    rows = _branch_rows(pad, pad.curves.closing, "closing", None, pad.closing)
+    for number, depth_nm in enumerate(pad.grid.depth_nm.tolist()):
         opened = pad.curves.opening[-1 - number]
-        rows += _branch_rows(cells, opened, "opening", depth_nm, cells.opening[:, number])
+        rows += _branch_rows(pad, opened, "opening", depth_nm, pad.opening[:, number])
     return rows
 
 
 def _branch_rows(
-    cells: PadCells, nearest_first: Array, branch: str, depth: float | None, pressures: Array
+    pad: Pad, nearest_first: Array, branch: str, depth: float | None, pressures: Array
 ) -> list[dict[str, Any]]:
     mean = nearest_first[:, ::-1]
     # of a ratio of weighted sums (Cochran, Sampling Techniques, 1977, eq. 6.13)
-    apart = (pressures - cells.mean(pressures)).sum(axis=1) * cells.weight[:, None]
-    error = np.sqrt((apart**2).sum(axis=0) * cells.count / max(cells.count - 1, 1))
+    apart = (pressures - pad.mean(pressures)).sum(axis=1) * pad.weight[:, None]
+    error = np.sqrt((apart**2).sum(axis=0) * pad.count / max(pad.count - 1, 1))
     return [
         {
             "branch": branch,
@@ -161,6 +224,6 @@ def _branch_rows(
             "net_kPa": float(mean[:, place].sum() * 1e6),
             "standard_error_kPa": float(error[place] * 1e6),
         }
-        for place, separation in enumerate(cells.grid.separation_nm)
+        for place, separation in enumerate(pad.grid.separation_nm)
         if np.isfinite(mean[0, place])
     ]

@@ -29,6 +29,11 @@ CELLS = 4
 """Cells of a pad that is pressed for a case."""
 PAIRS = 28
 """Of lumps, as usual pads need."""
+ROUNDING_GPa = 1e-9
+"""Of curves, 1 Pa: no switch feels less."""
+RELEASE_APART = 0.02
+"""Of the hold voltage, between releases of lumps and of finite elements: as between two meshes of a
+beam that tears off in jerks."""
 CHECK_LUMPS = (
     "finite; areas add up to the electrode; stiff at rest; pull-in within 1 % of finite elements,"
     " release within 2 % of the hold voltage; sticks where they stick"
@@ -137,15 +142,15 @@ def _lumps(settings: DeviceSettings, pad: PadCurves) -> tuple[bool, str]:
     at_rest = lumps.stiffness_N_m + lumps.stretching_N_m * np.outer(pulled, pulled)
     if not np.linalg.eigvalsh(at_rest)[0] > 0.0:
         broken.append("not stable at rest")
-    made, _ = on_deep_enough(pad, BeamSwitch(symmetric, lumped_beam(symmetric, PAIRS)).states_on)
-    exact, _ = on_deep_enough(
-        pad, BeamSwitch(symmetric, beam_of(symmetric, COARSE_ELEMENTS)).states_on
-    )
+    lumped = BeamSwitch(symmetric, lumped_beam(symmetric, PAIRS))
+    made, _ = on_deep_enough(pad, lumped.states_on)
+    elements = BeamSwitch(symmetric, beam_of(symmetric, COARSE_ELEMENTS))
+    exact, _ = on_deep_enough(pad, elements.states_on)
     if not abs(made.pull_in_V - exact.pull_in_V) <= CIRCUIT.release_error * exact.pull_in_V:
         broken.append(f"finite elements pull in at {exact.pull_in_V:.4g} V")
-    sticks = (made.release_V == 0.0) != (exact.release_V == 0.0)
-    # as between two meshes of a beam that tears off in jerks
-    if sticks or not abs(made.release_V - exact.release_V) <= 0.02 * exact.hold_V:
+    one_sticks = (made.release_V == 0.0) != (exact.release_V == 0.0)
+    apart_V = abs(made.release_V - exact.release_V)
+    if one_sticks or not apart_V <= RELEASE_APART * exact.hold_V:
         broken.append(f"finite elements release at {exact.release_V:.4g} V")
     detail = f"{PAIRS} pairs: pull-in {made.pull_in_V:.4g} V, release {made.release_V:.4g} V"
     return not broken, "; ".join([*broken, detail])
@@ -165,32 +170,45 @@ def _tables_of_made(make: Callable[[], PadCurves]) -> tuple[bool, str]:
 
 
 def _tables(pad: PadCurves) -> tuple[bool, str]:
+    """Whether both kinds of tables tell the curves of a pad, and by how much they miss them."""
     broken = []
-    errors = []
+    largest_error = 0.0
     for cubic in (True, False):
-        tables = tables_of(pad, cubic)
-        made = curves_of_tables(tables, pad, cubic)
-        known = np.isfinite(pad.opening)
-        if not np.isfinite(made.opening[known]).all() or not np.isfinite(made.closing).all():
+        tabled = curves_of_tables(tables_of(pad, cubic), pad, cubic)
+        if _has_missing_numbers(tabled, pad):
             broken.append("a number missing")
-        for number, opened in enumerate(pad.opening):
-            solved_places = np.isfinite(opened[0])
-            net = opened[:, solved_places].sum(axis=0)
-            missed = np.abs(made.opening[number][:, solved_places].sum(axis=0) - net)
-            well = max(-float(net.min()), 0.0)
-            # closing at the depth and the rise above it may each err by as much
-            allowed = 2.0 * (CIRCUIT.of_well * well + CIRCUIT.of_net * np.abs(net)) + 1e-9
-            if (missed > allowed).any():
-                broken.append(f"opening from {pad.depth_nm[number]:.4g} nm beside the curves")
-            if well > 0.0:
-                errors.append(
-                    float(
-                        (missed / well).max(
-                            initial=0.0, where=np.abs(net) < CIRCUIT.near_wells * well
-                        )
-                    )
-                )
-    texts = verilog_pad(pad, CELLS) + spice_pad(pad, CELLS)
-    if "nan" in texts:
+        for number, depth_nm in enumerate(pad.depth_nm.tolist()):
+            as_near_as_allowed, error = _near(tabled.opening[number], pad.opening[number])
+            if not as_near_as_allowed:
+                broken.append(f"opening from {depth_nm:.4g} nm beside the curves")
+            largest_error = max(largest_error, error)
+    if "nan" in verilog_pad(pad, CELLS) + spice_pad(pad, CELLS):
         broken.append("a number missing in the text")
-    return not broken, "; ".join([*broken, f"within {max(errors, default=0.0):.2%} of the well"])
+    return not broken, "; ".join([*broken, f"within {largest_error:.2%} of the well"])
+
+
+def _has_missing_numbers(tabled: PadCurves, pad: PadCurves) -> bool:
+    """Whether tables lack a number where the pad has one."""
+    computed = np.isfinite(pad.opening)
+    complete = np.isfinite(tabled.opening[computed]).all() and np.isfinite(tabled.closing).all()
+    return not complete
+
+
+def _near(tabled: np.ndarray, opening: np.ndarray) -> tuple[bool, float]:
+    """Whether an opening by tables is as near to that of the pad as allowed, and the largest error
+    in and about its well, over the depth of the well.
+
+    Both are repulsive and attractive pressures (GPa), shape (2, n).
+    """
+    computed = np.isfinite(opening[0])
+    net = opening[:, computed].sum(axis=0)
+    missed = np.abs(tabled[:, computed].sum(axis=0) - net)
+    well = max(-float(net.min()), 0.0)
+    # closing at the depth and the rise above it may each err by as much
+    allowed = 2.0 * (CIRCUIT.of_well * well + CIRCUIT.of_net * np.abs(net)) + ROUNDING_GPa
+    near_enough = bool((missed <= allowed).all())
+    if well == 0.0:
+        return near_enough, 0.0
+    about_the_well = np.abs(net) < CIRCUIT.near_wells * well
+    error = (missed / well).max(initial=0.0, where=about_the_well)
+    return near_enough, float(error)

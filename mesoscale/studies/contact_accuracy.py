@@ -22,7 +22,6 @@ from mesoscale.law.fit import fit_branch
 from mesoscale.pad.cells import FIRST_SEED, sample_cells
 from mesoscale.pad.closing import press_cells
 from mesoscale.pad.grid import PadGrid
-from mesoscale.pad.pressed import Pad, flats_of
 from mesoscale.settings import ContactSettings
 from mesoscale.studies.driver import (
     RELEASE,
@@ -112,8 +111,7 @@ def releases_on_pads(
     for pad in SEEDS:
         sampled = sample_cells(inputs, cells, FIRST_SEED + 10_000 * pad)
         pressed = press_cells(inputs, settings, grid, sampled, numerics=numerics)
-        curves = Pad(pressed, flats_of(inputs, settings)).curves
-        releases.append(release_or_nan_V(point.device, curves))
+        releases.append(release_or_nan_V(point.device, pressed.curves))
     return np.array(releases)
 
 

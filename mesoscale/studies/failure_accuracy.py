@@ -130,20 +130,18 @@ def _learned(response: ReserveResponse, sampled: Sampled, times: float, one: Cos
     count = len(response.reserves)
     hold_V = response.population.hold_V
 
+    def probability(part: int, seed: int) -> float:
+        """That of a failure, by the response from a random part of the switches."""
+        chosen = np.random.default_rng(seed).permutation(count)[:part]
+        process = Process(response.columns[chosen], response.reserves[chosen])
+        mean, deviation = replace(response, process=process).moments(sampled.points, hold_V)
+        chance = ndtr((np.log(times) - mean) / deviation)
+        return sampled.probability * float(np.mean(chance / sampled.chance))
+
     def errors(part: int) -> Errors:
-        deviations = []
-        for seed in range(PARTS):
-            chosen = np.random.default_rng(seed).permutation(count)[:part]
-            process = Process(response.columns[chosen], response.reserves[chosen])
-            mean, deviation = replace(response, process=process).moments(sampled.points, hold_V)
-            chance = ndtr((np.log(times) - mean) / deviation)
-            deviations.append(
-                [_logarithm(sampled.probability * float(np.mean(chance / sampled.chance)))]
-            )
-        return Errors(
-            *root_mean_square(np.array(deviations) - _logarithm(sampled.probability)),
-            one.times(part),
-        )
+        by_parts = np.array([[_logarithm(probability(part, seed))] for seed in range(PARTS)])
+        apart = by_parts - _logarithm(sampled.probability)
+        return Errors(*root_mean_square(apart), one.times(part))
 
     parts = [round(share * count) for share in (0.4, 0.6, 0.8)]
     choices = [Choice(part, partial(errors, part)) for part in parts]
@@ -186,10 +184,9 @@ def relative_errors(factors: Array, runs: int) -> tuple[float, float]:
     def error(values: Array) -> float:
         return 100.0 * float(values.std(ddof=1) / values.mean() / np.sqrt(runs))
 
-    without = np.array(
-        [error(np.delete(factors, k)) for k in range(factors.size) if np.delete(factors, k).any()]
-    )
-    own_error = float(
-        np.sqrt((factors.size - 1) / factors.size * ((without - without.mean()) ** 2).sum())
-    )
+    # the jackknife; where the only failure is left out, there is no error
+    without_one = [np.delete(factors, k) for k in range(factors.size)]
+    errors = np.array([error(values) for values in without_one if values.any()])
+    scatter = ((errors - errors.mean()) ** 2).sum()
+    own_error = float(np.sqrt((factors.size - 1) / factors.size * scatter))
     return error(factors), own_error

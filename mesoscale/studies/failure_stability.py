@@ -73,15 +73,12 @@ def exact_events() -> Iterator[HardCase]:
         return 4.0 - np.abs(z[:, 0]), np.full(len(z), 1e-9)
 
     unsure = 2.0
-    events: dict[str, tuple[str, Moments, int, float]] = {
-        f"probability {value:g}": (
-            f"a plane in {DIMENSION} numbers",
-            plane(-float(ndtri(value))),
-            DIMENSION,
-            value,
-        )
-        for value in PROBABILITIES
-    } | {
+    events: dict[str, tuple[str, Moments, int, float]] = {}
+    for value in PROBABILITIES:
+        distance = -float(ndtri(value))
+        words = f"a plane in {DIMENSION} numbers"
+        events[f"probability {value:g}"] = (words, plane(distance), DIMENSION, value)
+    events |= {
         "40 numbers": ("1e-6 in many dimensions", plane(-float(ndtri(1e-6)), 40), 40, 1e-6),
         "one number": ("1e-6 in one dimension", plane(-float(ndtri(1e-6)), 1), 1, 1e-6),
         "two sides": ("two ways to fail, far apart", two_sides, 3, 2.0 * float(ndtr(-4.0))),
@@ -104,11 +101,11 @@ def _exact(moments: Moments, dimension: int, exact: float) -> tuple[bool, str]:
     detail = f"{sampled.probability:.3g} of {exact:.3g}, stated to {sampled.variation:.1%}"
     if exact == 0.0:
         return sampled.probability <= LEAST and not len(sampled.points), detail
+    finite = bool(np.isfinite(sampled.points).all())
+    known = finite and len(sampled.points) == len(sampled.chance) > 0
+    missed = abs(np.log(max(sampled.probability, LEAST) / exact))
     allowed = DEVIATIONS * max(sampled.variation, LEAST_VARIATION)
-    known = (
-        bool(np.isfinite(sampled.points).all()) and len(sampled.points) == len(sampled.chance) > 0
-    )
-    return known and abs(np.log(max(sampled.probability, LEAST) / exact)) <= allowed, detail
+    return known and missed <= allowed, detail
 
 
 def corrections() -> Iterator[HardCase]:
@@ -142,19 +139,28 @@ def _corrected(sampled: Sampled, happened: Array, chance: float, exact: float) -
 
 def common_rates() -> Iterator[HardCase]:
     """Shares that fail by what is common to all devices: all, none or half of the numbers."""
-    for name, shared in (
-        ("nothing common", 0),
-        ("half common", DIMENSION // 2),
-        ("all common", DIMENSION),
-    ):
+    shares = {"nothing common": 0, "half common": DIMENSION // 2, "all common": DIMENSION}
+    for name, shared in shares.items():
         for distance in (2.0, 5.0):
-            words = f"{name}, {distance:g} deviations off"
+            judge = partial(_rates, shared, distance)
+            if shared == DIMENSION:
+                judge = partial(_rates_of_all, distance)
             yield HardCase(
-                words,
+                f"{name}, {distance:g} deviations off",
                 f"{shared} of {DIMENSION} numbers",
                 CHECK_RATES,
-                partial(_rates, shared, distance),
+                judge,
             )
+
+
+def _rates_of_all(distance: float) -> tuple[bool, str]:
+    """Where all is common, all devices of a draw fail or none does."""
+    rates = rates_given(plane(distance), np.ones(DIMENSION, bool), 0.0, 0)
+    exact = float(ndtr(-distance))
+    # the number of draws that fail is binomial
+    allowed = DEVIATIONS * np.sqrt(exact / rates.size) + 1.0 / rates.size
+    held = abs(rates.mean() - exact) <= allowed
+    return set(rates) <= {0.0, 1.0} and held, f"{rates.mean():.3g} of {exact:.3g}"
 
 
 def _rates(shared: int, distance: float) -> tuple[bool, str]:
@@ -162,13 +168,6 @@ def _rates(shared: int, distance: float) -> tuple[bool, str]:
     b^2 = 1.
     """
     rates = rates_given(plane(distance), np.arange(DIMENSION) < shared, 0.0, 0)
-    if shared == DIMENSION:
-        fail = float(ndtr(-distance))
-        # binomial: so many of the draws are 1
-        allowed = DEVIATIONS * np.sqrt(fail / rates.size) + 1.0 / rates.size
-        return set(rates) <= {0.0, 1.0} and abs(
-            rates.mean() - fail
-        ) <= allowed, f"{rates.mean():.3g} of {fail:.3g}"
     a, b = np.sqrt([shared / DIMENSION, 1.0 - shared / DIMENSION])
     details = []
     held = True
@@ -176,9 +175,8 @@ def _rates(shared: int, distance: float) -> tuple[bool, str]:
         exact = float(ndtr((a * ndtri(probability) - distance) / b))
         # between the order statistics that hold it, and to the error of the inner draws
         spread = DEVIATIONS * np.sqrt(probability * (1.0 - probability) / rates.size)
-        low, high = np.quantile(
-            rates, np.clip([probability - spread, probability + spread], 0.0, 1.0)
-        )
+        orders = np.clip([probability - spread, probability + spread], 0.0, 1.0)
+        low, high = np.quantile(rates, orders)
         held = held and low * 0.5 <= exact <= high * 2.0
         details.append(f"{np.quantile(rates, probability):.2g} of {exact:.2g}")
     return held, ", ".join(details)
@@ -211,9 +209,9 @@ def _limit(
     falling = furthest_allowed(100.0 - values, probability, allowed)
     if exact_value is None or furthest is None or falling is None:
         return furthest is falling is exact_value, f"{furthest}"
-    return abs(furthest - exact_value) <= 1e-6 and abs(
-        falling - (100.0 - exact_value)
-    ) <= 1e-6, f"{furthest:.6g} V"
+    rising_held = abs(furthest - exact_value) <= 1e-6
+    falling_held = abs(falling - (100.0 - exact_value)) <= 1e-6
+    return rising_held and falling_held, f"{furthest:.6g} V"
 
 
 def reserves() -> Iterator[HardCase]:

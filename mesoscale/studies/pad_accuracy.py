@@ -14,14 +14,13 @@ from numpy.typing import NDArray
 
 from mesoscale.answer.known import ENDS
 from mesoscale.answer.points import Point
-from mesoscale.answer.switches import PadModel, close_for, solve_point, surfaces_of
+from mesoscale.answer.switches import PadModel, solve_point, surfaces_of
 from mesoscale.contact.surface import shared_wave, shortest_wave
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.cells import Cell, sample_cells
 from mesoscale.pad.closing import press_cells
 from mesoscale.pad.grid import DEPTHS, PadGrid, usual_step_nm
-from mesoscale.pad.pilots import Pilots
-from mesoscale.pad.pressed import Pad, flats_of
+from mesoscale.pad.pilots import Pilots, closed_until
 from mesoscale.settings import ContactSettings
 from mesoscale.studies.driver import (
     RELEASE,
@@ -90,13 +89,13 @@ class SamplePad:
     def grid(self, depths: int = DEPTHS) -> PadGrid:
         """Its separations, opened from so many depths."""
         pilots = Pilots(self.inputs, self.settings, self.cells)
-        return close_for(switch_of(self.point.device.level), pilots).grid(depths)
+        switch = switch_of(self.point.device.level)
+        return closed_until(switch.carried_by, pilots).grid(depths)
 
     def release_V(self, grid: PadGrid, settings: ContactSettings | None = None) -> float:
         """Release of the point's switch on it (V); NaN where it has no answer."""
         settings = settings or self.settings
-        pressed = press_cells(self.inputs, settings, grid, self.cells)
-        pad = Pad(pressed, flats_of(self.inputs, settings))
+        pad = press_cells(self.inputs, settings, grid, self.cells)
         # elements of the beam are another choice: half as many cost half, and move all values alike
         return release_or_nan_V(self.point.device, pad.curves, coarse=True)
 
@@ -130,7 +129,7 @@ def _cells(model: PadModel, contact: ContactSettings, cells: int) -> Knob:
         sampled = _pads(point, contact, count, pads)
         return _releases(sampled, [pad.grid() for pad in sampled])
 
-    known = model.central.pressed.cells.count
+    known = model.central.pressed.count
     many = max(2 * counts[-1], known)
 
     def best() -> Array:

@@ -13,11 +13,11 @@ from mesoscale.contact.displacement import Displacement, close_by_separation
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
 from mesoscale.pad.cells import FIRST_SEED, Cell, sample_cells, surface_of
-from mesoscale.pad.closing import PadCells, assemble, close_cells, press_cells
+from mesoscale.pad.closing import close_cells, press_cells
 from mesoscale.pad.curves import PadCurves
 from mesoscale.pad.grid import PadGrid
 from mesoscale.pad.pilots import plan_grid
-from mesoscale.pad.pressed import curves_of, flats_of
+from mesoscale.pad.pressed import Pad, assemble
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.definitions import definition
 from mesoscale.studies.driver import Array, HardCase
@@ -192,7 +192,7 @@ def _cycle(inputs: ContactInputs, contact: ContactSettings) -> tuple[bool, str]:
 def _curves(
     inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cell: Displacement
 ) -> PadCurves:
-    return curves_of(assemble(inputs, contact, grid, [CELL], [cell]), flats_of(inputs, contact))
+    return assemble(inputs, contact, grid, [CELL], [cell]).curves
 
 
 def _flats(inputs: ContactInputs, contact: ContactSettings, pad: PadCurves) -> list[str]:
@@ -227,7 +227,7 @@ def _pad(inputs: ContactInputs, contact: ContactSettings) -> tuple[bool, str]:
     )
 
 
-def violations(pad: PadCells) -> list[str]:
+def violations(pad: Pad) -> list[str]:
     """Which physical invariants the cells of a pad break; empty if none."""
     broken = []
     if not np.isfinite(pad.closing).all():

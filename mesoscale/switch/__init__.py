@@ -21,15 +21,19 @@ def switch_of(settings: DeviceSettings, coarse: bool = False) -> Switch:
     ------
     InputError : it touches what it lands on at rest.
     """
+    kind = _kind_of(settings)
+    return kind.from_settings(settings, coarse)
+
+
+def _kind_of(settings: DeviceSettings) -> type[Switch]:
+    """The class of a switch. That of a beam compiles when it is imported."""
     if settings.kind == "plate":
         from mesoscale.switch.plate import PlateSwitch
 
-        return PlateSwitch(settings)
-    from mesoscale.switch.beam import COARSE_ELEMENTS, ELEMENTS, beam_of  # compiles
+        return PlateSwitch
     from mesoscale.switch.beam_switch import BeamSwitch
 
-    elements = COARSE_ELEMENTS if coarse else ELEMENTS
-    return BeamSwitch(settings, beam_of(settings, elements))
+    return BeamSwitch
 
 
 def release_or_nan_V(settings: DeviceSettings, pad: PadCurves, coarse: bool = False) -> float:

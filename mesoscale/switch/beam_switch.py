@@ -10,7 +10,7 @@ from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.curves import PadCurves, attracting, continued
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.beam import Beam, beam_of
+from mesoscale.switch.beam import COARSE_ELEMENTS, ELEMENTS, Beam, beam_of
 from mesoscale.switch.beam_kernels import OPENING_NM
 from mesoscale.switch.beam_motion import MovingBeam
 from mesoscale.switch.switch import States, Switch, never_closes
@@ -59,6 +59,12 @@ class BeamSwitch(Switch):
         self.beam = beam_of(settings) if beam is None else beam
         self.opening_nm = opening_nm
         self.tolerance = tolerance
+
+    @classmethod
+    def from_settings(cls, settings: DeviceSettings, coarse: bool) -> "BeamSwitch":
+        """The beam of these settings, with `COARSE_ELEMENTS` or `ELEMENTS`."""
+        elements = COARSE_ELEMENTS if coarse else ELEMENTS
+        return cls(settings, beam_of(settings, elements))
 
     @property
     def pull_in_V(self) -> float:

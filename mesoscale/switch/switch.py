@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +14,16 @@ from mesoscale.pad.curves import PadCurves, attracting, on_deep_enough
 from mesoscale.settings import DeviceSettings
 from mesoscale.units import GPA, NM, VACUUM_PERMITTIVITY
 
+if TYPE_CHECKING:  # pilots compile, and who reads the states of a switch needs none
+    from mesoscale.pad.pilots import Pilots
+
 Array = NDArray[np.float64]
 
 EDGE = 2.5
 """Pressure over that of the voltage alone to which pads are computed at least. The edge of what has
 landed bears the electrode, too, and presses with 1.6 to 2.3 of it on pads of Table 1."""
+MARGIN = 1.25
+"""Over what a switch presses with: the mean of the few pilot cells of a pad is off by 15 %."""
 PULL_IN_ERROR = 1e-3
 """Relative error of a pull-in by the number of elements."""
 
@@ -62,6 +68,16 @@ class Switch(ABC):
     def __init__(self, settings: DeviceSettings) -> None:
         self.settings = settings
 
+    @classmethod
+    def from_settings(cls, settings: DeviceSettings, coarse: bool) -> "Switch":
+        """The switch of these settings.
+
+        Parameters
+        ----------
+        coarse : with half as many elements, if it has any.
+        """
+        return cls(settings)
+
     @property
     @abstractmethod
     def pull_in_V(self) -> float:
@@ -75,6 +91,13 @@ class Switch(ABC):
     @abstractmethod
     def pressed_GPa(self, pad: PadCurves) -> float:
         """Largest net pressure with which it presses a pad on the way to its held state."""
+
+    def carried_by(self, pilots: "Pilots") -> bool:
+        """Whether some cells of a pad, closed as far as they are, carry it."""
+        least_GPa = float(self.least_GPa(pilots.separation_nm))
+        if not pilots.repel(least_GPa):
+            return False
+        return pilots.carry(MARGIN * self.pressed_GPa(pilots.curves))
 
     @abstractmethod
     def states_on(self, pad: PadCurves) -> States:

@@ -33,6 +33,10 @@ then known to 16 %.
 CONFIDENCE = 0.95
 LEAST = 1e-10
 """Smallest probability that is looked for."""
+FARTHEST = 6.5
+"""Deviations from the middle beyond which an event is rarer than `LEAST`."""
+PLANES = 3
+"""Planes that are fitted in turn to a reserve, each about the event of the one before."""
 
 
 class Process:
@@ -235,23 +239,36 @@ def rates_given(
     if common.all():
         single = reserve(np.empty((draws, 1, 0)))
         return (single[:, 0] <= 0.0).astype(float)
-    likeliest = np.zeros((draws, 1, int((~common).sum())))
-    for _ in range(3):
-        x = rng.normal(size=(draws, inner, likeliest.shape[2]))
-        ones = np.ones((draws, inner, 1))
-        plane = np.linalg.pinv(np.concatenate([ones, x], axis=2))
-        fitted = (plane @ reserve(likeliest + x)[..., None])[..., 0]
-        level, *slope = np.moveaxis(fitted, 1, 0)
-        slope = np.stack(slope, axis=-1)[:, None]
-        steepness = np.maximum(np.linalg.norm(slope, axis=-1), 1e-9)
-        # of the plane from the middle
-        distance = (level[:, None] - (slope * likeliest).sum(axis=-1)) / steepness
-        # further than 6.5 deviations, an event is rarer than `LEAST`
-        likeliest = -(np.clip(distance, 0.0, 6.5) / steepness)[..., None] * slope
-    x = likeliest + rng.normal(size=(draws, 4 * inner, likeliest.shape[2]))
+    differing = int((~common).sum())
+    likeliest = np.zeros((draws, 1, differing))
+    for _ in range(PLANES):
+        around = rng.normal(size=(draws, inner, differing))
+        likeliest = _likeliest(likeliest, around, reserve(likeliest + around))
+    x = likeliest + rng.normal(size=(draws, 4 * inner, differing))
+    # density of z about 0 over that about the likeliest event
     moved = (x * likeliest).sum(axis=-1)
     weight = np.exp(0.5 * (likeliest**2).sum(axis=-1) - moved)
-    return np.minimum((weight * (reserve(x) <= 0.0)).mean(axis=1), 1.0)
+    fails = reserve(x) <= 0.0
+    return np.minimum((weight * fails).mean(axis=1), 1.0)
+
+
+def _likeliest(centre: Array, around: Array, reserves: Array) -> Array:
+    """The likeliest event of each draw: where a plane through reserves is 0 nearest to the middle.
+
+    Parameters
+    ----------
+    centre : about which the plane is fitted, shape (draws, 1, n).
+    around : places relative to it, shape (draws, inner, n).
+    reserves : at these places, shape (draws, inner).
+    """
+    ones = np.ones((*around.shape[:2], 1))
+    inverse = np.linalg.pinv(np.concatenate([ones, around], axis=2))
+    fitted = (inverse @ reserves[..., None])[..., 0]
+    level = fitted[:, :1]
+    slope = fitted[:, None, 1:]
+    steepness = np.maximum(np.linalg.norm(slope, axis=-1), 1e-9)
+    distance = (level - (slope * centre).sum(axis=-1)) / steepness
+    return -(np.clip(distance, 0.0, FARTHEST) / steepness)[..., None] * slope
 
 
 def quantiles_of(

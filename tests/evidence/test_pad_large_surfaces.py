@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from evidence.pad.large_surfaces import SIDE, comparison_rows
-from mesoscale.pad.closing import PadCells
+from mesoscale.pad.curves import Flats
 from mesoscale.pad.grid import PadGrid
+from mesoscale.pad.pressed import Pad
 
 SEPARATION = np.linspace(60.0, 20.0, 81)
 
@@ -17,7 +18,7 @@ def made_up(count, well_kPa, press_GPa):
     noise = 1.0 + 1e-3 * np.arange(count)[:, None]
     forces = np.stack([press_GPa * noise * np.ones_like(net), net * noise], axis=1)
     opening = np.stack([np.stack([np.zeros_like(net), net * noise], axis=1)] * 2, axis=1)
-    return PadCells(
+    return Pad(
         PadGrid(SEPARATION, np.array([70, 80])),
         np.full(count, 1 / count),
         np.ones(count),
@@ -25,6 +26,7 @@ def made_up(count, well_kPa, press_GPa):
         forces,
         opening,
         np.ones(count, bool),
+        Flats(0.215, 0.165),
     )
 
 

@@ -273,7 +273,6 @@ def _pad(root: Path) -> None:
     from mesoscale.answer.points import Design, Point
     from mesoscale.answer.release import switch_on_pad
     from mesoscale.answer.switches import PadModel, Solved
-    from mesoscale.pad.closing import PadCells
     from mesoscale.pad.curves import Flats
     from mesoscale.pad.grid import PadGrid
     from mesoscale.pad.pressed import Pad, curve_rows
@@ -296,10 +295,8 @@ def _pad(root: Path) -> None:
     )
     for number, depth in enumerate(grid.depth_nm):
         opening[:, number, :, separation < depth] = np.nan
-    cells = PadCells(
-        grid, np.full(24, 1 / 24), np.ones(24), 40 - shifts, closing, opening, np.ones(24, bool)
-    )
-    pad = Pad(cells, flats)
+    settled = np.ones(24, bool)
+    pad = Pad(grid, np.full(24, 1 / 24), np.ones(24), 40 - shifts, closing, opening, settled, flats)
     _write(root / "pad/curves.csv", curve_rows(pad))
     states = switch_of(DeviceSettings()).states(pad.curves)
     central = Solved(

@@ -6,11 +6,9 @@ import numpy as np
 
 from mesoscale.answer.switches import PadModel, Solved
 from mesoscale.inputs.table import to_rows
-from mesoscale.pad.curves import Flats
-from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.switch import States
-from tests.mesoscale.answer.test_release import MIDDLE, SEPARATION, TABLE, cells_of
+from tests.mesoscale.answer.test_release import MIDDLE, SEPARATION, TABLE, pad_of_two
 from workflow.files.results import write_csv
 from workflow.report.early import STATUS, early_page
 from workflow.run.pads import ScenePoints
@@ -19,9 +17,7 @@ from workflow.run.pads import ScenePoints
 def test_the_switch_at_central_inputs_has_a_page(tmp_path):
     contact = ContactSettings(mechanics="coupled", attraction="offset")
     points = ScenePoints(TABLE, contact, DeviceSettings(), 2)
-    pad = Pad(
-        cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165)
-    )
+    pad = pad_of_two(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1)
     states = States(pull_in_V=70.0, release_V=6.0, capacitance_fF=8e3)
     central = PadModel(Solved(points.by_number[0], pad, states, (5.9, 6.1)), points.design, ())
     root = tmp_path / "results/mine"

@@ -7,20 +7,16 @@ import numpy as np
 import pytest
 
 from mesoscale.answer.switches import Solved
-from mesoscale.pad.curves import Flats
-from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.switch import States
-from tests.mesoscale.answer.test_release import MIDDLE, SEPARATION, TABLE, cells_of
+from tests.mesoscale.answer.test_release import MIDDLE, SEPARATION, TABLE, pad_of_two
 from workflow.run.pads import CURVES, STATES, ScenePoints, UnfitModel, load_model, write_solved
 
 
 def test_a_model_comes_back_from_its_file_and_from_its_parts(tmp_path):
     """With a point that could not be pressed, and one of whose halves one carries no switch."""
     points = ScenePoints(TABLE, ContactSettings(mechanics="asperity"), DeviceSettings(), 2)
-    pad = Pad(
-        cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165)
-    )
+    pad = pad_of_two(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1)
     states = States(pull_in_V=70.0, release_V=6.0, capacitance_fF=8e3)
     solved = {
         0: Solved(points.by_number[0], pad, states, (5.9, 6.1)),
@@ -45,10 +41,9 @@ def test_a_model_comes_back_from_its_file_and_from_its_parts(tmp_path):
         assert model.points[0].pad is None
         assert model.central.pad is not None
         assert model.central.pad.flats == pad.flats
-        for ours, theirs in ((model.central.pad.cells, pad.cells),):
-            np.testing.assert_array_equal(ours.opening, theirs.opening)
-            np.testing.assert_array_equal(ours.weight, theirs.weight)
-            np.testing.assert_array_equal(ours.grid.depths, theirs.grid.depths)
+        np.testing.assert_array_equal(model.central.pad.opening, pad.opening)
+        np.testing.assert_array_equal(model.central.pad.weight, pad.weight)
+        np.testing.assert_array_equal(model.central.pad.grid.depths, pad.grid.depths)
 
 
 def replaced(name, value):
@@ -107,9 +102,7 @@ FORGED = {
 def test_a_forged_model_is_refused_in_one_line(tmp_path, name):
     """None is believed, and none ends in an error of this program."""
     points = ScenePoints(TABLE, ContactSettings(mechanics="asperity"), DeviceSettings(), 1)
-    pad = Pad(
-        cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165)
-    )
+    pad = pad_of_two(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1)
     states = States(pull_in_V=70.0, release_V=6.0, capacitance_fF=8e3)
     path = str(tmp_path / "model.h5")
     solved = {0: Solved(points.by_number[0], pad, states, (5.9, 6.1))}

@@ -12,9 +12,8 @@ from mesoscale.answer.switches import PadModel, solve_point, solve_points
 from mesoscale.circuit import switches
 from mesoscale.circuit.switches import spread_switches
 from mesoscale.inputs.table import film_table
-from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
-from tests.mesoscale.answer.test_release import cells_of, table
+from tests.mesoscale.answer.test_release import pad_of_two, table
 from workflow.files.results import load_csv, write_csv
 from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page
@@ -174,7 +173,7 @@ def test_switches_for_circuits_fit_their_table_whatever_their_inputs(
 
     def press_pad(point, contact, cells, first_seed, **_):
         law = known_pad(point).curves
-        return Pad(cells_of(law, 0.0), law.flats)
+        return pad_of_two(law, 0.0)
 
     for module in (switches, answer_switches):
         monkeypatch.setattr(module, "press_pad", press_pad)

@@ -59,12 +59,22 @@ class Results:
 
     def rows(self, name: str) -> list[CsvRow]:
         """Rows of a CSV file; none where it is not there."""
-        return self.csv(name) if self.has(name) else []
+        if not self.has(name):
+            return []
+        return self.csv(name)
 
     @cache  # noqa: B019
     def json(self, name: str) -> dict[str, Any]:
         """Content of a JSON file."""
-        return self.at_hand[name] if name in self.at_hand else load_json(self.root / name)
+        if name in self.at_hand:
+            return self.at_hand[name]
+        return load_json(self.root / name)
+
+    def content(self, name: str) -> dict[str, Any]:
+        """Content of a JSON file; empty where it is not there."""
+        if not self.has(name):
+            return {}
+        return self.json(name)
 
     @cached_property
     def record(self) -> dict[str, Any]:
@@ -87,7 +97,9 @@ class Results:
         """
         if self.has("contact/nominal.h5"):
             return json.loads(self.h5("contact/nominal.h5")[1]["contact"])
-        return self.record["scene"]["contact"] if self.at_hand else {}
+        if not self.at_hand:
+            return {}
+        return self.record["scene"]["contact"]
 
     @property
     def coupled(self) -> bool:
@@ -101,15 +113,15 @@ class Results:
 
     def uses(self, stage: str) -> bool:
         """Whether an input of this scene comes from the stage."""
-        rows = self.csv("inputs.csv") if self.has("inputs.csv") else []
-        return any(row["origin"] == stage for row in rows)
+        return any(row["origin"] == stage for row in self.rows("inputs.csv"))
 
     def origin_of(self, stage: str) -> str:
         """Badge of a stage: computed or synthetic, and whether this scene uses it."""
         if stage == "topography" and self.json("topography/parameters.json").get("synthetic"):
             return "synthetic"
-        unused = stage in ("hardness", "elastic", "topography") and not self.uses(stage)
-        return f"{COMPUTED}, not used: inputs are literature" if unused else COMPUTED
+        if stage in ("hardness", "elastic", "topography") and not self.uses(stage):
+            return f"{COMPUTED}, not used: inputs are literature"
+        return COMPUTED
 
 
 def results_in(folder: Path) -> Results:

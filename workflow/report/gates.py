@@ -59,10 +59,11 @@ def _topography(results: Results) -> Iterator[Gate]:
             for row in results.json(name).get("doubts", [])
             if row["text"] not in gate.reasons
         ]
-        remark = (
-            (f"Doubts, each beside the numbers it touches: {', '.join(doubts)}.",) if doubts else ()
-        )
-        yield Gate(gate.stage, gate.passed, (*gate.reasons, *remark), gate.used)
+        reasons = gate.reasons
+        if doubts:
+            remark = f"Doubts, each beside the numbers it touches: {', '.join(doubts)}."
+            reasons = (*reasons, remark)
+        yield Gate(gate.stage, gate.passed, reasons, gate.used)
     rows = results.rows("topography/judged.csv")
     reasons = tuple(
         f"{row['scan']} touches first at {show(row['pressed'])} nm, its description says"
@@ -129,14 +130,18 @@ def other_law_V(results: Results) -> tuple[float, float] | None:
     releases = {round(row["times"], 3): number(row["release_V"]) for row in rows}
     works = (1.0, OTHER_WORK.get(results.contact.get("attraction", ""), 0.0))
     this_law, other = (releases.get(round(times, 3), np.nan) for times in works)
-    return (this_law, other) if np.isfinite([this_law, other]).all() else None
+    if not np.isfinite([this_law, other]).all():
+        return None
+    return this_law, other
 
 
 def _attraction(results: Results) -> Iterator[Gate]:
     """Nothing here measures the law of attraction: a remark where the other law gives another
     outcome.
     """
-    both = other_law_V(results) if results.has("answer/pad_switch.json") else None
+    if not results.has("answer/pad_switch.json"):
+        return
+    both = other_law_V(results)
     if both and (both[0] == 0) != (both[1] == 0):
         reason = "by one of the two laws of attraction the switch sticks, by the other it lets go"
         yield Gate("law of attraction", True, (reason,))

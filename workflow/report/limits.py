@@ -16,20 +16,23 @@ _CLAMPED = "With the clamped law the pull-off of flattened tops is an upper boun
 
 def limits(results: Results) -> list[str]:
     """What a reader must know before using the numbers."""
-    shortest = (
-        "that the grid resolves"
-        if results.contact.get("q1_per_nm") is None
-        else "that the cut-off q₁ leaves"
-    )
-    undeformed = results.contact.get("mechanics") == "coupled"
+    contact = results.contact
+    shortest = "that the cut-off q₁ leaves"
+    if contact.get("q1_per_nm") is None:
+        shortest = "that the grid resolves"
+    of_model = [*_ASPERITY]
+    if results.coupled:
+        of_model = [*_COUPLED]
+    if contact.get("mechanics") == "coupled":
+        of_model.append(_UNDEFORMED)
+    if contact.get("mechanics") == "coupled" and contact.get("attraction") == "clamped":
+        of_model.append(_CLAMPED)
     return [
         (
             "The law of attraction is a choice, not a measurement: the first screen shows the"
             " release by both laws."
         ),
-        *(_COUPLED if results.coupled else _ASPERITY),
-        *([_UNDEFORMED] if undeformed else []),
-        *([_CLAMPED] if undeformed and results.contact.get("attraction") == "clamped" else []),
+        *of_model,
         f"The RMS slope is set by the shortest waves {shortest}.",
         (
             "Only few asperities carry a square micrometre, so the law of one cell differs much"

@@ -8,7 +8,7 @@ from typing import Any
 
 from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, SOFT, draw
-from workflow.report.numbers import cell, show, shown_unit
+from workflow.report.numbers import cell, show, shown_unit, yes_or_no
 from workflow.report.page import Block, DoubtNote, Figure, PageTable, table
 
 JUDGED = "topography/judged.csv"
@@ -40,7 +40,7 @@ def described_surface(results: Results, parameters: Mapping[str, Any]) -> Iterat
     columns = {
         "question": "test",
         "answer": "outcome",
-        "passed": lambda row: "yes" if row["passed"] else "no",
+        "passed": lambda row: yes_or_no(row["passed"]),
     }
     yield table("Which description of the surface", description["evidence"], columns)
     yield from doubts(parameters, "heights")
@@ -66,10 +66,10 @@ def doubts(parameters: Mapping[str, Any], *about: str) -> Iterator[DoubtNote]:
     """The doubts about some quantities, to stand behind their numbers."""
     for doubt in parameters.get("doubts", []):
         if doubt["about"] in about:
-            remedy = f" To do: {doubt['remedy']}." if doubt["remedy"] else ""
-            yield DoubtNote(
-                f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}"
-            )
+            note = f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}."
+            if doubt["remedy"]:
+                note += f" To do: {doubt['remedy']}."
+            yield DoubtNote(note)
 
 
 def short_names(names: Sequence[str]) -> dict[str, str]:
@@ -78,7 +78,9 @@ def short_names(names: Sequence[str]) -> dict[str, str]:
     alike = sum(
         1 for _ in takewhile(lambda column: len(set(column)) == 1, zip(*words, strict=False))
     )
-    cut = min(alike, *(len(split) - 1 for split in words)) if len(names) > 1 else 0
+    cut = 0
+    if len(names) > 1:
+        cut = min(alike, *(len(split) - 1 for split in words))
     return {name: "_".join(split[cut:]) for name, split in zip(names, words, strict=True)}
 
 
@@ -160,13 +162,14 @@ def _statistics(parameters: Mapping[str, Any]) -> Iterator[Block]:
                 "shared q (1/nm)": lambda row: f"{show(row['from_q'])} to {show(row['to_q'])}",
                 "ratio of C": cell("ratio"),
                 "expected within": lambda row: f"a factor of {show(row['expected_within'])}",
-                "agree": lambda row: "yes" if row["agrees"] else "no",
+                "agree": lambda row: yes_or_no(row["agrees"]),
             },
         )
 
 
 def _judgement(rows: Sequence[CsvRow]) -> PageTable:
     short = short_names(list(dict.fromkeys(row["scan"] for row in rows)))
+    made = {"True": "without it", "False": "from it"}
     return table(
         "The scans pressed (their largest square, made periodic), beside surfaces made from their"
         " description",
@@ -176,9 +179,7 @@ def _judgement(rows: Sequence[CsvRow]) -> PageTable:
             "quantity": lambda row: QUANTITIES.get(row["quantity"], row["quantity"]),
             "pressed": cell("pressed"),
             "description, 90 % interval": lambda row: f"{show(row['low'])} to {show(row['high'])}",
-            "inside": lambda row: "yes" if row["inside"] == "True" else "no",
-            "description made": lambda row: (
-                "without it" if row["left_out"] == "True" else "from it"
-            ),
+            "inside": lambda row: yes_or_no(row["inside"]),
+            "description made": lambda row: made[row["left_out"]],
         },
     )

@@ -37,6 +37,13 @@ def number(text: Any) -> float:
         return float("nan")
 
 
+def yes_or_no(flag: Any) -> str:
+    """A flag of a result file, in words."""
+    if flag in (True, "True"):
+        return "yes"
+    return "no"
+
+
 def column(rows: Iterable[Mapping[str, Any]], name: str) -> np.ndarray:
     """A numeric column; NaN where there is no number."""
     return np.array([number(row.get(name)) for row in rows], dtype=float)

@@ -52,9 +52,12 @@ class Error:
     release_V: float
 
     def __str__(self) -> str:
-        unit = self.unit if self.unit.startswith("%") else f" {self.unit}"
-        known = f" ± {show(self.own_error, 1)}" if np.isfinite(self.own_error) else ""
-        return f"{self.quantity} {show(self.error, 2)}{known}{unit}"
+        text = f"{self.quantity} {show(self.error, 2)}"
+        if np.isfinite(self.own_error):
+            text += f" ± {show(self.own_error, 1)}"
+        if self.unit.startswith("%"):
+            return text + self.unit
+        return f"{text} {self.unit}"
 
 
 @dataclass(frozen=True)
@@ -91,12 +94,10 @@ class KnobTable:
         are known.
         """
         errors = (self.shipped or self.values[0]).errors.values()
-        known = [error for error in errors if np.isfinite(error.release_V)]
-        largest = max(
-            known or errors,
-            key=lambda error: np.nan_to_num(error.release_V if known else error.error),
-        )
-        return largest.quantity
+        in_volts = [error for error in errors if np.isfinite(error.release_V)]
+        if in_volts:
+            return max(in_volts, key=lambda error: error.release_V).quantity
+        return max(errors, key=lambda error: np.nan_to_num(error.error)).quantity
 
     @property
     def curve(self) -> list[tuple[Value, Error]]:
@@ -207,11 +208,12 @@ def _in_use(table: KnobTable) -> Error:
 
 def _short(value: Value | None) -> str:
     """A number shortened, whole numbers and words as they are."""
-    text = value.text if value else "–"
-    value_as_number = number(text)
+    if value is None:
+        return "–"
+    value_as_number = number(value.text)
     if np.isfinite(value_as_number) and not value_as_number.is_integer():
         return show(value_as_number)
-    return text.removesuffix(".0")
+    return value.text.removesuffix(".0")
 
 
 def _accuracy(results: Results, tables: Sequence[KnobTable]) -> Iterator[Block]:
@@ -237,26 +239,44 @@ def _accuracy(results: Results, tables: Sequence[KnobTable]) -> Iterator[Block]:
 
 def release_deviation_V(results: Results) -> float:
     """Standard deviation of the release over all that is uncertain, V; NaN without an answer."""
-    switch = results.json("answer/pad_switch.json") if results.has("answer/pad_switch.json") else {}
-    return float((switch.get("answer") or {"release_V": {"std": np.nan}})["release_V"]["std"])
+    answer = results.content("answer/pad_switch.json").get("answer")
+    if not answer:
+        return np.nan
+    return float(answer["release_V"]["std"])
 
 
 def _line(table: KnobTable, deviation_V: float) -> tuple[str, ...] | None:
     """A row of the table of choices."""
     if not table.curve:
         return None
-    shipped = table.shipped
-    error = shipped.errors.get(table.quantity) if shipped else None
-    share = error.release_V / deviation_V if error else np.nan
+    error = None
+    seconds = "–"
+    if table.shipped:
+        error = table.shipped.errors.get(table.quantity)
+        seconds = show(table.shipped.cpu_s, 2)
     return (
         table.stage,
         table.name,
-        _short(shipped),
-        str(error) if error else "–",
-        f"{share:.0%} of {show(deviation_V, 2)} V" if np.isfinite(share) else "–",
-        show(shipped.cpu_s, 2) if shipped else "–",
+        _short(table.shipped),
+        str(error or "–"),
+        _beside_spread(error, deviation_V),
+        seconds,
         recommended(table, deviation_V),
     )
+
+
+def _passed(row: CsvRow) -> str:
+    """Whether a case passed, in words."""
+    if row["passed"] == "True":
+        return "passed"
+    return f"not passed: {row.get('detail', '')}"
+
+
+def _beside_spread(error: Error | None, deviation_V: float) -> str:
+    """What an error moves the release by, beside its spread."""
+    if error is None or not np.isfinite(error.release_V / deviation_V):
+        return "–"
+    return f"{error.release_V / deviation_V:.0%} of {show(deviation_V, 2)} V"
 
 
 def recommended(table: KnobTable, deviation_V: float = np.nan) -> str:
@@ -384,17 +404,17 @@ def _stability(results: Results) -> Iterator[Block]:
         if row["passed"] != "True"
     ]
     total = sum(map(len, tables.values()))
-    yield (
-        f"{total - len(failed)} of {total} cases passed."
-        + f" Not passed: {'; '.join(failed)}." * bool(failed)
-    )
+    outcome = f"{total - len(failed)} of {total} cases passed."
+    if failed:
+        outcome += f" Not passed: {'; '.join(failed)}."
+    yield outcome
     for stage, rows in tables.items():
         lines = [
             (
                 row["case"],
                 row.get("description", ""),
                 row.get("checks", ""),
-                "passed" if row["passed"] == "True" else f"not passed: {row.get('detail', '')}",
+                _passed(row),
                 show(row.get("cpu_s"), 2),
             )
             for row in rows

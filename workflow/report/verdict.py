@@ -104,14 +104,19 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
         stuck = tuple(answer["stuck"][key] for key in ("low", "value", "high"))
         causes, no_cause = causes_of(answer)
     else:
-        release = (pad["central"]["release_V"],) if pad["central"] else None
-        no_interval = ("; ".join(pad["gate"]["reasons"]) if release is None else "") or pad[
-            "answer_status"
-        ]
-    all_gates = gates_of(results) if gates is None else gates
-    failed = [gate for gate in all_gates if gate.used and gate.answer and not gate.passed]
+        if pad["central"]:
+            release = (pad["central"]["release_V"],)
+        else:
+            no_interval = "; ".join(pad["gate"]["reasons"])
+        no_interval = no_interval or pad["answer_status"]
+    if gates is None:
+        gates = gates_of(results)
+    failed = [gate for gate in gates if gate.used and gate.answer and not gate.passed]
+    electrode = "flat electrode"
+    if pad.get("electrode", "bending") == "bending":
+        electrode = "bending electrode"
     return Verdict(
-        "bending electrode" if pad.get("electrode", "bending") == "bending" else "flat electrode",
+        electrode,
         release,
         stuck,
         no_interval,
@@ -129,12 +134,16 @@ def interval_of(low: str, high: str) -> str:
 
 def volts(value: float) -> str:
     """A release voltage in words."""
-    return "sticks" if value == 0 else f"{show(value)} V"
+    if value == 0:
+        return "sticks"
+    return f"{show(value)} V"
 
 
 def does(release_V: float) -> str:
     """What a switch does, as a verb."""
-    return "sticks" if release_V == 0 else f"lets go at {show(release_V)} V"
+    if release_V == 0:
+        return "sticks"
+    return f"lets go at {show(release_V)} V"
 
 
 def in_words(name: str) -> str:
@@ -143,62 +152,60 @@ def in_words(name: str) -> str:
         return NAMES[name][0]
     if name not in BY_NAME:
         return name
-    label, symbol = BY_NAME[name].label, BY_NAME[name].symbol
-    return label if symbol in label.split() else f"{label} {symbol}"
+    quantity = BY_NAME[name]
+    if quantity.symbol in quantity.label.split():
+        return quantity.label
+    return f"{quantity.label} {quantity.symbol}"
 
 
 def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]:
     """Shares of the variance by cause, and why none is named."""
     rows = [(in_words(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"]]
-    rows = [
-        (name, share) for name, share in [*rows, (CELLS, answer["causes"]["cells"])] if share > 0
-    ]
+    rows.append((CELLS, answer["causes"]["cells"]))
+    rows = [(name, share) for name, share in rows if share > 0]
     if not rows:
         return (), f"all {answer['points']} computed combinations of what is uncertain do the same"
     explained = answer["explained"]
     if explained < 0.5:  # of switches left out: less does not tell a cause
         many = f"the {answer['points']} computed switches"
-        if explained <= 0:
-            return (
-                (),
-                f"{many} are too few to tell, as a fit to all but one does not predict that one",
-            )
-        return (
-            (),
-            (
-                f"a fit to {many} explains only {explained:.0%} of the variance of those that are"
-                " left out"
-            ),
+        reason = (
+            f"a fit to {many} explains only {explained:.0%} of the variance of those that are"
+            " left out"
         )
+        if explained <= 0:
+            reason = (
+                f"{many} are too few to tell, as a fit to all but one does not predict that one"
+            )
+        return (), reason
     return tuple(sorted(rows, key=lambda row: -row[1])), ""
 
 
 def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: bool) -> str:
+    """What to do next, in a sentence; empty where nothing is known."""
     if failed:
         return f"Mend first what failed: {', '.join(gate.stage for gate in failed)}."
     answer = pad.get("answer")
+    if not answer and not pad["central"]:
+        return ""
     if not answer:
-        return "The interval comes first." if pad["central"] else ""
-    if answer["stuck"]["value"] == 1.0:
-        return (
-            "Measure a pull-off force next (target calibration)."
-            if coupled
-            else "No better measurement would free it; a stiffer or shorter beam might."
-        )
+        return "The interval comes first."
+    sticks = answer["stuck"]["value"] == 1.0
+    if sticks and coupled:
+        return "Measure a pull-off force next (target calibration)."
+    if sticks:
+        return "No better measurement would free it; a stiffer or shorter beam might."
     rows = answer["sensitivity"]
     if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."
+    if no_cause and answer["explained"] <= 0:
+        return "Compute more switches next (pad.points)."
     if no_cause:
-        return "Compute more switches next (pad.points)." if answer["explained"] <= 0 else ""
+        return ""
     name = rows[0]["name"]
     shrinks = f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}"
+    _, measured_name = NAMES.get(name, ("", f"the {in_words(name)}"))
     if rows[0]["varies"] == "each":
-        return (
-            f"Control next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}:"
-            f" {shrinks}."
-        )
+        return f"Control next {measured_name}: {shrinks}."
     if name == "rms_scatter":
         return f"Scan more places next: the roughness varies from place to place; {shrinks}."
-    return (
-        f"Measure next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}: {shrinks}."
-    )
+    return f"Measure next {measured_name}: {shrinks}."

@@ -28,5 +28,5 @@ def central_pads(snakemake: Any) -> tuple[Point, ContactSettings, OnPads] | None
         return None
     points, pad = points_of_job(snakemake)
     central = load_model([path], points).central
-    releases = partial(releases_on_pads, central.pressed.cells.grid, pad.point_cells)
+    releases = partial(releases_on_pads, central.pressed.grid, pad.point_cells)
     return central.point, points.on_grid, releases

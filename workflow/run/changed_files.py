@@ -92,13 +92,16 @@ def change_lines(
         groups.setdefault(frozenset(renewed_by(readers, needs)), []).append(path)
     for renewed, paths in groups.items():
         names = [rules[number] for number in order if number in renewed]
+        files = "it" if len(paths) == 1 else "them"
         yield (
-            f"{_some(paths)}: changed since results were made of"
-            f" {'it' if len(paths) == 1 else 'them'}; renews {_some(list(dict.fromkeys(names)))}"
-            f" (jobs: {len(names)}, {cost(renewed)})"
+            f"{_some(paths)}: changed since results were made of {files}; renews"
+            f" {_some(list(dict.fromkeys(names)))} (jobs: {len(names)}, {cost(renewed)})"
         )
 
 
 def _some(words: list[str]) -> str:
+    named = ", ".join(words[:MOST_NAMED])
     more = len(words) - MOST_NAMED
-    return ", ".join(words[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
+    if more <= 0:
+        return named
+    return f"{named} and {more} more"

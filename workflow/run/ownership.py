@@ -162,9 +162,13 @@ def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
     Refused : the folder holds the results of another scene, or files that no run made.
     """
     place = scene.resolve()
-    owner = f"shipped scene {place.stem}" if place.parent == shipped else str(place)
+    owner = str(place)
+    if place.parent == shipped:
+        owner = f"shipped scene {place.stem}"
     note = results / ".scene"
-    known = note.read_text(encoding="utf-8").rstrip("\n") if note.is_file() else ""
+    known = ""
+    if note.is_file():
+        known = note.read_text(encoding="utf-8").rstrip("\n")
     if known and known != owner:
         raise Refused(
             f"{results}: these are results of {known}, not of {owner}; give one of them another"

@@ -18,7 +18,6 @@ from mesoscale.answer.switches import PadModel, Solved, press_pad, surfaces_of
 from mesoscale.failure.population import Population
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import film_table, from_rows
-from mesoscale.pad.closing import PadCells
 from mesoscale.pad.curves import Flats
 from mesoscale.pad.grid import PadGrid
 from mesoscale.pad.pressed import Pad
@@ -63,7 +62,7 @@ def write_solved(
     attributes: dict[str, dict[str, Any]] = {}
     for number, solved_point in solved.items():
         name = f"point_{number:04d}"
-        groups[name] = {} if solved_point.pad is None else _curves(solved_point.pad.cells)
+        groups[name] = {} if solved_point.pad is None else _curves(solved_point.pad)
         device = solved_point.point.device.model_dump(mode="json", exclude={"spread"})
         attributes[name] = {
             **(solved_point.states.numbers if solved_point.states else {}),
@@ -83,16 +82,16 @@ def write_solved(
     write_h5(path, groups, {}, provenance, attributes)
 
 
-def _curves(cells: PadCells) -> dict[str, Dataset]:
+def _curves(pad: Pad) -> dict[str, Dataset]:
     values = {
-        "separation_nm": cells.grid.separation_nm,
-        "depth": cells.grid.depths,
-        "weight": cells.weight,
-        "rms_ratio": cells.rms_ratio,
-        "first_contact_nm": cells.first_contact_nm,
-        "settled": cells.settled.astype(int),
-        "closing_GPa": cells.closing,
-        "opening_GPa": cells.opening,
+        "separation_nm": pad.grid.separation_nm,
+        "depth": pad.grid.depths,
+        "weight": pad.weight,
+        "rms_ratio": pad.rms_ratio,
+        "first_contact_nm": pad.first_contact_nm,
+        "settled": pad.settled.astype(int),
+        "closing_GPa": pad.closing,
+        "opening_GPa": pad.opening,
     }
     return {name: Dataset(values[name], *described) for name, described in CURVES.items()}
 
@@ -277,7 +276,7 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
         if name in groups:
             _check_curves(where, stated, groups[name])
             curves = groups[name]
-            cells = PadCells(
+            pad = Pad(
                 PadGrid(curves["separation_nm"], curves["depth"]),
                 curves["weight"],
                 curves["rms_ratio"],
@@ -285,8 +284,8 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
                 curves["closing_GPa"],
                 curves["opening_GPa"],
                 curves["settled"].astype(bool),
+                Flats(float(stated["hamaker"]), float(stated["offset_nm"])),
             )
-            pad = Pad(cells, Flats(float(stated["hamaker"]), float(stated["offset_nm"])))
         states = None
         if not stated["refused"]:
             pull_in_V, release_V, capacitance_fF, deepened = (float(stated[key]) for key in STATES)

@@ -22,8 +22,9 @@ def accepted_values(field: FieldInfo) -> str:
     if unit:
         words += f" in {unit}"
     if bounds := _bounds(field.metadata):
-        # bounds of a list stand apart from those of its entries
-        words += f"{';' if get_origin(annotation) in (tuple, list) else ''} {bounds}"
+        if get_origin(annotation) in (tuple, list):
+            words += ";"  # bounds of a list stand apart from those of its entries
+        words += f" {bounds}"
     if annotation is str:
         words = words.replace(" entries", " characters")
     if annotation is not field.annotation:
@@ -79,9 +80,9 @@ def _strip_optional(annotation: Any) -> Any:
 
 def _as_model(annotation: Any) -> type[BaseModel] | None:
     annotation = _strip_optional(annotation)
-    return (
-        annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
-    )
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return None
 
 
 def _model_of_entries(annotation: Any) -> type[BaseModel] | None:
@@ -112,7 +113,7 @@ def _field_and_model(
             model = _model_of_entries(field.annotation)
             continue
         if model is None or step not in model.model_fields:
-            return field, None
+            return field, model
         field = model.model_fields[step]
         model = _as_model(field.annotation)
     return field, model

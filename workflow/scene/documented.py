@@ -52,7 +52,10 @@ def _document(model: BaseModel, depth: int, explained: set[type[BaseModel]]) -> 
                     f" {field.description or (type(value).__doc__ or '').strip().splitlines()[0]}"
                 )
             body = _document(value, depth + 1, explained)
-            lines += [f"{indent}{name}:" if body else f"{indent}{name}: {{}}", *body]
+            head = f"{indent}{name}:"
+            if not body:
+                head += " {}"
+            lines += [head, *body]
             continue
         if not known:
             lines.append(f"{indent}# {field.description} ({accepted_values(field)})")
@@ -73,12 +76,10 @@ def scene_schema() -> str:
 def _first_paragraphs(item: Any) -> Any:
     """Descriptions without the lists of keys that docstrings add, which the schema holds anyway."""
     if isinstance(item, dict):
-        return {
-            key: (
-                value.split("\n\n")[0]
-                if key == "description" and isinstance(value, str)
-                else _first_paragraphs(value)
-            )
-            for key, value in item.items()
-        }
-    return [_first_paragraphs(entry) for entry in item] if isinstance(item, list) else item
+        shortened = {key: _first_paragraphs(value) for key, value in item.items()}
+        if isinstance(item.get("description"), str):
+            shortened["description"] = item["description"].split("\n\n")[0]
+        return shortened
+    if isinstance(item, list):
+        return [_first_paragraphs(entry) for entry in item]
+    return item

@@ -22,8 +22,8 @@ with job(snakemake) as run:
     points, settings = points_of_job(snakemake)
     model = load_model([snakemake.input.model], points)
     pad = model.central.pressed
-    write_text(snakemake.output.verilog, verilog_pad(pad.curves, pad.cells.count))
-    write_text(snakemake.output.spice, spice_pad(pad.curves, pad.cells.count))
+    write_text(snakemake.output.verilog, verilog_pad(pad.curves, pad.count))
+    write_text(snakemake.output.spice, spice_pad(pad.curves, pad.count))
     switch = switch_on_pad(model, points.contact.length_nm**2)
     write_json(snakemake.output.switch, switch, run.provenance)
     effects = effects_of(load_mapping(Path(snakemake.input.effects), "table of effects"))

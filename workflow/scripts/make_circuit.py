@@ -31,6 +31,6 @@ with job(snakemake) as run:
     for switch in (central, *spread):
         lumps = lumps_of(switch.settings, errors.lumps)
         path = Path(snakemake.output.models) / switch.row["switch"]
-        netlist = spice_switch(lumps, errors, switch.pad, pad.cells.count, switch.row["pull_in_V"])
+        netlist = spice_switch(lumps, errors, switch.pad, pad.count, switch.row["pull_in_V"])
         write_text(path.with_suffix(".sub"), netlist)
-        write_text(path.with_suffix(".va"), verilog_lump(lumps, switch.pad, pad.cells.count))
+        write_text(path.with_suffix(".va"), verilog_lump(lumps, switch.pad, pad.count))

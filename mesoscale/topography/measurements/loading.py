@@ -43,10 +43,8 @@ from mesoscale.topography.measurements.text import BROADEST_TABLE, Text, decoded
 from mesoscale.topography.measurements.units import nm_of, teach_units
 
 MIN_SIDE = 32
-FILE_NM = (
-    10.0,
-    1e8,
-)  # plausible sizes: the largest real map at hand has 12 mm; beyond, a reader mistakes the unit
+FILE_NM = (10.0, 1e8)
+"""Plausible sizes: the largest real map at hand has 12 mm; beyond, a reader mistakes the unit."""
 HEAD_BYTES = 8192  # of a file, by which its format is told
 OWN_HEADS = (b"X;Y;valid", b"Scan Parameters")
 """How tables begin whose heads a reader of SurfaceTopography knows: HFM and Dektak."""
@@ -99,9 +97,8 @@ def load_measurements(
         raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
     if is_of_the_system(path):
         raise InputError(f"{path}: of the system, not of data; copy what you need of it")
-    with needs(
-        "scans"
-    ):  # imported here, so that the process that reads, a fork of this one, has the readers
+    # imported here, so that the process that reads, a fork of this one, has the readers
+    with needs("scans"):
         import SurfaceTopography.Container.IO
         import SurfaceTopography.IO  # noqa: F401  loads all of that library
 
@@ -159,33 +156,50 @@ def _alone(path: Path, file: Path, name: str, settings: TopographySettings) -> M
     instrument = _instrument(path.name, settings)
     where = str(path)
     head = _head_of(file)
-    channel = instrument.channel or settings.channel
-    if named := foreign(file, head, by_name=False):
-        raise InputError(named.replace(str(file), where, 1))
-    text = None
-    if not _is_known(head) and decoded(head) is not None:
-        text = text_of(file.read_bytes())
-    if text is None and (named := foreign(file, head, by_name=True)):
-        raise InputError(named.replace(str(file), where, 1))
+    text = _text_in(where, file, head)
     if text is not None and _is_table(text):
-        columns = columns_of(where, text, channel)
+        columns = columns_of(where, text, instrument.channel or settings.channel)
         return _of_table(where, name, columns, _word_steps(text), settings, instrument)
     if instrument.points is not None:
-        raise InputError(
-            f"{where}: is no list of points x, y, z; leave out --points (topography.instruments,"
-            " points)"
-        )
+        raise InputError(_no_points(where))
     if text is not None and not text.plain:
         file = text.copy(file.name)
     file = converted(file, head)
-    if (
-        file.suffix.lower() == ".gwy"
-        and instrument.unit
-        and _tried(where, lambda: without_unit(file))
-    ):
+    if instrument.unit and _lacks_a_unit(where, file):
         file = with_unit(file, instrument.unit)
         instrument = instrument.model_copy(update={"unit": None})
     return _of_channels(path, file, name, text, settings, instrument)
+
+
+def _text_in(where: str, file: Path, head: bytes) -> Text | None:
+    """The text of a file that no reader knows; None where it is another format.
+
+    Raises
+    ------
+    InputError : a format that nobody reads, told by its content, or, where it is no text, by its
+        name.
+    """
+    refusal = foreign(file, head, by_name=False)
+    text = None
+    if not refusal and not _is_known(head) and decoded(head) is not None:
+        text = text_of(file.read_bytes())
+    if not refusal and text is None:
+        refusal = foreign(file, head, by_name=True)
+    if refusal:
+        raise InputError(refusal.replace(str(file), where, 1))
+    return text
+
+
+def _lacks_a_unit(where: str, file: Path) -> bool:
+    """Whether a Gwyddion file has channels without a unit."""
+    return file.suffix.lower() == ".gwy" and bool(_tried(where, lambda: without_unit(file)))
+
+
+def _no_points(where: str) -> str:
+    return (
+        f"{where}: is no list of points x, y, z; leave out --points (topography.instruments,"
+        " points)"
+    )
 
 
 def _is_known(head: bytes) -> bool:
@@ -232,27 +246,36 @@ def _of_channels(
         instrument.channel or settings.channel,
         lambda item: _also(path.name, item, instrument),
     )
-    if min(getattr(channel, "nb_grid_pts", None) or [MIN_SIDE]) < MIN_SIDE and channel.dim == 2:
+    sites = getattr(channel, "nb_grid_pts", None) or [MIN_SIDE]
+    if channel.dim == 2 and min(sites) < MIN_SIDE:
         raise InputError(_too_small(where, channel.nb_grid_pts))
     user_values = _given(where, channel, instrument)
-    if channel.dim == 2 or getattr(
-        channel, "is_uniform", False
-    ):  # uneven lines have positions instead
+    # uneven lines have positions instead of a size
+    if channel.dim == 2 or getattr(channel, "is_uniform", False):
         _check_sized(where, channel, instrument)
     topography = _tried(where, lambda: channel.topography(**user_values))
     _check_whole(where, text, topography, channels)
-    steps = [f"read channel {channel.name}", *note]
+    steps = (f"read channel {channel.name}", *note)
     masks = getattr(reader, "_masks", None)
-    if masks:  # Gwyddion's mask is over what is missing, and over grains
+    if masks:
         lost = np.ma.getmaskarray(_tried(where, topography.heights))
         masks.clear()
         unmasked = _tried(where, lambda: channel.topography(**user_values))
-        below = np.asarray(_tried(where, unmasked.heights))[lost]
-        if len(np.unique(below[np.isfinite(below)])) > 1:  # what is missing has one value
+        if _has_heights(_tried(where, unmasked.heights), lost):
             topography = unmasked
-            steps.append(f"{MARKED} {lost.mean():.1%} of the pixels, which have heights: kept them")
-    all_steps = (*steps, *_word_steps(text))
-    return _measurement(where, name, topography, head, all_steps, settings, instrument)
+            marked = f"{MARKED} {lost.mean():.1%} of the pixels, which have heights: kept them"
+            steps = (*steps, marked)
+    steps = (*steps, *_word_steps(text))
+    return _measurement(where, name, topography, head, steps, settings, instrument)
+
+
+def _has_heights(heights: Any, masked: np.ndarray) -> bool:
+    """Whether there are heights below a mask: Gwyddion masks what is missing, and grains, too.
+
+    What is missing has one value.
+    """
+    below = np.asarray(heights)[masked]
+    return len(np.unique(below[np.isfinite(below)])) > 1
 
 
 def _word_steps(text: Text | None) -> tuple[str, ...]:
@@ -319,10 +342,7 @@ def _of_table(
     steps = (taken, *steps)
     places = columns.positions.shape[1]
     if instrument.points is not None and places != 2:
-        raise InputError(
-            f"{where}: is no list of points x, y, z; leave out --points (topography.instruments,"
-            " points)"
-        )
+        raise InputError(_no_points(where))
     if instrument.size and places:
         raise InputError(
             f"{where}: states a size itself; leave out that of topography.instruments (--size)"
@@ -468,7 +488,7 @@ def _measurement(
 ) -> Measurement:
     """A topography of SurfaceTopography in nm, by the unit of file, columns or scene."""
     unit = topography.unit or instrument.unit
-    factors = (nm_of(where, unit),) * 2 if unit else _column_factors(where, head)
+    factors = _factors_to_nm(where, unit, head)
     if factors is None:
         kind = "profile" if topography.dim == 1 else "map"
         raise InputError(
@@ -540,8 +560,10 @@ def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profi
     return profile
 
 
-def _column_factors(where: str, head: bytes) -> tuple[float, float] | None:
-    """Factors to nm of positions and heights by column heads; None without."""
+def _factors_to_nm(where: str, unit: str | None, head: bytes) -> tuple[float, float] | None:
+    """Factors to nm of positions and heights by a unit, or else by column heads; None without."""
+    if unit:
+        return nm_of(where, unit), nm_of(where, unit)
     text = text_of(head)
     if text is None or not 1 < text.width <= BROADEST_TABLE or not text.heads:
         return None
@@ -615,10 +637,10 @@ def _check_size(where: str, *lengths_nm: float) -> None:
     """Refuse sizes that no instrument measures."""
     low, high = FILE_NM
     if not all(low <= length <= high for length in lengths_nm):
+        size = " x ".join(f"{length:.4g}" for length in lengths_nm)
         raise InputError(
-            f"{where}: a size of {' x '.join(f'{length:.4g}' for length in lengths_nm)} nm;"
-            f" plausible is {low:g} .. {high:g} nm, so its unit may be mistaken: save it again with"
-            " the size in nm or um (.gwy)"
+            f"{where}: a size of {size} nm; plausible is {low:g} .. {high:g} nm, so its unit may be"
+            " mistaken: save it again with the size in nm or um (.gwy)"
         )
 
 
@@ -627,9 +649,8 @@ def _check_heights(where: str, heights_nm: np.ndarray) -> None:
     high = FILE_NM[1]
     if not np.isfinite(heights_nm).any():
         raise InputError(f"{where}: no pixel has a height; measure again")
-    largest = float(
-        np.nanmax(np.abs(heights_nm - np.nanmedian(heights_nm)))
-    )  # some instruments count from far away
+    # about the median, since some instruments count from far away
+    largest = float(np.nanmax(np.abs(heights_nm - np.nanmedian(heights_nm))))
     if largest > high:
         raise InputError(
             f"{where}: a height of {largest:.3g} nm; plausible is up to {high:g} nm about the"

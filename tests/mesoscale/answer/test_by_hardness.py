@@ -45,7 +45,7 @@ def test_pads_of_all_factors_have_the_same_surfaces():
     pad = press_pad(BODY, CONTACT, 2, surfaces_of(0))
     assert found[1.0] == release_or_nan_V(BODY.device, pad.curves)
     soft = press_pad(harder(BODY, 0.5), CONTACT, 2, surfaces_of(0))
-    np.testing.assert_array_equal(soft.cells.first_contact_nm, pad.cells.first_contact_nm)
+    np.testing.assert_array_equal(soft.first_contact_nm, pad.first_contact_nm)
     assert found[0.5] != found[1.0]
 
 

@@ -98,7 +98,7 @@ def test_a_pad_is_computed_as_far_as_liquid_reaches():
     ]
     dry, humid = (pad.curves for pad in pads)
     touching = (
-        pads[1].cells.first_contact_nm.max() + 5.0
+        pads[1].first_contact_nm.max() + 5.0
     )  # cells stand for some that touch first farther out
     beyond = humid.separation_nm > touching + menisci_of(air).reach_nm
     assert beyond.sum() > 20

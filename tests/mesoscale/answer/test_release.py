@@ -16,7 +16,6 @@ from mesoscale.answer.release import _probability, answer, switch_on_pad
 from mesoscale.answer.switches import PadModel, solve_point, solve_points
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.table import input_table
-from mesoscale.pad.closing import PadCells
 from mesoscale.pad.curves import closing_alone
 from mesoscale.pad.grid import PadGrid
 from mesoscale.pad.pressed import Pad
@@ -62,14 +61,14 @@ def table(**rows):
 TABLE = table()
 
 
-def cells_of(law, scale):
+def pad_of_two(law, scale):
     """A pad of two cells that have the law's pressures times 1 - scale and 1 + scale."""
     grid = PadGrid(
         law.separation_nm[::-1], np.flatnonzero(np.isin(law.separation_nm[::-1], law.depth_nm))
     )
     closing, opening = law.closing[:, ::-1], law.opening[::-1, :, ::-1]
     both = np.array([1.0 - scale, 1.0 + scale])
-    return PadCells(
+    return Pad(
         grid,
         np.array([0.5, 0.5]),
         np.ones(2),
@@ -77,6 +76,7 @@ def cells_of(law, scale):
         both[:, None, None] * closing,
         both[:, None, None, None] * opening,
         np.ones(2, bool),
+        law.flats,
     )
 
 
@@ -86,7 +86,7 @@ def known(monkeypatch):
 
     def press_pad(point, contact, cells, first_seed, **_):
         law = known_pad(point).curves
-        return Pad(cells_of(law, 0.1 / np.sqrt(cells / 2)), law.flats)
+        return pad_of_two(law, 0.1 / np.sqrt(cells / 2))
 
     monkeypatch.setattr(switches, "press_pad", press_pad)
 
@@ -185,9 +185,9 @@ def test_two_points_have_an_answer_that_explains_nothing(known):
 def test_a_pad_that_one_cell_in_a_hundred_carries_is_undecided(monkeypatch):
     """The half of the cells without it has no pressure, so that it cannot carry the switch."""
     law = known_pad(central_point(TABLE, CONTACT, PLATE)).curves
-    pair = cells_of(law, 0.0)
+    pair = pad_of_two(law, 0.0)
     share = np.where(np.arange(100) == 37, 100.0, 0.0)
-    cells = PadCells(
+    pad = Pad(
         pair.grid,
         np.full(100, 0.01),
         np.ones(100),
@@ -195,8 +195,9 @@ def test_a_pad_that_one_cell_in_a_hundred_carries_is_undecided(monkeypatch):
         share[:, None, None] * pair.closing[0],
         share[:, None, None, None] * pair.opening[0],
         np.ones(100, bool),
+        law.flats,
     )
-    monkeypatch.setattr(switches, "press_pad", lambda *_, **__: Pad(cells, law.flats))
+    monkeypatch.setattr(switches, "press_pad", lambda *_, **__: pad)
     solved = solve_point(central_point(TABLE, CONTACT, PLATE), CONTACT, 100, 0)
     assert solved.states.release_V == pytest.approx(
         switch_of(PLATE).states(law).release_V, rel=1e-3

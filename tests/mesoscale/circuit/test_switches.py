@@ -11,11 +11,10 @@ from mesoscale.circuit import switches
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.switches import CORNERS, central_switch, loops, spread_switches
 from mesoscale.errors import InputError
-from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.switch.beam import beam_of
 from mesoscale.switch.beam_switch import BeamSwitch
-from tests.mesoscale.answer.test_release import TABLE, cells_of, model_of
+from tests.mesoscale.answer.test_release import TABLE, model_of, pad_of_two
 from tests.mesoscale.circuit.test_tables import pad
 
 BEAM = DeviceSettings()
@@ -24,7 +23,7 @@ BEAM = DeviceSettings()
 def test_corners_lie_beyond_the_draws_in_their_direction(monkeypatch):
     def press_pad(point, contact, cells, first_seed, **_):
         law = known_pad(point).curves
-        return Pad(cells_of(law, 0.0), law.flats)
+        return pad_of_two(law, 0.0)
 
     for module in (switches, answer_switches):
         monkeypatch.setattr(module, "press_pad", press_pad)

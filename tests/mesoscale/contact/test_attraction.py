@@ -4,8 +4,9 @@ from scipy.integrate import quad
 from scipy.special import ellipe
 
 from mesoscale.contact.asperity.engine import AsperityContact
-from mesoscale.contact.cycle import contact_on, run_cycle
+from mesoscale.contact.cycle import run_cycle
 from mesoscale.contact.energy import pull_off
+from mesoscale.contact.engines import contact_on
 from mesoscale.contact.numerics import Numerics
 from mesoscale.contact.pressed import Contact
 from mesoscale.errors import InputError

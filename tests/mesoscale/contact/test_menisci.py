@@ -11,9 +11,10 @@ from scipy.optimize import fsolve
 
 from mesoscale.contact.coupled import validity
 from mesoscale.contact.coupled.engine import CoupledContact
-from mesoscale.contact.cycle import contact_on, run_cycle
+from mesoscale.contact.cycle import run_cycle
 from mesoscale.contact.displacement import close_by_separation
 from mesoscale.contact.energy import pull_off
+from mesoscale.contact.engines import contact_on
 from mesoscale.contact.menisci import menisci_of, surface_tension_mN_m, water_vapour_kPa
 from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError

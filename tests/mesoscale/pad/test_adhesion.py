@@ -9,7 +9,6 @@ from mesoscale.pad.cells import sample_cells
 from mesoscale.pad.closing import press_cells
 from mesoscale.pad.curves import Flats, PadCurves
 from mesoscale.pad.pilots import plan_grid
-from mesoscale.pad.pressed import curves_of, flats_of
 from mesoscale.settings import ContactSettings
 
 INPUTS = ContactInputs(
@@ -23,9 +22,7 @@ def adhesion(mechanics: str = "asperity", cells: int = 2, **changes: float):
     contact = SMALL.model_copy(update={"mechanics": mechanics, **changes})
     sampled = sample_cells(INPUTS, cells)
     grid = plan_grid(INPUTS, contact, sampled, 0.005)
-    return adhesion_of(
-        curves_of(press_cells(INPUTS, contact, grid, sampled), flats_of(INPUTS, contact))
-    )
+    return adhesion_of(press_cells(INPUTS, contact, grid, sampled).curves)
 
 
 def test_flats_that_touch_nowhere_have_hamakers_energy():

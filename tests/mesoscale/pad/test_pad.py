@@ -19,12 +19,12 @@ from mesoscale.pad.cells import (
     sample_cells,
     surface_of,
 )
-from mesoscale.pad.closing import PadCells, press_cells
+from mesoscale.pad.closing import press_cells
 from mesoscale.pad.curves import Flats, PadCurves, deepened
 from mesoscale.pad.grid import PadGrid
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.pilots import plan_grid
-from mesoscale.pad.pressed import curves_of, flats_of
+from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings
 
 MIDDLE = ContactInputs(
@@ -32,6 +32,7 @@ MIDDLE = ContactInputs(
 )
 CONTACT = ContactSettings(mechanics="asperity", pixels=128)
 CELLS, STEP_NM = 16, 0.2
+FLATS = Flats(0.215, 0.165)
 WANTED_MPa = 5.0
 
 
@@ -98,7 +99,7 @@ def test_a_pressure_out_of_reach_is_refused():
 
 
 def test_openings_start_where_closing_ended_and_deeper_pads_hold_more(pad):
-    law = curves_of(pad, flats_of(MIDDLE, CONTACT))
+    law = pad.curves
     for depth in law.depth_nm:
         # cells that touch first between two depths have no opening of their own
         assert law.opening_GPa(depth, depth) == pytest.approx(law.closing_GPa(depth), rel=1e-4)
@@ -141,7 +142,7 @@ def test_nothing_is_extrapolated_unasked():
 
 
 def test_far_away_a_pad_is_two_flats(pad):
-    law = curves_of(pad, flats_of(MIDDLE, CONTACT))
+    law = pad.curves
     far = law.separation_nm[-1]
     flats = -MIDDLE.hamaker / (6 * np.pi * (far + CONTACT.gap_cutoff_nm) ** 3)
     # two flats to 1 + 6 (rms / separation)^2
@@ -220,7 +221,8 @@ def test_each_half_of_a_pad_stands_for_the_places_of_the_other():
     ones = np.ones(6)
     grid = PadGrid(np.array([2.0, 1.0]), np.array([1]))
     weight = np.array([0.3, 0.2, 0.2, 0.1, 0.1, 0.1])
-    whole = PadCells(grid, weight, ones, ones, pressures, pressures[:, None], ones.astype(bool))
+    settled = ones.astype(bool)
+    whole = Pad(grid, weight, ones, ones, pressures, pressures[:, None], settled, FLATS)
     parts = [whole.half(other) for other in (False, True)]
     assert all(part.weight == pytest.approx([0.5, 0.3, 0.2]) for part in parts)
     assert np.concatenate([part.closing for part in parts]).sum() == pressures.sum()
@@ -238,7 +240,7 @@ def cells_with_wells(first_contact_nm):
         opening[:, number, :, depth + 1 :] = np.nan
     count = first_contact_nm.size
     ones = np.ones(count)
-    return PadCells(
+    return Pad(
         PadGrid(separation, depths),
         ones / count,
         ones,
@@ -246,6 +248,7 @@ def cells_with_wells(first_contact_nm):
         closing,
         opening,
         ones > 0,
+        FLATS,
     )
 
 
@@ -253,7 +256,7 @@ def test_a_dozen_cells_have_the_well_of_a_pad_of_many():
     """Wells at normal places of 3 nm: the mean of many is a well of (1 + 3^2)^0.5 nm, 0.316 GPa
     deep.
     """
-    exact, flats = (1.0 + 3.0**2) ** -0.5, Flats(0.215, 0.165)
+    exact = (1.0 + 3.0**2) ** -0.5
     pads = [
         cells_with_wells(30.0 + 3.0 * np.random.default_rng(seed).normal(size=12))
         for seed in range(20)
@@ -262,11 +265,11 @@ def test_a_dozen_cells_have_the_well_of_a_pad_of_many():
         np.array([-pull.min() for pull in of])
         for of in (
             [pad.mean(pad.closing)[1] for pad in pads],
-            [curves_of(pad, flats).closing[1] for pad in pads],
+            [pad.curves.closing[1] for pad in pads],
         )
     )
     assert abs(smoothed.mean() - exact) < 0.2 * (plain.mean() - exact)
-    area = np.array([-0.1 * curves_of(pad, flats).closing[1].sum() for pad in pads])
+    area = np.array([-0.1 * pad.curves.closing[1].sum() for pad in pads])
     assert area == pytest.approx(
         (2.0 * np.pi) ** 0.5, rel=1e-3
     )  # of a single well: nothing is lost
@@ -274,9 +277,7 @@ def test_a_dozen_cells_have_the_well_of_a_pad_of_many():
 
 def test_cells_that_touch_first_at_one_separation_are_not_shifted():
     pad = cells_with_wells(np.full(3, 30.0))
-    assert curves_of(pad, Flats(0.215, 0.165)).closing == pytest.approx(
-        pad.mean(pad.closing)[:, ::-1], rel=1e-12
-    )
+    assert pad.curves.closing == pytest.approx(pad.mean(pad.closing)[:, ::-1], rel=1e-12)
 
 
 def test_a_film_whose_places_are_alike_is_one_without_places():

@@ -8,13 +8,12 @@ from mesoscale.answer import switches
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE
-from mesoscale.pad.pressed import Pad
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies import answer_accuracy, circuit_accuracy, failure_accuracy
 from mesoscale.switch.beam import ELEMENTS
 from mesoscale.switch.beam_kernels import OPENING_NM
 from mesoscale.switch.beam_switch import RELEASE_TOLERANCE
-from tests.mesoscale.answer.test_release import cells_of, model_of
+from tests.mesoscale.answer.test_release import model_of, pad_of_two
 
 STAGES = {"answer": answer_accuracy, "circuit": circuit_accuracy}
 
@@ -22,7 +21,7 @@ STAGES = {"answer": answer_accuracy, "circuit": circuit_accuracy}
 def pressed_as_known(monkeypatch):
     def press_pad(point, contact, cells, first_seed, **_):
         law = known_pad(point).curves
-        return Pad(cells_of(law, 0.1 / np.sqrt(cells / 2)), law.flats)
+        return pad_of_two(law, 0.1 / np.sqrt(cells / 2))
 
     monkeypatch.setattr(switches, "press_pad", press_pad)
 

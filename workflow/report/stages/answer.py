@@ -49,15 +49,24 @@ def describe(results: Results) -> Iterator[Block]:
             "property": lambda row: _label(row["key"]).replace(" ", "\u00a0"),
             "value": lambda row: show(row["value"]),
             "pull-in (V)": cell("pull_in_V"),
-            "release (V)": lambda row: (
-                "sticks" if row["release_V"] == 0 else show(row["release_V"])
-            ),
-            "remark": lambda row: (
-                row["reason"].partition(";")[0] or ("curves continued" if row["continued"] else "")
-            ),
+            "release (V)": _release,
+            "remark": _remark,
         },
         heads=2,
     )
+
+
+def _release(row: dict[str, Any]) -> str:
+    if row["release_V"] == 0:
+        return "sticks"
+    return show(row["release_V"])
+
+
+def _remark(row: dict[str, Any]) -> str:
+    """Why there is no answer, or that the curves of the pad were continued for it."""
+    if row["continued"] and not row["reason"]:
+        return "curves continued"
+    return row["reason"].partition(";")[0]
 
 
 def by_key(rows: list[dict[str, Any]]) -> str:

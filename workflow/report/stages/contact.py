@@ -104,11 +104,10 @@ def nominal_models(results: Results) -> str | None:
             label, style = MODELS[model]
             for branch, color in (("closing", BLUE), ("opening", ORANGE)):
                 separation, force = _total(groups[f"{model}/{branch}"])
-                if model != "plastic" and branch == "opening":
-                    continue  # reversible: the same line
-                name = label if model != "plastic" else f"{label}, {branch}"
-                color = color if model == "plastic" else SOFT
-                axis.plot(separation, force, style, color=color, label=name)
+                if model == "plastic":
+                    axis.plot(separation, force, style, color=color, label=f"{label}, {branch}")
+                elif branch == "closing":  # reversible: opening is the same line
+                    axis.plot(separation, force, style, color=SOFT, label=label)
         axis.axhline(0, color=SOFT, linewidth=0.8)
         reach = float(curve_attributes[present[-1]]["first_contact_nm"])
         axis.set(xlim=(None, reach + 8), ylim=(min(-0.12 * top, 1.08 * deepest), 1.04 * top))

@@ -11,12 +11,17 @@ from workflow.report.numbers import cell, column, show, spread
 from workflow.report.page import Block, Figure, stage, table
 from workflow.report.verdict import in_words, volts
 
+SPRINGS = {"thickness_um": ("thickness of the beam", "µm")}
+"""What makes a switch stiffer, by its key, and its unit; a plate has a spring."""
+
 
 @stage("How often it fails", "failure/failure.json", "failure/failure.csv")
 def describe(results: Results) -> Iterator[Block]:
     """Failure rate against hold voltage, and the largest voltage that is allowed."""
     rate = results.json("failure/failure.json")
-    event = f"is still closed at {volts(rate['release_V'])}" if rate["release_V"] else "sticks"
+    event = "sticks"
+    if rate["release_V"]:
+        event = f"is still closed at {volts(rate['release_V'])}"
     yield (
         f"A switch fails where it {event}. Allowed is a share of {rate['allowed']:g}. Nothing here"
         " decides the law of attraction, so each row has its own. Inputs, geometry and pads are"
@@ -42,9 +47,7 @@ def describe(results: Results) -> Iterator[Block]:
         },
         front=True,
     )
-    spring, unit = (
-        ("thickness of the beam", "µm") if rate["spring"] == "thickness_um" else ("spring", "N/m")
-    )
+    spring, unit = SPRINGS.get(rate["spring"], ("spring", "N/m"))
     yield table(
         "Share that fails, and what is allowed; hold voltage and roughness with"
         f" {rate['confidence']:.0%} confidence",
@@ -69,11 +72,15 @@ def describe(results: Results) -> Iterator[Block]:
 
 
 def _share(quantile: dict[str, float]) -> str:
-    return "less than 10⁻¹⁰" if quantile["value"] < LEAST else show(quantile["value"], 2)
+    if quantile["value"] < LEAST:
+        return "less than 10⁻¹⁰"
+    return show(quantile["value"], 2)
 
 
 def _or_none(value: float | None, unit: str, digits: int = 3) -> str:
-    return "none" if value is None else f"{show(value, digits)} {unit}"
+    if value is None:
+        return "none"
+    return f"{show(value, digits)} {unit}"
 
 
 def _curve(results: Results) -> str:

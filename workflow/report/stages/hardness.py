@@ -21,7 +21,7 @@ SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE
 def describe(results: Results) -> Iterator[Block]:
     """Figures 7 and 8, and every run."""
     points = results.csv("hardness/points.csv")
-    fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
+    fit = results.content("hardness/fit.json")
     yield (
         "Molecular dynamics of one asperity pressed against a flat; hardness is the contact stress"
         " beyond the onset of plastic flow."
@@ -32,15 +32,16 @@ def describe(results: Results) -> Iterator[Block]:
         " was first witnessed by exchanged bonds; diamonds: the hardness of runs that yielded.",
         "Figure 7",
     )
+    captions = [
+        "Hardness against contact length, with full and with halved energies where both were run."
+    ]
+    if _as_paper(results):
+        captions.append(" Grey: Table 1 of the paper; crosses: the values in its text.")
+    if fit.get("curve"):
+        captions.append(f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval.")
     yield Figure(
         hardness_size(results),
-        "Hardness against contact length, with full and with halved energies where both were run."
-        + " Grey: Table 1 of the paper; crosses: the values in its text." * _as_paper(results)
-        + (
-            f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval."
-            if fit.get("curve")
-            else ""
-        ),
+        "".join(captions),
         "Figure 8",
     )
     columns: dict[str, CellText] = {
@@ -68,7 +69,7 @@ def _as_paper(results: Results) -> bool:
     """Whether the figure has the paper's values: in scene `paper`, and where energies enter as in
     the paper.
     """
-    fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
+    fit = results.content("hardness/fit.json")
     return results.beside_paper or fit.get("energies_from") == "scales"
 
 
@@ -98,7 +99,9 @@ def _use_of_eq_4(results: Results) -> str:
     if not results.has("inputs.csv"):
         return ""
     names = {row["parameter"] for row in results.csv("inputs.csv")}
-    return ", in use" if "h_prime" in names else ", which this scene does not take"
+    if "h_prime" in names:
+        return ", in use"
+    return ", which this scene does not take"
 
 
 def contact_stress(results: Results) -> str | None:
@@ -155,7 +158,7 @@ def contact_stress(results: Results) -> str | None:
 def hardness_size(results: Results) -> str | None:
     """Figure 8: hardness against contact length, with the fit."""
     points = results.csv("hardness/points.csv")
-    fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
+    fit = results.content("hardness/fit.json")
 
     longest = max(
         float(np.nanmax(column(points, "contact_length_nm"), initial=0.0)), 18.0
@@ -218,8 +221,10 @@ def _scale(point: CsvRow) -> tuple[str, str, str]:
 
 
 def _key(point: CsvRow) -> str:
-    value = number(point.get("energy_scale", "1"))
-    return f"{value:.1f}" if np.isfinite(value) else "1.0"
+    scale = number(point.get("energy_scale", "1"))
+    if not np.isfinite(scale):
+        return "1.0"
+    return f"{scale:.1f}"
 
 
 def _fit_notes(fit: dict[str, Any]) -> list[str]:

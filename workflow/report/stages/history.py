@@ -16,16 +16,13 @@ def describe(results: Results) -> Iterator[Block]:
     rows = results.csv("history/cycles.csv")
     last = max(int(row["cycle"]) for row in rows)
     held = max(number(row["held_s"]) for row in rows)
-    yield (
-        f"{last} cycles of the same surfaces, each from what the last one left"
-        + (
+    cycles = f"{last} cycles of the same surfaces, each from what the last one left"
+    if held:
+        cycles += (
             f", {show(held)} s under load in all: the hardness falls with time by the creep law of"
-            " the scene. "
-            if held
-            else ". "
+            " the scene"
         )
-        + _shakedown(rows)
-    )
+    yield f"{cycles}. {_shakedown(rows)}"
     yield Figure(
         history_drift(results),
         "Left: energy lost by each cycle, one line per surface. Right: how far the closed contact"
@@ -54,17 +51,18 @@ def history_drift(results: Results) -> str:
             some = lost > 0  # an elastic cycle loses nothing but rounding
             energy.plot(column(of_seed, "cycle")[some], lost[some], "o-", color=color, markersize=3)
             held = [row for row in dwell if row["seed"] == seed]
-            x, depth = (
-                (column(held, "held_s"), "separation_nm")
-                if held
-                else (column(of_seed, "cycle"), "closed_nm")
-            )
-            closed = column(held or of_seed, depth)
-            sunk.plot(x, closed[0] - closed, "-", color=color)
+            if held:
+                time_or_cycle = column(held, "held_s")
+                closed_nm = column(held, "separation_nm")
+            else:
+                time_or_cycle = column(of_seed, "cycle")
+                closed_nm = column(of_seed, "closed_nm")
+            sunk.plot(time_or_cycle, closed_nm[0] - closed_nm, "-", color=color)
         energy.set(xscale="log", yscale="log", xlabel="cycle", ylabel="energy lost (nN nm)")
-        sunk.set(
-            xscale="symlog" if dwell else "log", xlabel="time under load (s)" if dwell else "cycle"
-        )
+        if dwell:
+            sunk.set(xscale="symlog", xlabel="time under load (s)")
+        else:
+            sunk.set(xscale="log", xlabel="cycle")
         sunk.set(ylabel="sunk since first closed (nm)")
 
     return draw(

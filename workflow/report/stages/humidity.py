@@ -43,9 +43,7 @@ def describe(results: Results) -> Iterator[Block]:
             "release (V)": _release,
             "work of opening (mJ/m²)": cell("energy_mJ_m2"),
             "pull-off (kPa)": cell("pull_off_kPa"),
-            "sticks": lambda row: (
-                f"{float(row['stuck']):.0%} of {row['points']}" if row["stuck"] else "–"
-            ),
+            "sticks": _sticking,
         },
         heads=2,
     )
@@ -66,15 +64,28 @@ def begins_to_stick(rows: list[CsvRow]) -> str:
             sentences.append(
                 f"from between {free[-1]:.1%} and {stuck[0]:.1%} humidity on ({label})"
             )
-        elif known:
-            sentences.append(f"at {'all' if stuck else 'none'} of these humidities ({label})")
-    return f"At central inputs the switch sticks {'; '.join(sentences)}." if sentences else ""
+        elif stuck:
+            sentences.append(f"at all of these humidities ({label})")
+        elif free:
+            sentences.append(f"at none of these humidities ({label})")
+    if not sentences:
+        return ""
+    return f"At central inputs the switch sticks {'; '.join(sentences)}."
 
 
 def _release(row: CsvRow) -> str:
     if not row["release_V"]:
         return "no answer"
-    return "sticks" if float(row["release_V"]) == 0.0 else show(float(row["release_V"]))
+    if float(row["release_V"]) == 0.0:
+        return "sticks"
+    return show(float(row["release_V"]))
+
+
+def _sticking(row: CsvRow) -> str:
+    """How many of the nearest points stick."""
+    if not row["stuck"]:
+        return "–"
+    return f"{float(row['stuck']):.0%} of {row['points']}"
 
 
 def against_humidity(rows: list[CsvRow]) -> str:

@@ -77,7 +77,7 @@ def _effect_V(results: Results, name: str, stated: Distribution, computed: Distr
     """By how much the release moves, to first order, from the part of its variance that the stated
     spread makes.
     """
-    switch = results.json("answer/pad_switch.json") if results.has("answer/pad_switch.json") else {}
+    switch = results.content("answer/pad_switch.json")
     answer: dict[str, Any] = switch.get("answer") or {"sensitivity": []}
     share = next(
         (row["share_of_variance"] for row in answer["sensitivity"] if row["name"] == name), None

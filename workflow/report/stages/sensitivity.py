@@ -26,16 +26,23 @@ def describe(results: Results) -> Iterator[Block]:
             row = by_pair.get((output, name), {})
             ours = number(row.get("mu_star")) * factor
             theirs = number(row.get("paper_mu_star")) * factor
-            cells.append(f"{show(ours, 2)} ({show(theirs, 2)})" if paper else show(ours, 2))
+            effect = show(ours, 2)
+            if paper:
+                effect += f" ({show(theirs, 2)})"
+            cells.append(effect)
         lines.append(cells)
-        grey += [cells[0]] if output in faint else []
+        if output in faint:
+            grey.append(cells[0])
+    beside = ""
+    caption = "Elementary effects µ*"
+    if paper:
+        beside = ", beside the paper's Table 3"
+        caption += " here (and in the paper's Table 3)"
     yield (
         "Mean elementary effect µ*: by how much an output changes when one input moves over its"
-        " full range, averaged over the others, by runs at the nodes"
-        + (", beside the paper's Table 3." if paper else ".")
-        + " Grey rows are not to be trusted."
+        f" full range, averaged over the others, by runs at the nodes{beside}. Grey rows are not to"
+        " be trusted."
     )
-    caption = "Elementary effects µ*" + " here (and in the paper's Table 3)" * paper
     yield PageTable(
         caption, ("output", *(SYMBOLS.get(name, name) for name in names)), lines, faint=grey
     )

@@ -25,16 +25,16 @@ from workflow.report.page import Block, Figure, PageTable, stage, table
 def describe(results: Results) -> Iterator[Block]:
     """Figures 9 and 10, and the roughness parameters."""
     parameters = results.json("topography/parameters.json")
-    yield (
-        (
+    scans = "Spectra of the measured scans."
+    if parameters.get("synthetic"):
+        scans = (
             "The scans are synthetic: made by the workflow with known parameters, passed through a"
             " simulated microscope and read back from a real file format. They check the method;"
-            " they are no measurement. "
-            if parameters.get("synthetic")
-            else "Spectra of the measured scans. "
+            " they are no measurement."
         )
-        + f"The Hurst exponent follows the {parameters['convention']} convention."
-        + chosen_description(parameters)
+    yield (
+        f"{scans} The Hurst exponent follows the {parameters['convention']} convention."
+        f"{chosen_description(parameters)}"
     )
     caption = "Height maps and line profiles after levelling, in nm about their mean."
     yield Figure(maps(results), caption, "Figure 9", wide=True)
@@ -58,28 +58,22 @@ def _estimates(parameters: Mapping[str, Any], beside_paper: bool) -> PageTable:
         "slope": "2.84",
     }
     truth = parameters.get("truth") or {}
-    used = parameters.get("description", {}).get("name", "power_law") == "power_law"
-    return table(
-        (
-            "Roughness parameters"
-            if used
-            else "Eq. 9 fitted for comparison; random surfaces do not follow it"
-        ),
-        [{"name": name, **estimate} for name, estimate in parameters["estimates"].items()],
-        {
-            "parameter": lambda row: SYMBOLS.get(row["name"], row["name"]),
-            "unit": lambda row: shown_unit(str(row.get("unit", ""))),
-            "estimate": cell("value"),
-            "interval": lambda row: _pair(row.get("interval")),
-            "scatter of scans": lambda row: _pair(row.get("scatter")),
-            **(
-                {"truth": lambda row: show(truth.get(row["name"], truth.get(f"{row['name']}_nm")))}
-                if truth
-                else {}
-            ),
-            **({"paper": lambda row: paper.get(row["name"], "")} if beside_paper else {}),
-        },
-    )
+    title = "Roughness parameters"
+    if parameters.get("description", {}).get("name", "power_law") != "power_law":
+        title = "Eq. 9 fitted for comparison; random surfaces do not follow it"
+    columns: dict[str, Any] = {
+        "parameter": lambda row: SYMBOLS.get(row["name"], row["name"]),
+        "unit": lambda row: shown_unit(str(row.get("unit", ""))),
+        "estimate": cell("value"),
+        "interval": lambda row: _pair(row.get("interval")),
+        "scatter of scans": lambda row: _pair(row.get("scatter")),
+    }
+    if truth:
+        columns["truth"] = lambda row: show(truth.get(row["name"], truth.get(f"{row['name']}_nm")))
+    if beside_paper:
+        columns["paper"] = lambda row: paper.get(row["name"], "")
+    rows = [{"name": name, **estimate} for name, estimate in parameters["estimates"].items()]
+    return table(title, rows, columns)
 
 
 def maps(results: Results) -> str | None:
@@ -95,7 +89,9 @@ def maps(results: Results) -> str | None:
     short = short_names([name.removeprefix("scans/") for name in names])
     # one of each size first, then more up to six
     names.sort(key=lambda name: (float(scan_attributes[name].get("length_x_nm", 0)), name))
-    named = names if len(names) <= 6 else names[:3] + names[-3:]
+    named = names
+    if len(names) > 6:
+        named = names[:3] + names[-3:]
     columns = min(3, len(named))
     rows = -(-len(named) // columns)
     last_map = next((name for name in reversed(named) if "heights" in groups[name]), "")
@@ -109,7 +105,8 @@ def maps(results: Results) -> str | None:
                 unit = "µm"
             rms = float(scan_attributes[name].get("rms_nm", np.nan))
             title = short[name.removeprefix("scans/")]
-            title = title if len(title) <= 32 else f"…{title[-32:]}"
+            if len(title) > 32:
+                title = f"…{title[-32:]}"
             axis.set_title(f"{title}:\nRMS {rms:.3g} nm")
             axis.set_xlabel(unit)
             axis.locator_params(axis="x", nbins=4)
@@ -122,9 +119,9 @@ def maps(results: Results) -> str | None:
             limit = float(np.quantile(np.abs(heights), 0.995))
             shades = {"cmap": "cividis", "vmin": -limit, "vmax": limit, "interpolation": "none"}
             image = axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), **shades)
-            bar = axis.figure.colorbar(
-                image, ax=axis, shrink=0.7, label="height (nm)" if name == last_map else None
-            )
+            bar = axis.figure.colorbar(image, ax=axis, shrink=0.7)
+            if name == last_map:
+                bar.set_label("height (nm)")
             bar.outline.set_visible(False)
             axis.grid(False)
         for axis in axes[len(named) :]:
@@ -171,8 +168,8 @@ def spectra(results: Results) -> str | None:
             axis.plot(q[trusted][-1:], psd[trusted][-1:], "|", color=INK, markersize=7, zorder=4)
             lowest = min(lowest, psd[psd > 0].min())
             highest = max(highest, psd.max())
-        kind = "synthetic " if attributes.get("synthetic") else ""
-        axis.plot([], [], color=SKY, label=f"{len(names)} {kind}scans, trusted part")
+        scans = "synthetic scans" if attributes.get("synthetic") else "scans"
+        axis.plot([], [], color=SKY, label=f"{len(names)} {scans}, trusted part")
         axis.plot(
             [], [], color=SOFT, linewidth=0.5, label="limited by levelling, tip, noise or pixels"
         )
@@ -206,6 +203,7 @@ def _thin(heights: np.ndarray, pixels: int = 128) -> np.ndarray:
 
 
 def _pair(pair: Any) -> str:
-    return (
-        f"{show(pair[0])} to {show(pair[1])}" if isinstance(pair, list) and len(pair) == 2 else "–"
-    )
+    if not isinstance(pair, list) or len(pair) != 2:
+        return "–"
+    low, high = pair
+    return f"{show(low)} to {show(high)}"

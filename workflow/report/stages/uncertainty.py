@@ -113,11 +113,9 @@ def _table2(results: Results) -> PageTable:
         if paper:
             exchanged = f"{panels['paper_mean_exchanged']} ± {panels['paper_dev_exchanged']}"
             printed = f"{panels['paper_mean']} ± {panels['paper_dev']}"
-            cells += [
-                f"{panels['mean']} ± {panels['dev']}",
-                printed,
-                exchanged if exchanged != printed else "–",
-            ]
+            if exchanged == printed:
+                exchanged = "–"
+            cells += [f"{panels['mean']} ± {panels['dev']}", printed, exchanged]
             cells.append(show(row["mean_difference_in_seed_sd"]))
         share = explained.get(name, np.nan)
         cells += [
@@ -126,7 +124,8 @@ def _table2(results: Results) -> PageTable:
             f"{max(share, 0):.0%}" if np.isfinite(share) else "–",
         ]
         lines.append(tuple(cells))
-        faint += [cells[0]] if name in faint_outputs(results) else []
+        if name in faint_outputs(results):
+            faint.append(cells[0])
     caption = (
         "Law parameters on closing and their change on opening" + " (the paper's Table 2)" * paper
     )
