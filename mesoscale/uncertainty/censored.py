@@ -156,5 +156,6 @@ def _maximum(known: Array, unknown: Array, values: Array) -> tuple[Array, float]
         )
     point = np.asarray(best.x, float)
     for _ in range(LAST_STEPS):
-        point = point - np.linalg.solve(curvature(point), cost(point)[1])
+        step = np.linalg.solve(curvature(point), cost(point)[1])
+        point = np.asarray(point - step, float)
     return point[:-1], float(point[-1])

@@ -114,7 +114,7 @@ def _at(point: Array, squares: Array, trend: Array, y: Array) -> _At:
     distances = np.sqrt(5.0 * squares @ lengths**-2.0)
     correlation = (1.0 + distances + distances**2 / 3.0) * np.exp(-distances)
     correlation += noise * np.eye(len(y))
-    inverse = np.linalg.inv(correlation)
+    inverse = np.asarray(np.linalg.inv(correlation), float)
     by_trend = inverse @ trend
     slopes = np.linalg.solve(trend.T @ by_trend, by_trend.T @ y)
     left = y - trend @ slopes
