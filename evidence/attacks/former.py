@@ -4,8 +4,8 @@ The results are real ones: the former code runs a small scene to its page, in an
 own (`uv sync --locked` in a clone at commit c953205b; then `asperity run tiny.yaml report circuit`
 there, with `pad: {cells: 8, grid: {pilot_cells: 4, depths: 4}, draws: 8, draw_cells: 2}` behind
 the scene below). The present code then plans, runs one target, opens the page, and runs the whole
-scene. Each old file must stay or be made again under its name, each old folder is named once a run,
-and a page from before is not called the report.
+scene. Each old file must stay, be renamed or be made again under its name, each old folder is named
+once a run, and a page from before is not called the report.
 """
 
 import hashlib
@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from evidence.attacks.runs import TRACE, Attack, figures, scene, table
+from workflow.run.damage import FORMER
 
 __all__ = ["figures", "rows"]
 SCENE = scene(
@@ -83,7 +84,7 @@ def _tried(
         for name, value in wanted.items()
         if found[name] != value
     ]
-    faults += [f"lost: {name}" for name in before if name not in after]
+    faults += [f"lost: {name}" for name in before if not {name, f"{name}{FORMER}"} & set(after)]
     if done.returncode or TRACE.search(done.stdout + done.stderr):
         faults.append(said[-160:])
     kind = f"{command} {target}".strip()
