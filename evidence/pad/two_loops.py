@@ -22,10 +22,11 @@ from scipy.stats import qmc
 from evidence.pad.rare_failures import ATTRACTIONS, CUTOFFS_NM, PLATE, TABLE, known_pad, population
 from mesoscale.answer.known import ENDS, fit_additive, known
 from mesoscale.answer.points import point_of, values_at
-from mesoscale.failure.population import Attracted, Population
+from mesoscale.failure.population import Population
 from mesoscale.failure.rate import learn
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.switch import switch_of
+from mesoscale.switch.reserve import Attracted
 from mesoscale.uncertainty.rare_events import LEAST, quantiles_of
 
 EACH = ("hamaker", "rms")

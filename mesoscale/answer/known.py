@@ -140,10 +140,9 @@ def known(
         its error.
     between_V : the same from device to device, where what is common is at its median.
     rest_V : deviation of what the fit misses beyond the cells, which is of either kind.
-    stuck_share : 5, 50 and 95 % of the share of devices that stick, one in the number of switches
-        where it is less. Its
-        low and high end hold the error of the fit, and that what it misses may be common or of each
-        device.
+    stuck_share : 5, 50 and 95 % of the share of devices that stick; where one is `tellable_share`,
+        it is that or less. Their low and high ends hold the error of the fit, and that what it
+        misses may be common or of each device.
     """
     rng = np.random.default_rng(np.random.SeedSequence([0, 0x2100]))
     columns = basis(rng.random((draws, common.size)), fit.degree)
@@ -162,11 +161,11 @@ def known(
             ndtr(np.nan_to_num(-unknown / np.hypot(devices, missed_beyond), nan=-np.inf)),
             ndtr(np.nan_to_num(-(unknown + missed_beyond * noise) / devices, nan=-np.inf)),
         ]
-    tellable = 1.0 / fit.values.size  # so many switches know no tail
-    quantiles = [np.quantile(np.maximum(rates, tellable), ENDS, axis=1) for rates in by_rest]
+    quantiles = [np.quantile(rates, ENDS, axis=1) for rates in by_rest]
     low, high = (
         np.quantile(np.hstack([part[:, 1:] for part in quantiles]), q, axis=1) for q in (0.05, 0.95)
     )
+    tellable = tellable_share(fit.values.size)
     middle = float(np.median(unknown[0]))
     slope = fit.power * max(float(fit.volts(np.array(middle))), 1e-9) ** (fit.power - 1)
     return {
@@ -175,13 +174,21 @@ def known(
         "rest_V": float(missed_beyond / slope),
         "stuck_share": {
             f"{q:g}": {
-                "value": float(quantiles[0][k, 0]),
+                "value": max(float(quantiles[0][k, 0]), tellable),
                 "low": float(low[k]),
-                "high": float(high[k]),
+                "high": max(float(high[k]), tellable),
             }
             for k, q in enumerate(ENDS)
         },
     }
+
+
+def tellable_share(switches: int) -> float:
+    """Share that may stick with 95 % confidence where none of so many switches does.
+
+    It is near three in their number, the "rule of three". A smaller share rests on no switch.
+    """
+    return 1.0 - 0.05 ** (1.0 / switches)
 
 
 def _quantiles(volts: Array) -> dict[str, dict[str, float]]:

@@ -75,8 +75,8 @@ def likeliest(x: Array, y: Array) -> Likeliest:
         options={"maxiter": MOST_STEPS, "ftol": 0.0, "gtol": 1e-3 * SETTLED},
     )
     point = np.asarray(best.x, float)
-    found = _at(point, squares, trend, y)
-    cost, slope = _cost(found, squares)
+    process = _at(point, squares, trend, y)
+    cost, slope = _cost(process, squares)
     inwards = np.clip(point - slope, *bounds.T) - point  # zero at a bound that it presses against
     if not np.abs(inwards).max() <= SETTLED:
         raise InputError(
@@ -84,9 +84,9 @@ def likeliest(x: Array, y: Array) -> Likeliest:
             " more points (pad.points), or narrow the inputs"
         )
     free = max(len(y) - trend.shape[1], 1)
-    amplitude = deviation * float(np.sqrt(found.variance * len(y) / free))
+    amplitude = deviation * float(np.sqrt(process.variance * len(y) / free))
     log_likelihood = -cost - len(y) * float(np.log(deviation))
-    return Likeliest(found.lengths, found.noise, amplitude, log_likelihood)
+    return Likeliest(process.lengths, process.noise, amplitude, log_likelihood)
 
 
 class _At(NamedTuple):

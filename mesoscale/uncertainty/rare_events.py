@@ -60,10 +60,10 @@ class Process:
         self.width = np.ptp(x, axis=0)
         self.sample = ot.Sample
         scaled = self._scaled(x)
-        found = likeliest(np.array(scaled), y)
-        kernel = ot.MaternModel(found.lengths, [found.amplitude], 2.5)
+        process = likeliest(np.array(scaled), y)
+        kernel = ot.MaternModel(process.lengths, [process.amplitude], 2.5)
         kernel.activateNuggetFactor(True)
-        kernel.setNuggetFactor(found.noise)
+        kernel.setNuggetFactor(process.noise)
         trend = ot.LinearBasisFactory(kernel.getInputDimension()).build()
         fitter = ot.GaussianProcessFitter(scaled, ot.Sample(y[:, None]), kernel, trend)
         # its own search ends far from the maximum, where the last digits of the values put it

@@ -12,7 +12,7 @@ from typing import Any
 from mesoscale.settings.definitions import BY_NAME
 from workflow.report.available import Results
 from workflow.report.gates import gates_of, other_law_V
-from workflow.report.numbers import show
+from workflow.report.numbers import show, shown_unit
 from workflow.report.page import Gate
 
 NAMES = {
@@ -27,6 +27,10 @@ NAMES = {
     "bow_nm": ("bow", "the bow of the electrode at rest"),
     "tilt_nm": ("tilt", "the tilt of the electrode at rest"),
     "temperature_C": ("temperature", "the temperature of the switch"),
+    "length_um": ("length", "the length of the electrode"),
+    "hold_voltage_V": ("hold voltage", "the hold voltage"),
+    "spring_N_per_m": ("spring", "the stiffness of the spring"),
+    "width_um": ("width of the plate", "the width of the plate"),
 }
 CELLS = "number of cells"
 DECIDED = 0.95
@@ -180,6 +184,18 @@ def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], st
     return tuple(sorted(rows, key=lambda row: -row[1])), ""
 
 
+def _nearest_freedom(pad: dict[str, Any]) -> str:
+    """What would free a switch that sticks, with the least change of a property."""
+    reserve = pad.get("reserve") or {}
+    rows = [row for row in reserve.get("freed_by", ()) if row["frees"]]
+    if not rows:
+        return "a stiffer or shorter beam might"
+    nearest = min(rows, key=lambda row: abs(row["frees"] - row["value"]) / abs(row["value"] or 1.0))
+    name = in_words(nearest["key"])
+    unit = "" if nearest["unit"] == "1" else f" {shown_unit(nearest['unit'])}"
+    return f"at central inputs {name} = {show(nearest['frees'])}{unit} would"
+
+
 def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: bool) -> str:
     """What to do next, in a sentence; empty where nothing is known."""
     if failed:
@@ -193,7 +209,7 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
     if sticks and coupled:
         return "Measure a pull-off force next (target calibration)."
     if sticks:
-        return "No better measurement would free it; a stiffer or shorter beam might."
+        return f"No better measurement would free it; {_nearest_freedom(pad)}."
     rows = answer["sensitivity"]
     if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."

@@ -3,30 +3,28 @@
 from collections.abc import Iterator
 from typing import Any
 
+from mesoscale.settings import DeviceSettings
+from mesoscale.settings.definitions import BY_NAME
 from mesoscale.settings.device import unit_of
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, SOFT, draw
 from workflow.report.numbers import cell, column, show, shown_unit
 from workflow.report.page import Block, Figure, stage, table
-from workflow.report.verdict import NAMES
-
-OTHERS = {
-    "length_um": "length",
-    "hold_voltage_V": "hold voltage",
-    "spring_N_per_m": "spring",
-    "width_um": "width of the plate",
-}
+from workflow.report.verdict import NAMES, in_words
 
 
 @stage("What if the device were another", "answer/pad_switch.json")
 def describe(results: Results) -> Iterator[Block]:
     """Release against one key of the device at a time."""
-    rows = results.json("answer/pad_switch.json").get("by_key", [])
+    pad = results.json("answer/pad_switch.json")
+    rows = pad.get("by_key", [])
     yield (
         "Each row is solved on the pad at central inputs with one property changed; surface and"
         " materials stay as they are. A switch without a stated hold voltage is held at its own"
         " pull-in voltage."
     )
+    if reserve := pad.get("reserve"):
+        yield from _reserve(reserve)
     if not rows:
         yield "The switch at central inputs has no answer, so there is nothing to compare with."
         return
@@ -53,6 +51,39 @@ def describe(results: Results) -> Iterator[Block]:
             "remark": _remark,
         },
         heads=2,
+    )
+
+
+def _reserve(reserve: dict[str, Any]) -> Iterator[Block]:
+    """How much attraction the switch bears, and what frees one that sticks."""
+    times = show(reserve["bears_times"], 2)
+    if not reserve["freed_by"]:
+        yield f"At central inputs it sticks only where the pad attracts with {times} times as much."
+        return
+    yield (
+        "At central inputs the switch sticks. It would let go if the pad attracted with"
+        f" {times} of what it does."
+    )
+    yield table(
+        "What frees the switch: one property changed at a time, the nearest value with which it"
+        " lets go at central inputs",
+        reserve["freed_by"],
+        {
+            "property": lambda row: _label(row["key"]),
+            "value": lambda row: show(row["value"]),
+            "frees": lambda row: show(row["frees"]) if row["frees"] else "none in reach",
+        },
+        front=True,
+    )
+    yield table(
+        "What moves this reserve: attraction that the switch bears, over that of its pad, where"
+        " one property of the device is at its 5 and its 95 %",
+        reserve["moved_by"],
+        {
+            "property": lambda row: in_words(row["key"]),
+            "at 5 %": lambda row: show(row["low"], 2),
+            "at 95 %": lambda row: show(row["high"], 2),
+        },
     )
 
 
@@ -107,4 +138,8 @@ def by_key(rows: list[dict[str, Any]]) -> str:
 
 
 def _label(key: str) -> str:
-    return f"{OTHERS.get(key) or NAMES[key][0]} ({shown_unit(unit_of(key))})"
+    """A property of the device, or an input of the contact, with its unit."""
+    if key in DeviceSettings.model_fields:
+        return f"{NAMES[key][0]} ({shown_unit(unit_of(key))})"
+    row = BY_NAME[key]
+    return row.label if row.unit == "1" else f"{row.label} ({shown_unit(row.unit)})"

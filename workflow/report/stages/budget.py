@@ -36,7 +36,10 @@ def describe(results: Results) -> Iterator[Block]:
         " equal to it."
     )
     if not rows:
-        yield "The switch at central inputs has no release, so there is nothing to move."
+        yield (
+            "The switch at central inputs has no release, so there is nothing to move. What frees"
+            " it, and what moves its reserve, stands in the section on other devices."
+        )
         return
     large = [row for row in rows if not number(row["volts"]) < LITTLE_V]
     held = [row for row in large if row["held"] == "True"]
