@@ -9,7 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from mesoscale.settings import DeviceSettings
 from mesoscale.settings.definitions import BY_NAME
+from mesoscale.settings.device import unit_of
 from workflow.report.available import Results
 from workflow.report.gates import gates_of, other_law_V
 from workflow.report.numbers import show, shown_unit
@@ -162,6 +164,14 @@ def in_words(name: str) -> str:
     return f"{quantity.label} {quantity.symbol}"
 
 
+def labelled(key: str) -> str:
+    """A property of the device, or an input of the contact, with its unit."""
+    if key in DeviceSettings.model_fields:
+        return f"{NAMES[key][0]} ({shown_unit(unit_of(key))})"
+    row = BY_NAME[key]
+    return row.label if row.unit == "1" else f"{row.label} ({shown_unit(row.unit)})"
+
+
 def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]:
     """Shares of the variance by cause, and why none is named."""
     rows = [(in_words(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"]]
@@ -184,16 +194,18 @@ def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], st
     return tuple(sorted(rows, key=lambda row: -row[1])), ""
 
 
-def _nearest_freedom(pad: dict[str, Any]) -> str:
-    """What would free a switch that sticks, with the least change of a property."""
-    reserve = pad.get("reserve") or {}
-    rows = [row for row in reserve.get("freed_by", ()) if row["frees"]]
+def _freedom(pad: dict[str, Any]) -> str:
+    """What would free a switch that sticks, with the least change of a property; a sentence."""
+    tried = (pad.get("reserve") or {}).get("freed_by", ())
+    rows = [row for row in tried if row["frees"] is not None]
+    if tried and not rows:
+        return "At central inputs no single property frees it, up to three times its value."
     if not rows:
-        return "a stiffer or shorter beam might"
+        return "A stiffer or shorter beam might free it."
     nearest = min(rows, key=lambda row: abs(row["frees"] - row["value"]) / abs(row["value"] or 1.0))
-    name = in_words(nearest["key"])
     unit = "" if nearest["unit"] == "1" else f" {shown_unit(nearest['unit'])}"
-    return f"at central inputs {name} = {show(nearest['frees'])}{unit} would"
+    value = f"{show(nearest['frees'])}{unit}"
+    return f"At central inputs it is freed by: {in_words(nearest['key'])} {value}."
 
 
 def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: bool) -> str:
@@ -205,11 +217,11 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
         return ""
     if not answer:
         return "The interval comes first."
-    sticks = answer["stuck"]["value"] == 1.0
+    sticks = answer["stuck"]["value"] >= DECIDED
     if sticks and coupled:
-        return "Measure a pull-off force next (target calibration)."
+        return f"Measure a pull-off force next (target calibration). {_freedom(pad)}"
     if sticks:
-        return f"No better measurement would free it; {_nearest_freedom(pad)}."
+        return f"No better measurement would free it. {_freedom(pad)}"
     rows = answer["sensitivity"]
     if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."

@@ -3,14 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
-from mesoscale.settings import DeviceSettings
-from mesoscale.settings.definitions import BY_NAME
-from mesoscale.settings.device import unit_of
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, SOFT, draw
-from workflow.report.numbers import cell, column, show, shown_unit
+from workflow.report.numbers import cell, column, show
 from workflow.report.page import Block, Figure, stage, table
-from workflow.report.verdict import NAMES, in_words
+from workflow.report.verdict import labelled
 
 
 @stage("What if the device were another", "answer/pad_switch.json")
@@ -23,8 +20,10 @@ def describe(results: Results) -> Iterator[Block]:
         " materials stay as they are. A switch without a stated hold voltage is held at its own"
         " pull-in voltage."
     )
-    if reserve := pad.get("reserve"):
-        yield from _reserve(reserve)
+    reserve = pad.get("reserve")
+    if reserve and not reserve["freed_by"]:
+        times = show(reserve["bears_times"], 2)
+        yield f"At central inputs it sticks only where the pad attracts with {times} times as much."
     if not rows:
         yield "The switch at central inputs has no answer, so there is nothing to compare with."
         return
@@ -44,46 +43,13 @@ def describe(results: Results) -> Iterator[Block]:
         "Pull-in and release",
         rows,
         {
-            "property": lambda row: _label(row["key"]).replace(" ", "\u00a0"),
+            "property": lambda row: labelled(row["key"]).replace(" ", "\u00a0"),
             "value": lambda row: show(row["value"]),
             "pull-in (V)": cell("pull_in_V"),
             "release (V)": _release,
             "remark": _remark,
         },
         heads=2,
-    )
-
-
-def _reserve(reserve: dict[str, Any]) -> Iterator[Block]:
-    """How much attraction the switch bears, and what frees one that sticks."""
-    times = show(reserve["bears_times"], 2)
-    if not reserve["freed_by"]:
-        yield f"At central inputs it sticks only where the pad attracts with {times} times as much."
-        return
-    yield (
-        "At central inputs the switch sticks. It would let go if the pad attracted with"
-        f" {times} of what it does."
-    )
-    yield table(
-        "What frees the switch: one property changed at a time, the nearest value with which it"
-        " lets go at central inputs",
-        reserve["freed_by"],
-        {
-            "property": lambda row: _label(row["key"]),
-            "value": lambda row: show(row["value"]),
-            "frees": lambda row: show(row["frees"]) if row["frees"] else "none in reach",
-        },
-        front=True,
-    )
-    yield table(
-        "What moves this reserve: attraction that the switch bears, over that of its pad, where"
-        " one property of the device is at its 5 and its 95 %",
-        reserve["moved_by"],
-        {
-            "property": lambda row: in_words(row["key"]),
-            "at 5 %": lambda row: show(row["low"], 2),
-            "at 95 %": lambda row: show(row["high"], 2),
-        },
     )
 
 
@@ -123,7 +89,7 @@ def by_key(rows: list[dict[str, Any]]) -> str:
             axis.axvline(
                 next(row["value"] for row in solved if row["own"]), color=SOFT, linewidth=0.8
             )
-            axis.set(ylim=(-0.03 * top, top), xlabel=_label(key), ylabel="release (V)")
+            axis.set(ylim=(-0.03 * top, top), xlabel=labelled(key), ylabel="release (V)")
         for axis in axes[len(keys) :]:
             axis.set_visible(False)
 
@@ -135,11 +101,3 @@ def by_key(rows: list[dict[str, Any]]) -> str:
         columns=3,
         rows=2,
     )
-
-
-def _label(key: str) -> str:
-    """A property of the device, or an input of the contact, with its unit."""
-    if key in DeviceSettings.model_fields:
-        return f"{NAMES[key][0]} ({shown_unit(unit_of(key))})"
-    row = BY_NAME[key]
-    return row.label if row.unit == "1" else f"{row.label} ({shown_unit(row.unit)})"
