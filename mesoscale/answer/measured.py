@@ -218,8 +218,8 @@ def _terms(z: Array) -> Array:
 
 def _fit(beams: Solved, columns: list[int]) -> Array:
     """Coefficients of the terms, shape (terms, measured)."""
-    found, *_ = np.linalg.lstsq(_terms(beams.z), beams.logarithms[:, columns], rcond=None)
-    return np.asarray(found, float)
+    fitted, *_ = np.linalg.lstsq(_terms(beams.z), beams.logarithms[:, columns], rcond=None)
+    return np.asarray(fitted, float)
 
 
 def _missed(beams: Solved, columns: list[int]) -> Array:
@@ -295,9 +295,9 @@ def _contradicted(names: list[str], values: Array, errors: Array, stated: Array)
     InputError : a contradiction beyond doubt.
     """
     mean, deviation = stated.mean(axis=0), stated.std(axis=0)
-    alone = np.abs(values - mean) / np.hypot(deviation, errors)
-    worst = int(np.argmax(alone))
-    far = float(alone[worst])
+    deviations = np.abs(values - mean) / np.hypot(deviation, errors)
+    worst = int(np.argmax(deviations))
+    far = float(deviations[worst])
     line = (
         f"device.measured.{names[worst]} = {values[worst]:.4g} +- {errors[worst]:.3g} contradicts"
         f" the stated device, which has {mean[worst]:.4g} +- {deviation[worst]:.3g} by"
@@ -345,21 +345,21 @@ def _as_table(stated: InputTable, moved: Array, names: list[str]) -> InputTable:
     return InputTable(rows, rank_correlation)
 
 
-def told(settings: DeviceSettings) -> dict[str, object]:
+def what_remains(settings: DeviceSettings) -> dict[str, object]:
     """What result files say of the measurements: of each property, and what contradicts what."""
-    found = narrowed(settings)
+    posterior = narrowed(settings)
     measured = settings.measured
     assert measured is not None
     middle = departed_properties(
-        settings, found.table.transform(np.full((1, len(found.after)), 0.5))
+        settings, posterior.table.transform(np.full((1, len(posterior.after)), 0.5))
     )
     return {
         "measured": {
             name: {
                 "value": value,
                 "error": error,
-                "by_stated_device": found.stated[name][0],
-                "deviation_of_stated_devices": found.stated[name][1],
+                "by_stated_device": posterior.stated[name][0],
+                "deviation_of_stated_devices": posterior.stated[name][1],
             }
             for name, (value, error) in measured.stated.items()
         },
@@ -372,8 +372,8 @@ def told(settings: DeviceSettings) -> dict[str, object]:
                 "remains": float(after / before) if before else 1.0,
             }
             for name, typical, before, after in zip(
-                settings.varied, middle[0], found.before, found.after, strict=True
+                settings.varied, middle[0], posterior.before, posterior.after, strict=True
             )
         ],
-        "doubt": found.doubt,
+        "doubt": posterior.doubt,
     }

@@ -30,9 +30,9 @@ with job(snakemake) as run:
         further = freed_by_surface(model.central, points.on_grid, settings.cells)
         switch["reserve"]["freed_by"] += further
     if points.device.measured:
-        from mesoscale.answer.measured import told  # compiles
+        from mesoscale.answer.measured import what_remains  # compiles
 
-        switch["measured"] = told(points.device)
+        switch["measured"] = what_remains(points.device)
     write_json(snakemake.output.switch, switch, run.provenance)
     effects = effects_of(load_mapping(Path(snakemake.input.effects), "table of effects"))
     if points.contact.air or "humidity" in points.table.names:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesoscale.answer.departures import departed_properties, with_properties
-from mesoscale.answer.measured import narrowed, observed, over_prior, told
+from mesoscale.answer.measured import narrowed, observed, over_prior, what_remains
 from mesoscale.answer.spread import departures, properties_at, typical
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
@@ -108,7 +108,7 @@ def test_a_doubtful_measurement_is_said_and_kept():
     over = over_prior(device().model_copy(update={"hold_voltage_V": None}))
     volts = np.exp(over.logarithms[:, 0])
     far_V = volts.mean() + 3.4 * volts.std()
-    said = told(device(measured={"pull_in_V": (far_V, 1.0)}))
+    said = what_remains(device(measured={"pull_in_V": (far_V, 1.0)}))
     assert "contradicts the stated device" in said["doubt"]
     assert [row["name"] for row in said["properties"]] == device().varied
 

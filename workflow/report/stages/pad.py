@@ -60,20 +60,20 @@ def describe(results: Results) -> Iterator[Block]:
     )
 
 
-def _measured(told: dict[str, Any]) -> Iterator[Block]:
+def _measured(measured: dict[str, Any]) -> Iterator[Block]:
     """What was measured of the device, and what of its properties remains unknown."""
-    for name, row in told["measured"].items():
+    for name, row in measured["measured"].items():
         quantity, _, unit = name.rpartition("_")
         yield (
             f"Measured {quantity.replace('_', '-')}: {show(row['value'])} ± {show(row['error'], 2)}"
             f" {unit}. As stated, such devices have {show(row['by_stated_device'])} ±"
             f" {show(row['deviation_of_stated_devices'], 2)} {unit}."
         )
-    if told["doubt"]:
-        yield f"Doubt: {told['doubt']}."
+    if measured["doubt"]:
+        yield f"Doubt: {measured['doubt']}."
     yield table(
         "Properties of the device after what was measured",
-        told["properties"],
+        measured["properties"],
         {
             "property": "name",
             "stated": cell("stated"),
