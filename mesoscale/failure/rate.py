@@ -135,10 +135,10 @@ def learn(
     batches = [
         (z[k :: FAILURE.voltages], float(volts)) for k, volts in enumerate(voltages(population))
     ]
-    number = 0
+    rounds = 0
     while True:
         for part, hold_V in batches:
-            tell(0.2 * number / FAILURE.rounds, f"{len(reserves)} switches")
+            tell(0.2 * rounds / FAILURE.rounds, f"{len(reserves)} switches")
             columns = np.concatenate(
                 [columns, population.columns(part, np.full(len(part), hold_V))]
             )
@@ -159,12 +159,12 @@ def learn(
             )
         learned = columns[known], reserves[known]
         response = ReserveResponse(population, Process(*learned), len(reserves), *learned)
-        if number == FAILURE.rounds:
+        if rounds == FAILURE.rounds:
             return response
         hold_V = float(rng.uniform(low, high))
-        times = WORKS[number % len(WORKS)]
-        likely = response.sample(times, hold_V, seed + number).points
-        number += 1
+        times = WORKS[rounds % len(WORKS)]
+        likely = response.sample(times, hold_V, seed + rounds).points
+        rounds += 1
         batches = [(likely[rng.permutation(len(likely))[: FAILURE.batch]], hold_V)]
 
 
