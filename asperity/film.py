@@ -384,7 +384,8 @@ class Switch(Shown):
         opens = "sticks"
         if self.release_V > 0:
             opens = f"opens at {self.release_V:.3g} V"
-        yield f"{head}: closes at {states['pull_in_V']:.3g} V, {opens}"
+        closes = "touches" if "touches" in states else "closes"
+        yield f"{head}: {closes} at {states['pull_in_V']:.3g} V, {opens}"
         for reason in reasons:
             yield f"DOUBT: {reason}"
 

@@ -21,6 +21,7 @@ RENAMED = {
     "pad.direct": "answer.direct",
     "pad.loop": "circuit.loop",
     "pad.rare_failures": "failure.rare_failures",
+    "pad.touch": "switch.touch",
     "pad.two_loops": "failure.two_loops",
 }
 """Studies that stood in another room before 0.3.0; the commands of their older rows name that."""

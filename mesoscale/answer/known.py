@@ -142,10 +142,9 @@ def known(
         its error.
     between_V : the same from device to device, where what is common is at its median.
     rest_V : deviation of what the fit misses beyond the cells, which is of either kind.
-    stuck_share : 5, 50 and 95 % of the share of devices that stick, one in the number of switches
-        where it is less. Its
-        low and high end hold the error of the fit, and that what it misses may be common or of each
-        device.
+    stuck_share : 5, 50 and 95 % of the share of devices that stick; where one is `tellable_share`,
+        it is that or less. Their low and high ends hold the error of the fit, and that what it
+        misses may be common or of each device.
     """
     rng = np.random.default_rng(np.random.SeedSequence([0, 0x2100]))
     columns = basis(rng.random((draws, common.size)), fit.degree)
@@ -184,21 +183,29 @@ def _stuck_shares(if_each: Array, if_common: Array, switches: int) -> dict[str, 
     ----------
     if_each, if_common : shares where what the fit misses is of each device, and where it is common;
         shape (1 + errors, draws).
-    switches : that were solved: so many know no share below one in their number.
+    switches : that were solved: of a small share they know no more than `tellable_share`.
     """
-    tellable = 1.0 / switches
-    quantiles_if_each = np.quantile(np.maximum(if_each, tellable), ENDS, axis=1)
-    quantiles_if_common = np.quantile(np.maximum(if_common, tellable), ENDS, axis=1)
+    quantiles_if_each = np.quantile(if_each, ENDS, axis=1)
+    quantiles_if_common = np.quantile(if_common, ENDS, axis=1)
     within_error = np.hstack([quantiles_if_each[:, 1:], quantiles_if_common[:, 1:]])
     low, high = np.quantile(within_error, (0.05, 0.95), axis=1)
+    tellable = tellable_share(switches)
     return {
         f"{q:g}": {
-            "value": float(quantiles_if_each[k, 0]),
+            "value": max(float(quantiles_if_each[k, 0]), tellable),
             "low": float(low[k]),
-            "high": float(high[k]),
+            "high": max(float(high[k]), tellable),
         }
         for k, q in enumerate(ENDS)
     }
+
+
+def tellable_share(switches: int) -> float:
+    """Share that may stick with 95 % confidence where none of so many switches does.
+
+    It is near three in their number, the "rule of three". A smaller share rests on no switch.
+    """
+    return 1.0 - 0.05 ** (1.0 / switches)
 
 
 def _quantiles(volts: Array) -> dict[str, dict[str, float]]:

@@ -72,7 +72,8 @@ class Solved:
             return f"no switch: {self.refused}"
         release_V = self.states.release_V
         opens = f"lets go at {release_V:.3g} V" if release_V > 0.0 else "sticks"
-        return f"the switch closes at {self.states.pull_in_V:.3g} V and {opens}"
+        closes = "touches" if self.states.touches else "closes"
+        return f"the switch {closes} at {self.states.pull_in_V:.3g} V and {opens}"
 
     @property
     def error_V(self) -> float:

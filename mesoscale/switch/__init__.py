@@ -5,9 +5,9 @@ import numpy as np
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.switch import States, Switch, never_closes
+from mesoscale.switch.switch import States, Switch
 
-__all__ = ["States", "Switch", "never_closes", "release_or_nan_V", "switch_of"]
+__all__ = ["States", "Switch", "release_or_nan_V", "switch_of"]
 
 
 def switch_of(settings: DeviceSettings, coarse: bool = False) -> Switch:

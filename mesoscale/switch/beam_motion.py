@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.local import LocalPad
@@ -36,8 +37,16 @@ OFF_SHARE = 0.5
 thirds."""
 STEPS_DOWN = 81
 """Separations of the way down, from rest to touch."""
+PIECES = (1, 4, 16)
+"""Into which a step down is cut, one after the other, until it settles."""
+LEAP = 20.0
+"""Times as far as the node that is brought down, no other moves on the same way."""
+TOUCH_NM = 1e-3
+"""How well the touch is found."""
+SMALL_STEPS = 32
+"""Of the last of the way to touch."""
 NEWTON_STEPS = 30
-"""At most, to each of them."""
+"""At most, to each step."""
 FREE_STEPS = 12
 """At least, to the balance of a free beam from that of the voltage before."""
 MOST_FREE_STEPS = 100
@@ -49,6 +58,27 @@ UNHELD_SHARE = 0.05
 MOST_V = 1e4
 """Largest voltage that a scene may state; more pulls no switch."""
 BESIDE = "place electrode nearer to contact, or take a softer beam"
+
+
+class PullIn(NamedTuple):
+    """How the open beam closes while the voltage rises.
+
+    Attributes
+    ----------
+    voltage : at which it snaps, or touches.
+    touches : whether it touches before it would snap.
+    """
+
+    voltage: float
+    touches: bool
+
+
+class _Lowered(NamedTuple):
+    """A balance of the open beam, with a node so far below rest."""
+
+    down_nm: float
+    squared_V2: float
+    nodal: Array
 
 
 class _Held(NamedTuple):
@@ -125,6 +155,10 @@ class MovingBeam:
         add_loads(separation_nm, pressure, slope, self._electric(squared_V2), self.beam.places)
         return pressure * GPA, slope * GPA / NM
 
+    def _free_load(self, separation_m: Array, squared_V2: float) -> tuple[Array, Array]:
+        """As `load`, of a beam that nothing stops: places below touch are loaded as at touch."""
+        return self.load(np.maximum(separation_m, self._touched_nm() * NM), squared_V2)
+
     def _pull_Pa(self) -> Array:
         """Electrostatic pull of 1 V."""
         separation_nm = self.separation_nm()
@@ -158,9 +192,12 @@ class MovingBeam:
 
     def _above_nm(self) -> Array:
         """Local separations over what the beam touches first: the pad, or stoppers beside it."""
+        return self.separation_nm() - self._touched_nm()
+
+    def _touched_nm(self) -> Array:
+        """Local separations at which the beam touches the pad, or stoppers beside it."""
         over_pad = self.beam.dimple_nm + self.touch_nm
-        touched = np.where(self.beam.lands > 0, over_pad, self.beam.stopper_nm)
-        return self.separation_nm() - touched
+        return np.where(self.beam.lands > 0, over_pad, self.beam.stopper_nm)
 
     def _leading(self) -> int:
         """The node that a small voltage brings down farthest."""
@@ -185,46 +222,117 @@ class MovingBeam:
             f"device: the free beam does not settle at {voltage:.6g} V, too near its pull-in"
         )
 
-    def snap_V(self) -> float:
-        """Pull-in, the largest voltage on the way down; the beam is left just beyond, from where it
-        snaps.
+    def come_down(self) -> PullIn:
+        """Bring the open beam down, and leave it where it snaps or touches.
 
-        A beam whose electrode stays far enough touches before it would snap. Its pull-in is the
-        voltage at touch.
+        A beam snaps at the largest voltage of its way down, and is left just beyond it. One whose
+        electrode stays far enough away touches before it would snap, and is left where it touches.
+        So does one that the attraction of its pad takes over the last steps of its way.
 
         Raises
         ------
-        InputError : the beam rests in its pad, or no voltage brings it down.
+        InputError : the beam rests in its pad, the pad alone pulls it down, or no voltage does.
         """
         self._check_rest()
         node = self._leading()
-        height_nm = float(self._above_nm()[max(node - 1, 0) : node + 1].mean())
-        squares_V2 = [0.0]
-        states = [self.nodal]
-        for down_nm in np.linspace(0.0, height_nm, STEPS_DOWN)[1:]:
-            squared_V2, settled = self._bring_down(node, down_nm, squares_V2[-1])
-            touches = self._above_nm().min() < 0.0 and abs(squared_V2) < MOST_V**2
-            if not (settled or touches):
-                # it is beyond the snap, or else no voltage gets it there
-                if np.argmax(squares_V2) == len(squares_V2) - 1:
-                    raise InputError(
-                        f"device: no voltage brings the beam down by {down_nm:.4g} nm; {BESIDE}"
-                    )
-                break
-            squares_V2.append(squared_V2)
-            states.append(self.nodal)
-            if touches:
-                break
-        if max(squares_V2) > MOST_V**2:
+        way, reaches = self._way_down(node)
+        top = _highest(way)
+        touches = reaches and top >= len(way) - 2
+        if touches:
+            # attraction may turn the way in the last nanometres before touch
+            way = self._again(node, way[max(top - 1, 0)], way[-1])
+            top = _highest(way)
+        if top == 0:
+            raise InputError(
+                "device: attraction alone pulls the beam down onto its pad, without any voltage"
+                " (collapse); raise gap_um or thickness_um, or lower length_um"
+            )
+        squares_V2 = [state.squared_V2 for state in way]
+        if squares_V2[top] > MOST_V**2:
             raise InputError(
                 f"device: more than {MOST_V:g} V are needed to pull the beam down; {BESIDE}"
             )
-        top = int(np.argmax(squares_V2))
-        if top == len(squares_V2) - 1:
-            self.nodal = states[-2]
-            return float(np.sqrt(squares_V2[-1]))
-        self.nodal = states[top + 1]
-        return float(np.sqrt(_vertex(*squares_V2[top - 1 : top + 2])))
+        if top == len(way) - 1:
+            self.nodal = way[top].nodal
+            return PullIn(float(np.sqrt(squares_V2[top])), touches)
+        self.nodal = way[top + 1].nodal
+        return PullIn(float(np.sqrt(_vertex(*squares_V2[top - 1 : top + 2]))), touches)
+
+    def _way_down(self, node: int) -> tuple[list[_Lowered], bool]:
+        """Balances while a node is brought down from rest; whether the last of them touches.
+
+        Raises
+        ------
+        InputError : the way ends before it either turns or touches.
+        """
+        height_nm = float(self._above_nm()[max(node - 1, 0) : node + 1].mean())
+        downs_nm = np.linspace(0.0, height_nm, STEPS_DOWN)
+        # the lowest place may be a little higher than those around the node
+        downs_nm = np.append(downs_nm, height_nm + downs_nm[1])
+        way = [_Lowered(0.0, 0.0, self.nodal)]
+        for down_nm in downs_nm[1:].tolist():
+            state = self._lower(node, down_nm, way[-1])
+            if state is None:
+                break
+            if self._above_nm().min() < 0.0:
+                way.append(self._touch(node, way[-1], state))
+                return way, True
+            way.append(state)
+        if _highest(way) == len(way) - 1:
+            raise _unreachable(way[-1].down_nm)
+        return way, False
+
+    def _lower(self, node: int, down_nm: float, above: _Lowered) -> _Lowered | None:
+        """Bring a node down from a balance above; None where no balance is found.
+
+        A step that does not settle, or leaps to another way, is gone again in smaller ones.
+        """
+        for pieces in PIECES:
+            state = above
+            self.nodal = above.nodal
+            for target_nm in np.linspace(above.down_nm, down_nm, pieces + 1)[1:].tolist():
+                squared_V2, settled = self._bring_down(node, target_nm, state.squared_V2)
+                moved_nm = float(np.abs(self.nodal - state.nodal)[:, 0].max()) / NM
+                if not settled or moved_nm > LEAP * max(target_nm - state.down_nm, TOUCH_NM):
+                    break
+                state = _Lowered(target_nm, squared_V2, self.nodal)
+            else:
+                return state
+        return None
+
+    def _touch(self, node: int, above: _Lowered, below: _Lowered) -> _Lowered:
+        """The balance at which the beam just touches, between one above and one below it."""
+
+        def lowest_nm(down_nm: float) -> float:
+            self._lowered(node, down_nm, above)
+            return float(self._above_nm().min())
+
+        ends_nm = above.down_nm, below.down_nm
+        if lowest_nm(ends_nm[0]) <= 0.0:
+            return above
+        if lowest_nm(ends_nm[1]) >= 0.0:
+            return below
+        down_nm = float(np.asarray(brentq(lowest_nm, *ends_nm, xtol=TOUCH_NM)))
+        return self._lowered(node, down_nm, above)
+
+    def _again(self, node: int, above: _Lowered, below: _Lowered) -> list[_Lowered]:
+        """The way from one balance to a lower one in small steps."""
+        way = [above]
+        for down_nm in np.linspace(above.down_nm, below.down_nm, SMALL_STEPS + 1)[1:].tolist():
+            way.append(self._lowered(node, down_nm, way[-1]))
+        return way
+
+    def _lowered(self, node: int, down_nm: float, above: _Lowered) -> _Lowered:
+        """As `_lower`, where a balance must be.
+
+        Raises
+        ------
+        InputError : none is found.
+        """
+        state = self._lower(node, down_nm, above)
+        if state is None:
+            raise _unreachable(down_nm)
+        return state
 
     def _check_rest(self) -> None:
         """Refuse a beam that rests in its pad."""
@@ -248,7 +356,7 @@ class MovingBeam:
         missing_m = np.inf
         for _ in range(NEWTON_STEPS):
             change, per_V2 = self.beam.step(
-                self.nodal, lambda s, now=squared_V2: self.load(s, now), 0.0, self._pull_Pa()
+                self.nodal, lambda s, now=squared_V2: self._free_load(s, now), 0.0, self._pull_Pa()
             )
             missing_m = -down_nm * NM - self.nodal[node, 0]
             more_V2 = (missing_m - change[node, 0]) / per_V2[node, 0]
@@ -367,6 +475,15 @@ class MovingBeam:
 def _lower_V(voltage: float, hold_V: float) -> float:
     """Half of a voltage, or none where little holds the beam."""
     return 0.5 * voltage if voltage > UNHELD_SHARE * hold_V else 0.0
+
+
+def _unreachable(down_nm: float) -> InputError:
+    return InputError(f"device: no voltage brings the beam down beyond {down_nm:.4g} nm; {BESIDE}")
+
+
+def _highest(way: list[_Lowered]) -> int:
+    """Position of the balance with the largest voltage."""
+    return int(np.argmax([state.squared_V2 for state in way]))
 
 
 def _vertex(before: float, top: float, after: float) -> float:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
 from mesoscale.switch.beam import COARSE_ELEMENTS, ELEMENTS, Beam, beam_of
 from mesoscale.switch.beam_kernels import OPENING_NM
-from mesoscale.switch.beam_motion import MovingBeam
+from mesoscale.switch.beam_motion import MovingBeam, PullIn
 from mesoscale.switch.switch import States, Switch, never_closes
 
 Array = NDArray[np.float64]
@@ -66,15 +67,31 @@ class BeamSwitch(Switch):
         elements = COARSE_ELEMENTS if coarse else ELEMENTS
         return cls(settings, beam_of(settings, elements))
 
-    @property
-    def pull_in_V(self) -> float:
-        """Pull-in over a bare dielectric.
+    @cached_property
+    def pull_in(self) -> PullIn:
+        """How it closes over a bare dielectric.
 
         Raises
         ------
         InputError : no voltage pulls it in.
         """
-        return MovingBeam(beam_of(self.settings, FREE_ELEMENTS), self.settings).snap_V()
+        return MovingBeam(beam_of(self.settings, FREE_ELEMENTS), self.settings).come_down()
+
+    @property
+    def pull_in_V(self) -> float:
+        """Pull-in over a bare dielectric; see `pull_in`."""
+        return self.pull_in.voltage
+
+    @property
+    def never_closes(self) -> str:
+        """One line on a hold voltage that never closes it on any pad; else empty.
+
+        A beam that touches before it snaps touches a high pad earlier than a bare dielectric, so
+        that only its pad tells.
+        """
+        if self.pull_in.touches and self.settings.hold_voltage_V is not None:
+            return ""
+        return never_closes(self.settings, *self.pull_in)
 
     def pressed_GPa(self, pad: PadCurves) -> float:
         """Largest net pressure on a pad on the way to the held state, its curves continued as far
@@ -86,7 +103,7 @@ class BeamSwitch(Switch):
         deepest = continued(pad)
         try:
             moving = self._on(LocalPad(deepest))
-            moving.creep(self._most_V(moving.snap_V()))
+            moving.creep(self._most_V(moving.come_down().voltage))
             return float(deepest.closing_GPa(moving.deepest_nm.min()))
         except NotComputed:
             end_nm = deepest.separation_nm[0]
@@ -103,8 +120,8 @@ class BeamSwitch(Switch):
         InputError : the beam never lands, or is not held.
         """
         moving = self._on(LocalPad(pad))
-        pull_in_V = moving.snap_V()
-        if line := never_closes(self.settings, pull_in_V):
+        pull_in_V, touches = moving.come_down()
+        if line := never_closes(self.settings, pull_in_V, touches):
             raise InputError(line)
         hold_V = self.settings.hold_voltage_V or pull_in_V
         closed = moving.creep(hold_V)
@@ -120,6 +137,7 @@ class BeamSwitch(Switch):
             pull_in_V=pull_in_V,
             capacitance_fF=capacitance_fF,
             release_V=moving.release_V(hold_V, self.opening_nm, self.tolerance),
+            touches=touches,
             hold_V=hold_V,
             landed_share=landed_share,
         )
@@ -138,7 +156,7 @@ class BeamSwitch(Switch):
         local = LocalPad(pad)
         bare = LocalPad(attracting(pad, 0.0))
         snapped = self._on(local)
-        close_V = self._most_V(snapped.snap_V())
+        close_V = self._most_V(snapped.come_down().voltage)
 
         def still_closed(voltage: float, times: float) -> bool:
             moving = self._on(local.attracting(times, bare))
@@ -161,7 +179,7 @@ class BeamSwitch(Switch):
         local = LocalPad(pad)
         closing = self._on(local)
         free = self._on(local)
-        pull_in_V = closing.snap_V()
+        pull_in_V = closing.come_down().voltage
         rising = []
         for voltage in volts.tolist():
             if voltage < pull_in_V:

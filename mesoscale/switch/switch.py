@@ -34,27 +34,33 @@ class States:
 
     Attributes
     ----------
-    pull_in_V : voltage at which the open switch snaps shut.
+    pull_in_V : voltage at which the open switch snaps shut, or touches where that comes first.
     release_V : voltage at which the closed switch lets go; 0 where it sticks.
     capacitance_fF : while held closed.
     deepened : whether the pad was pressed harder than it was computed, so that its curves were
         continued.
+    touches : whether it touches the pad, or what stands beside it, before it would snap. It is then
+        pressed by what the hold voltage exceeds `pull_in_V` by.
     """
 
     pull_in_V: float
     release_V: float
     capacitance_fF: float
     deepened: bool = False
+    touches: bool = False
 
     @property
     def numbers(self) -> dict[str, float]:
-        """What result files state of it."""
-        return {
+        """What result files state of it; `touches` only of a switch that does."""
+        stated = {
             "pull_in_V": self.pull_in_V,
             "release_V": self.release_V,
             "capacitance_fF": self.capacitance_fF,
             "deepened": float(self.deepened),
         }
+        if self.touches:
+            stated["touches"] = 1.0
+        return stated
 
 
 class Switch(ABC):
@@ -88,6 +94,16 @@ class Switch(ABC):
         InputError : no voltage pulls it in.
         """
 
+    @property
+    def never_closes(self) -> str:
+        """One line on a hold voltage that never closes it on any pad; else empty.
+
+        Raises
+        ------
+        InputError : see `pull_in_V`.
+        """
+        return never_closes(self.settings, self.pull_in_V)
+
     @abstractmethod
     def pressed_GPa(self, pad: PadCurves) -> float:
         """Largest net pressure with which it presses a pad on the way to its held state."""
@@ -117,7 +133,7 @@ class Switch(ABC):
         InputError : see `states_on`; the hold voltage never closes the switch.
         """
         states, continued = on_deep_enough(pad, self.states_on)
-        if line := never_closes(self.settings, states.pull_in_V):
+        if line := never_closes(self.settings, states.pull_in_V, states.touches):
             raise InputError(line)
         return replace(states, deepened=continued is not pad)
 
@@ -158,17 +174,30 @@ class Switch(ABC):
         return EDGE * VACUUM_PERMITTIVITY * self.hold_V**2 / (2.0 * gap_m * gap_m) / GPA
 
 
-def never_closes(settings: DeviceSettings, pull_in_V: float) -> str:
+def never_closes(settings: DeviceSettings, pull_in_V: float, touches: bool = False) -> str:
     """One line on a hold voltage below pull-in, which never closes the switch; else empty.
 
     A switch that is closed by more and then held by less has the deepest closing, and so the
     release, of the former.
+
+    Parameters
+    ----------
+    touches : whether it touches at this voltage before it would snap, and so must be held by more.
     """
     hold_V = settings.hold_voltage_V
-    if hold_V is None or hold_V >= (1.0 - PULL_IN_ERROR) * pull_in_V:
+    if hold_V is None:
+        if not touches:
+            return ""
+        return (
+            f"device.hold_voltage_V: null holds the beam with {pull_in_V:.4g} V, at which it"
+            " touches before it would snap and is not pressed; raise hold_voltage_V above that, or"
+            " place electrode nearer to contact"
+        )
+    if hold_V >= (1.0 - PULL_IN_ERROR) * pull_in_V:
         return ""
+    closes = "touches" if touches else "pulls in"
     return (
-        f"device.hold_voltage_V = {hold_V:.4g}: never closes this switch, which pulls in at"
+        f"device.hold_voltage_V = {hold_V:.4g}: never closes this switch, which {closes} at"
         f" {pull_in_V:.4g} V; give the largest voltage that it is closed with, or null for pull-in"
         " itself"
     )

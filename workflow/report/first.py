@@ -73,13 +73,16 @@ def first_screen(results: Results, gates: Any) -> First | None:
 
 def _pull_in(pad: dict[str, Any]) -> str:
     """The voltage that closes it, in words; empty where it is not known."""
+    if not pad.get("answer") and not pad["central"]:
+        return ""
+    touches = "touches" in (pad["central"] or {})
+    does = "touches before it would snap," if touches else "closes"
+    pressed = " What its hold voltage has above that presses it." if touches else ""
     if pad.get("answer"):
         quantiles = pad["answer"]["pull_in_V"]["quantiles"]
         low, middle, high = (f"{show(quantiles[q])} V" for q in ("0.05", "0.5", "0.95"))
-        return f"It closes at {middle} {interval_of(low, high)}."
-    if pad["central"]:
-        return f"It closes at {show(pad['central']['pull_in_V'])} V, at central inputs."
-    return ""
+        return f"It {does} at {middle} {interval_of(low, high)}.{pressed}"
+    return f"It {does} at {show(pad['central']['pull_in_V'])} V, at central inputs.{pressed}"
 
 
 def _conditions(results: Results) -> str:
@@ -121,11 +124,9 @@ def _known(answer: dict[str, Any]) -> str:
 
 
 def _sticking(answer: dict[str, Any]) -> str:
-    """How many of one batch may stick; so many switches cannot tell less than three in them."""
-    tellable = 1.0 - 0.05 ** (1.0 / answer["points"])  # none of n: 95 % confidence, "rule of three"
+    """How many of one batch may stick."""
     limit = answer["known"]["stuck_share"]["0.95"]
-    value = max(limit["value"], tellable)
-    allowed = max(limit["high"], tellable)
+    value, allowed = limit["value"], limit["high"]
     if value > DECIDED:
         return "A whole batch may stick."
     words = f"With 95 % confidence, less than {_rate(value)} of one batch stick."

@@ -289,7 +289,8 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
         states = None
         if not stated["refused"]:
             pull_in_V, release_V, capacitance_fF, deepened = (float(stated[key]) for key in STATES)
-            states = States(pull_in_V, release_V, capacitance_fF, bool(deepened))
+            touches = "touches" in stated  # stated only of a switch that does
+            states = States(pull_in_V, release_V, capacitance_fF, bool(deepened), touches)
         first, second = (float(value) for value in stated["halves_V"])
         yield number, Solved(points[number], pad, states, (first, second), str(stated["refused"]))
 

@@ -186,11 +186,11 @@ def _no_switch(device: DeviceSettings) -> str:
     if device.touching_at_rest or not unusual & device.model_fields_set:
         return device.touching_at_rest
     from mesoscale.answer.spread import check_spread
-    from mesoscale.switch import never_closes, switch_of  # takes a second
+    from mesoscale.switch import switch_of  # takes a second
 
     try:
         check_spread(device)
-        return never_closes(device, switch_of(device).pull_in_V)
+        return switch_of(device).never_closes
     except InputError as error:
         return str(error)
 

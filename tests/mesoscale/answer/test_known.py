@@ -69,11 +69,11 @@ def test_bands_and_share_are_those_of_the_function():
     assert bands["rest_V"] < 0.01
 
 
-@pytest.mark.parametrize(("common", "kinds"), [(True, {0.005, 1.0}), (False, None)])
+@pytest.mark.parametrize(("common", "kinds"), [(True, {0.0149, 1.0}), (False, None)])
 def test_where_all_is_common_all_stick_or_none_and_where_nothing_is_there_is_one_share(
     common, kinds
 ):
-    """Shares below one in the number of switches are not told: 0.005."""
+    """Shares below three in the number of switches are not told: 0.015."""
     fit = fit_additive(UNITS, np.maximum(1.0 + 2.0 * X[:, 0] + X[:, 1], 0.0))
     shares = {row["value"] for row in known(fit, np.full(3, common), 0.0)["stuck_share"].values()}
     if kinds:
@@ -94,3 +94,14 @@ def test_error_bars_of_the_bands_hold_the_truth():
         row = known(fit, COMMON, 0.0)["unknown_V"]["0.95"]
         held += abs(row["value"] - 9.0 - 1.8) < 1.96 * row["error"] + 0.05  # 0.05: a thousand draws
     assert held >= 18
+
+
+def test_switches_none_of_which_sticks_know_no_smaller_share_than_three_in_them():
+    """Of 33 less than 8.7 %: 0.913^33 = 0.05."""
+    rng = np.random.default_rng(3)
+    units = rng.random((33, 3))
+    fit = fit_additive(units, 9.0 + units @ [1.0, 0.5, 0.2])
+    for share in known(fit, COMMON, 0.0)["stuck_share"].values():
+        assert (1.0 - share["value"]) ** 33 == pytest.approx(0.05)
+        assert share["high"] == share["value"]
+        assert share["low"] < 1e-6

@@ -84,7 +84,8 @@ def test_a_device_that_is_none_is_refused_in_one_line(change, words):
         (
             (0.0, 0.05),
             (0.9, 1.0),
-            "no voltage brings the beam down by 3446 nm; place electrode nearer to contact",
+            r"null holds the beam with 47\d\d V, at which it touches before it would snap and is"
+            " not pressed; raise hold_voltage_V above that, or place electrode nearer to contact",
         ),
         ((0.0, 0.02), (0.0, 1.0), "place electrode nearer to contact, or take a softer beam"),
         (
