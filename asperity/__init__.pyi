@@ -1,6 +1,9 @@
 from asperity.film import Film as Film
 from asperity.film import FilmContact as FilmContact
 from asperity.film import Switch as Switch
+from asperity.own_map import Roughness as Roughness
+from asperity.own_map import cycle as cycle
+from asperity.own_map import roughness as roughness
 from asperity.press import PressedMap as PressedMap
 from asperity.press import press as press
 from mesoscale import theory as theory

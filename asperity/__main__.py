@@ -27,6 +27,7 @@ COMMANDS = {
     "open": "open the report of a scene in the browser",
     "film": "what measured files show, a scene of them, and its run; short: asperity FILES",
     "demo": "a small run on a published diamond film; its page opens",
+    "what-if": "the answer of a scene that has run, with another device on its pads",
     "scenes": "list the scenes that ship",
     "targets": "list the stages that a run can be held to",
     "new": "write a scene file to start from",
@@ -55,6 +56,8 @@ def main(arguments: list[str] | None = None) -> int:
         return _refuse(str(error))
     if chosen.command == "compare":
         _become("-m", "workflow.compare", chosen.first, chosen.second)
+    if chosen.command == "what-if":
+        _become("-m", "workflow.run.what_if", chosen.scene, *chosen.changes)
     if chosen.command == "schema":
         print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
     elif chosen.command == "scenes":
@@ -137,6 +140,14 @@ def _parser() -> argparse.ArgumentParser:
         added[name].add_argument(
             "--hours", type=_hours, help="longest run that is not refused; default: 12"
         )
+    other = added["what-if"]
+    other.add_argument("scene", help="name or file of a scene that has run")
+    other.add_argument(
+        "changes",
+        nargs="+",
+        metavar="KEY=VALUES",
+        help="hold_voltage_V=30, gap_um=1,1.5,2, material=aluminium; each key by itself",
+    )
     added["new"].add_argument("file", help="for instance film.yaml")
     comparison = added["compare"]
     comparison.add_argument("first", help="for instance results/ci")

@@ -5,9 +5,11 @@ calls.
 import hashlib
 import html
 from abc import ABC, abstractmethod
+from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +21,7 @@ from mesoscale.answer.switches import PadModel, solve_point, surfaces_of
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
 from mesoscale.errors import InputError
-from mesoscale.extras import needs
+from mesoscale.extras import MissingExtra, needs
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import PAPER_ROWS, check_resolved, film_table, input_table
@@ -75,7 +77,27 @@ class Shown(ABC):
         return next(self.lines())
 
     def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(chr(10).join(self.lines()))}</pre>"
+        text = f"<pre>{html.escape(chr(10).join(self.lines()))}</pre>"
+        return text + self._picture()
+
+    def _picture(self) -> str:
+        """Its plot, small, as an HTML image; empty where it has none or nothing draws it."""
+        plot = getattr(self, "plot", None)
+        if plot is None:
+            return ""
+        try:
+            figure = plot()
+        except MissingExtra:
+            return ""
+        from matplotlib.pyplot import close
+
+        file = BytesIO()
+        figure.savefig(file, format="png", dpi=60)
+        close(figure)  # a notebook would show it a second time
+        content = b64encode(file.getvalue()).decode("ascii")
+        return (
+            f'<img alt="{html.escape(next(self.lines()))}" src="data:image/png;base64,{content}">'
+        )
 
 
 class Film(Shown):
@@ -386,8 +408,20 @@ class Switch(Shown):
             opens = f"opens at {self.release_V:.3g} V"
         closes = "touches" if "touches" in states else "closes"
         yield f"{head}: {closes} at {states['pull_in_V']:.3g} V, {opens}"
+        if self.release_V == 0.0:
+            reserve = self.content["reserve"]
+            yield f"It would let go with {reserve['bears_times']:.2g} of its attraction"
+            yield from map(_freed_words, reserve["freed_by"])
         for reason in reasons:
             yield f"DOUBT: {reason}"
+
+
+def _freed_words(row: dict[str, Any]) -> str:
+    """Which value of a property frees a switch that sticks."""
+    name = row["key"]
+    if row["frees"] is None:
+        return f"{name} = {row['value']:.3g}: no other value in reach frees it"
+    return f"{name} = {row['value']:.3g}: at {row['frees']:.3g} it lets go"
 
 
 def pixels_for(cutoff: Mapping[str, float] | None, side_nm: float) -> int:

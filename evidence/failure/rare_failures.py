@@ -18,13 +18,14 @@ from scipy.stats import qmc
 
 from evidence.pad.closed_form import ClosedForm
 from mesoscale.answer.points import Point, point_of, values_at
-from mesoscale.failure.population import Attracted, Population
+from mesoscale.failure.population import Population
 from mesoscale.failure.rate import corrected, learn
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
 from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.device import SPREAD, SpreadSettings
 from mesoscale.switch import switch_of
+from mesoscale.switch.reserve import Attracted
 from mesoscale.uncertainty.rare_events import sample_event
 
 PLATE = DeviceSettings(spring_N_per_m=170.0, spread=SpreadSettings(**dict.fromkeys(SPREAD)))

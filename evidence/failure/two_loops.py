@@ -29,10 +29,11 @@ from evidence.failure.rare_failures import (
 )
 from mesoscale.answer.known import ENDS, fit_additive, known
 from mesoscale.answer.points import point_of, values_at
-from mesoscale.failure.population import Attracted, Population
+from mesoscale.failure.population import Population
 from mesoscale.failure.rate import learn
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.switch import switch_of
+from mesoscale.switch.reserve import Attracted
 from mesoscale.uncertainty.rare_events import LEAST, quantiles_of
 
 EACH = ("hamaker", "rms")

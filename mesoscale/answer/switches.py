@@ -76,6 +76,11 @@ class Solved:
         return f"the switch {closes} at {self.states.pull_in_V:.3g} V and {opens}"
 
     @property
+    def sticks(self) -> bool:
+        """Whether it has an answer, which is that it sticks."""
+        return self.states is not None and self.states.release_V == 0.0
+
+    @property
     def error_V(self) -> float:
         """Estimated standard error of the release by the number of cells."""
         return 0.5 * abs(self.halves_V[0] - self.halves_V[1])
@@ -103,9 +108,16 @@ def solve_point(
     progress: Progress | None = None,
 ) -> Solved:
     """The switch of a point on a pad of so many cells; a point without an answer has the reason."""
-    pad = None
     try:
         pad = press_pad(point, contact, cells, first_seed, progress=progress)
+    except InputError as error:
+        return Solved(point, None, None, (np.nan, np.nan), str(error))
+    return solved_on(point, pad)
+
+
+def solved_on(point: Point, pad: Pad) -> Solved:
+    """The switch of a point on a pad that is pressed; one without an answer has the reason."""
+    try:
         states = switch_of(point.device).states(pad.curves)
     except InputError as error:
         return Solved(point, pad, None, (np.nan, np.nan), str(error))

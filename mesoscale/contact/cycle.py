@@ -111,6 +111,28 @@ class Cycle:
         frame.attrs["units"] = branches["closing"].attrs["units"]
         return frame
 
+    def plot(self) -> Any:
+        """Force against separation, and the share in contact against the load, as a Matplotlib
+        figure.
+        """
+        with needs("plot"):
+            import matplotlib.pyplot as plt
+        figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
+        for name in ("closing", "opening"):
+            branch = getattr(self, name)
+            left.plot(branch.separation_nm, branch.net_nN, label=name)
+            share = branch.contact_area_nm2 / self.cell_area_nm2
+            right.plot(branch.repulsive_nN, 100.0 * share, label=name)
+        reach = self.first_contact_nm - self.closing.separation_nm.min()
+        left.set(
+            xlim=(None, self.first_contact_nm + 0.5 * reach),  # beyond, only attraction fades
+            xlabel="separation from the mean plane (nm)",
+            ylabel="net force (nN)",
+        )
+        right.set(xlabel="repulsive force (nN)", ylabel="in contact (%)")
+        left.legend()
+        return figure
+
     @property
     def cell_area_nm2(self) -> float:
         """Area of the surface in its mean plane, nm^2."""

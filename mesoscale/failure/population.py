@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from mesoscale.answer.points import Point, kinds, point_of, values_at
-from mesoscale.errors import InputError, NotComputed
+from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.curves import DOUBLINGS, PadCurves, deepened
+from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
 from mesoscale.switch import switch_of
+from mesoscale.switch.reserve import LEAST_TIMES, MOST_TIMES, STEP, Attracted
 
 Array = NDArray[np.float64]
 
@@ -77,9 +78,9 @@ class FailureNumerics:
     wide: float = 2.0
     surer_cells: int = 4
     surfaces: int = 4000
-    least_times: float = 0.1
-    most_times: float = 30.0
-    step: float = 0.1
+    least_times: float = LEAST_TIMES
+    most_times: float = MOST_TIMES
+    step: float = STEP
     span: float = 1.5
     voltages: int = 5
     rough: tuple[float, ...] = (0.98, 0.84, 0.5, 0.16, 0.02)
@@ -92,62 +93,6 @@ class FailureNumerics:
 
 FAILURE = FailureNumerics()
 """What every scene uses."""
-
-
-class Attracted:
-    """A switch whose attraction can be changed.
-
-    Parameters
-    ----------
-    release_V : a switch that is still closed at this voltage has failed.
-    coarse : see `switch_of`.
-    """
-
-    def __init__(
-        self, settings: DeviceSettings, pad: PadCurves, release_V: float, coarse: bool = False
-    ) -> None:
-        self.settings = settings
-        self.pad = pad
-        self.release_V = release_V
-        self.coarse = coarse
-        self._doublings = 0
-        self._still_closed: Callable[[float, float], bool] | None = None
-
-    def fails(self, times: float) -> bool:
-        """Whether the switch fails with `times` its attraction.
-
-        Raises
-        ------
-        InputError : the pad is pressed beyond what is known of it, or the electrode cannot be
-            solved.
-        """
-        while True:
-            try:
-                if self._still_closed is None:
-                    switch = switch_of(self.settings, self.coarse)
-                    self._still_closed = switch.closed_on(self.pad)
-                return self._still_closed(self.release_V, times)
-            except NotComputed:
-                if self._doublings == DOUBLINGS:
-                    raise
-                self._doublings += 1
-                self.pad = deepened(self.pad)
-                self._still_closed = None
-
-    def reserve(self, step: float = FAILURE.step) -> float:
-        """Logarithm of the factor on the attraction with which the switch just fails, known to half
-        a step.
-        """
-        low = np.log(FAILURE.least_times)
-        high = np.log(FAILURE.most_times)
-        while high - low > step:
-            middle = 0.5 * (low + high)
-            try:
-                failed = self.fails(float(np.exp(middle)))
-            except InputError:
-                failed = True
-            low, high = (low, middle) if failed else (middle, high)
-        return float(0.5 * (low + high))
 
 
 @dataclass(frozen=True)

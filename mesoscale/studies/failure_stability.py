@@ -11,13 +11,14 @@ from scipy.special import ndtr, ndtri
 
 from mesoscale.answer.points import Point
 from mesoscale.errors import InputError
-from mesoscale.failure.population import FAILURE, Attracted, Population
+from mesoscale.failure.population import FAILURE, Population
 from mesoscale.failure.rate import furthest_allowed, learn
 from mesoscale.pad.curves import PadCurves, attracting
 from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_stability import made_up_pad
 from mesoscale.studies.driver import Array, HardCase
 from mesoscale.switch import switch_of
+from mesoscale.switch.reserve import Attracted
 from mesoscale.uncertainty.rare_events import (
     LEAST,
     Moments,

@@ -226,3 +226,12 @@ def test_the_first_screen_says_which_air_it_is_of(inputs, air, words):
     said = _conditions(results)
     assert said.startswith(words)
     assert said.endswith(", at 85 °C, uncharged.")
+
+
+def test_a_switch_that_sticks_is_told_what_frees_it():
+    thick = {"key": "thickness_um", "unit": "um", "value": 1.0, "frees": 1.8}
+    gap = {"key": "gap_um", "unit": "um", "value": 1.5, "frees": None}
+    smooth = {"key": "rms", "unit": "nm", "value": 3.0, "frees": 4.0}
+    rows = [thick, gap, smooth]
+    assert "freed by: RMS roughness 4.00 nm" in said(_pad(1.0, reserve={"freed_by": rows})).sentence
+    assert "no single property" in said(_pad(1.0, reserve={"freed_by": [gap]})).sentence

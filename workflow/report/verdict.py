@@ -9,10 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from mesoscale.settings import DeviceSettings
 from mesoscale.settings.definitions import BY_NAME
+from mesoscale.settings.device import unit_of
 from workflow.report.available import Results
 from workflow.report.gates import gates_of, other_law_V
-from workflow.report.numbers import show
+from workflow.report.numbers import show, shown_unit
 from workflow.report.page import Gate
 
 NAMES = {
@@ -27,6 +29,10 @@ NAMES = {
     "bow_nm": ("bow", "the bow of the electrode at rest"),
     "tilt_nm": ("tilt", "the tilt of the electrode at rest"),
     "temperature_C": ("temperature", "the temperature of the switch"),
+    "length_um": ("length", "the length of the electrode"),
+    "hold_voltage_V": ("hold voltage", "the hold voltage"),
+    "spring_N_per_m": ("spring", "the stiffness of the spring"),
+    "width_um": ("width of the plate", "the width of the plate"),
 }
 CELLS = "number of cells"
 DECIDED = 0.95
@@ -158,6 +164,14 @@ def in_words(name: str) -> str:
     return f"{quantity.label} {quantity.symbol}"
 
 
+def labelled(key: str) -> str:
+    """A property of the device, or an input of the contact, with its unit."""
+    if key in DeviceSettings.model_fields:
+        return f"{NAMES[key][0]} ({shown_unit(unit_of(key))})"
+    row = BY_NAME[key]
+    return row.label if row.unit == "1" else f"{row.label} ({shown_unit(row.unit)})"
+
+
 def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]:
     """Shares of the variance by cause, and why none is named."""
     rows = [(in_words(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"]]
@@ -180,6 +194,20 @@ def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], st
     return tuple(sorted(rows, key=lambda row: -row[1])), ""
 
 
+def _freedom(pad: dict[str, Any]) -> str:
+    """What would free a switch that sticks, with the least change of a property; a sentence."""
+    tried = (pad.get("reserve") or {}).get("freed_by", ())
+    rows = [row for row in tried if row["frees"] is not None]
+    if tried and not rows:
+        return "At central inputs no single property frees it, up to three times its value."
+    if not rows:
+        return "A stiffer or shorter beam might free it."
+    nearest = min(rows, key=lambda row: abs(row["frees"] - row["value"]) / abs(row["value"] or 1.0))
+    unit = "" if nearest["unit"] == "1" else f" {shown_unit(nearest['unit'])}"
+    value = f"{show(nearest['frees'])}{unit}"
+    return f"At central inputs it is freed by: {in_words(nearest['key'])} {value}."
+
+
 def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: bool) -> str:
     """What to do next, in a sentence; empty where nothing is known."""
     if failed:
@@ -189,11 +217,11 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
         return ""
     if not answer:
         return "The interval comes first."
-    sticks = answer["stuck"]["value"] == 1.0
+    sticks = answer["stuck"]["value"] >= DECIDED
     if sticks and coupled:
-        return "Measure a pull-off force next (target calibration)."
+        return f"Measure a pull-off force next (target calibration). {_freedom(pad)}"
     if sticks:
-        return "No better measurement would free it; a stiffer or shorter beam might."
+        return f"No better measurement would free it. {_freedom(pad)}"
     rows = answer["sensitivity"]
     if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."

@@ -2,6 +2,7 @@
 chose.
 """
 
+from collections.abc import Mapping
 from typing import Any
 
 from mesoscale.settings import ContactSettings, SceneContact
@@ -15,12 +16,20 @@ def contact_settings(contact: dict[str, Any], snakemake: Any) -> ContactSettings
 
     Parameters
     ----------
-    given : section `contact` of the scene.
+    contact : section `contact` of the scene.
     snakemake : of the job; its input `topography` is topography/parameters.json, or absent.
     """
     path = snakemake.input.get("topography")
     described = load_json(path) if path else {}
-    settings = ContactSettings(
-        **dict(settings_from_job(SceneContact, contact)), surface=described.get("surface", {})
-    )
+    return contact_on(settings_from_job(SceneContact, contact), described)
+
+
+def contact_on(contact: SceneContact, described: Mapping[str, Any]) -> ContactSettings:
+    """The settings on a surface.
+
+    Parameters
+    ----------
+    described : content of topography/parameters.json; empty without measurements.
+    """
+    settings = ContactSettings(**dict(contact), surface=described.get("surface", {}))
     return settings.on_cell(described.get("cell_nm", settings.length_nm))

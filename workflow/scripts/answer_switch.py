@@ -11,6 +11,7 @@ from asperity.guards.foreign_yaml import load_mapping
 from mesoscale.answer.budget import TWIN, budget, effects_of, with_twins
 from mesoscale.answer.other_devices import release_by_hardness
 from mesoscale.answer.release import switch_on_pad
+from mesoscale.answer.reserve import freed_by_surface
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.studies.own_errors import of_switch
@@ -25,6 +26,9 @@ with job(snakemake) as run:
     write_text(snakemake.output.verilog, verilog_pad(pad.curves, pad.count))
     write_text(snakemake.output.spice, spice_pad(pad.curves, pad.count))
     switch = switch_on_pad(model, points.contact.length_nm**2)
+    if model.central.sticks:
+        further = freed_by_surface(model.central, points.on_grid, settings.cells)
+        switch["reserve"]["freed_by"] += further
     write_json(snakemake.output.switch, switch, run.provenance)
     effects = effects_of(load_mapping(Path(snakemake.input.effects), "table of effects"))
     if points.contact.air or "humidity" in points.table.names:

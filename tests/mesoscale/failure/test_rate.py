@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from evidence.failure.rare_failures import KnownPad, known_pad, population
 from mesoscale.errors import InputError
-from mesoscale.failure.population import FAILURE, Attracted
+from mesoscale.failure.population import FAILURE
 from mesoscale.failure.rate import (
     corrected,
     furthest_allowed,
@@ -23,6 +23,7 @@ from mesoscale.settings import DeviceSettings, FailureSettings
 from mesoscale.studies.answer_stability import made_up_pad
 from mesoscale.switch import switch_of
 from mesoscale.switch.beam_switch import BeamSwitch
+from mesoscale.switch.reserve import Attracted
 
 BEAM = DeviceSettings(hold_voltage_V=80.0)
 PLATE = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)

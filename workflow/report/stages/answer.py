@@ -3,30 +3,27 @@
 from collections.abc import Iterator
 from typing import Any
 
-from mesoscale.settings.device import unit_of
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, SOFT, draw
-from workflow.report.numbers import cell, column, show, shown_unit
+from workflow.report.numbers import cell, column, show
 from workflow.report.page import Block, Figure, stage, table
-from workflow.report.verdict import NAMES
-
-OTHERS = {
-    "length_um": "length",
-    "hold_voltage_V": "hold voltage",
-    "spring_N_per_m": "spring",
-    "width_um": "width of the plate",
-}
+from workflow.report.verdict import labelled
 
 
 @stage("What if the device were another", "answer/pad_switch.json")
 def describe(results: Results) -> Iterator[Block]:
     """Release against one key of the device at a time."""
-    rows = results.json("answer/pad_switch.json").get("by_key", [])
+    pad = results.json("answer/pad_switch.json")
+    rows = pad.get("by_key", [])
     yield (
         "Each row is solved on the pad at central inputs with one property changed; surface and"
         " materials stay as they are. A switch without a stated hold voltage is held at its own"
         " pull-in voltage."
     )
+    reserve = pad.get("reserve")
+    if reserve and not reserve["freed_by"]:
+        times = show(reserve["bears_times"], 2)
+        yield f"At central inputs it sticks only where the pad attracts with {times} times as much."
     if not rows:
         yield "The switch at central inputs has no answer, so there is nothing to compare with."
         return
@@ -46,7 +43,7 @@ def describe(results: Results) -> Iterator[Block]:
         "Pull-in and release",
         rows,
         {
-            "property": lambda row: _label(row["key"]).replace(" ", "\u00a0"),
+            "property": lambda row: labelled(row["key"]).replace(" ", "\u00a0"),
             "value": lambda row: show(row["value"]),
             "pull-in (V)": cell("pull_in_V"),
             "release (V)": _release,
@@ -92,7 +89,7 @@ def by_key(rows: list[dict[str, Any]]) -> str:
             axis.axvline(
                 next(row["value"] for row in solved if row["own"]), color=SOFT, linewidth=0.8
             )
-            axis.set(ylim=(-0.03 * top, top), xlabel=_label(key), ylabel="release (V)")
+            axis.set(ylim=(-0.03 * top, top), xlabel=labelled(key), ylabel="release (V)")
         for axis in axes[len(keys) :]:
             axis.set_visible(False)
 
@@ -104,7 +101,3 @@ def by_key(rows: list[dict[str, Any]]) -> str:
         columns=3,
         rows=2,
     )
-
-
-def _label(key: str) -> str:
-    return f"{OTHERS.get(key) or NAMES[key][0]} ({shown_unit(unit_of(key))})"

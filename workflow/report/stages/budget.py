@@ -10,7 +10,7 @@ from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import BLUE, draw
 from workflow.report.numbers import column, number, show
 from workflow.report.page import Block, Figure, stage, table
-from workflow.report.verdict import NAMES, in_words
+from workflow.report.verdict import NAMES, in_words, labelled
 
 HOW = {
     "computed": "computed here",
@@ -37,6 +37,9 @@ def describe(results: Results) -> Iterator[Block]:
     )
     if not rows:
         yield "The switch at central inputs has no release, so there is nothing to move."
+        reserve = results.json("answer/pad_switch.json").get("reserve")
+        if reserve and reserve["freed_by"]:
+            yield from _of_sticking(reserve)
         return
     large = [row for row in rows if not number(row["volts"]) < LITTLE_V]
     held = [row for row in large if row["held"] == "True"]
@@ -53,6 +56,39 @@ def describe(results: Results) -> Iterator[Block]:
         "Effects below 0.1 V", [row for row in rows if number(row["volts"]) < LITTLE_V], LEFT_OUT
     )
     yield table("Sources", rows, {"effect": _effect, "source": "source"})
+
+
+def _of_sticking(reserve: dict[str, Any]) -> Iterator[Block]:
+    """What frees a switch that sticks, and what moves its reserve."""
+    yield table(
+        "At central inputs the switch sticks, so nothing is counted in volts. It would let go with"
+        f" {show(reserve['bears_times'], 2)} of the attraction of its pad. What frees it: one"
+        " property changed at a time, the nearest value with which it lets go",
+        reserve["freed_by"],
+        {
+            "property": lambda row: labelled(row["key"]),
+            "value": lambda row: show(row["value"]),
+            "lets go at": _frees,
+        },
+        front=True,
+    )
+    yield table(
+        "What moves this reserve: attraction that the switch bears, over that of its pad, where"
+        " one property of the device is at its 5 and its 95 %",
+        reserve["moved_by"],
+        {
+            "property": lambda row: in_words(row["key"]),
+            "at 5 %": lambda row: show(row["low"], 2),
+            "at 95 %": lambda row: show(row["high"], 2),
+        },
+        front=True,
+    )
+
+
+def _frees(row: dict[str, Any]) -> str:
+    if row["frees"] is None:
+        return "none in reach"
+    return show(row["frees"])
 
 
 def bars(rows: list[CsvRow]) -> str:

@@ -1,0 +1,110 @@
+"""Other devices on the pads of a run: the command, its table, and pads pressed anew."""
+
+import csv
+import shutil
+
+import pytest
+
+from evidence.pad.other_devices import OTHERS, central_of_table_1, compared
+from mesoscale.answer.release import answer
+from mesoscale.answer.switches import solve_points
+from mesoscale.inputs.table import collect, film_table, from_rows, to_rows
+from workflow.files.results import load_csv, write_csv
+from workflow.run.contact_settings import contact_on
+from workflow.run.pads import ScenePoints, write_solved
+from workflow.run.what_if import AS_RUN, PressedScene, main, what_if
+from workflow.scene import load_scene
+
+SCENE = """extends: table1
+name: tiny
+contact: {mechanics: asperity, pixels: 64, length_nm: 500, attraction: clamped}
+device: {spring_N_per_m: 800}
+tails: [switch]
+pad: {cells: 2, points: 36, point_cells: 2}
+"""
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    """A folder with the pads of a scene, as its run leaves them."""
+    folder = tmp_path_factory.mktemp("what_if")
+    (folder / "tiny.yaml").write_text(SCENE)
+    scene = load_scene(str(folder / "tiny.yaml"))
+    inputs = to_rows(collect(scene.inputs, {}, {}, scene.contact.attraction))
+    write_csv(folder / "results/tiny/inputs.csv", inputs)
+    rows = load_csv(folder / "results/tiny/inputs.csv")
+    table = film_table(from_rows(rows), {}, scene.pad.rms_scatter)
+    write_csv(folder / "results/tiny/pad/inputs.csv", to_rows(table))
+    contact = contact_on(scene.contact, {})
+    points = ScenePoints(table, contact, scene.device, scene.pad.points)
+    numbered = list(points.by_number.items())
+    solved = dict(zip(points.by_number, solve_points(numbered, points.on_grid, 2), strict=True))
+    write_solved(folder / "results/tiny/pad/model.h5", solved, {}, points.design)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def pressed():
+    """The central point of Table 1, with its pad and the contact on the pads' grid."""
+    return central_of_table_1()
+
+
+@pytest.fixture
+def here(ran, tmp_path, monkeypatch):
+    """A copy of this folder, as the working folder."""
+    shutil.copytree(ran, tmp_path / "copy")
+    monkeypatch.chdir(tmp_path / "copy")
+    return tmp_path / "copy"
+
+
+def test_its_own_value_gives_the_answer_of_the_run(here):
+    scene = PressedScene("tiny.yaml")
+    as_run, same, other = what_if(scene, "device.spring_N_per_m=800,700")
+    said = answer(scene.with_device(scene.device))
+    assert as_run["release_V"] == said.release_V["quantiles"]["0.5"]
+    assert {**same, "value": AS_RUN} == as_run
+    assert other["pull_in_V"] < as_run["pull_in_V"]
+
+
+def test_the_command_writes_a_table_and_a_picture(here, capsys):
+    assert main(["tiny.yaml", "gap_um=3,3.49,3.7"]) == 0
+    lines = capsys.readouterr().out
+    assert "gap_um = 3.7: closes at" in lines.replace("\n ", "")
+    with (here / "tiny_gap_um.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [row["value"] for row in rows] == [AS_RUN, "3", "3.49", "3.7"]
+    pull_in_V = [float(row["pull_in_V"]) for row in rows[1:]]
+    assert pull_in_V == sorted(pull_in_V)
+    assert (here / "tiny_gap_um.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("contact.pixels=128", "copy the scene, change it and run it"),
+        ("gap=3", "gap_um"),
+        ("gap_um=wide", "is no number"),
+        ("gap_um=-1", "gap_um"),
+    ],
+)
+def test_what_no_pad_answers_is_one_line(here, capsys, change, message):
+    assert main(["tiny.yaml", change]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert message in line
+
+
+def test_a_scene_that_changed_or_never_ran_is_told(here, capsys):
+    (here / "other.yaml").write_text(SCENE.replace("tiny", "other"))
+    assert main(["other.yaml", "gap_um=3"]) == 1
+    assert "asperity run other.yaml answer" in capsys.readouterr().err
+    (here / "tiny.yaml").write_text(SCENE.replace("800", "810"))
+    assert main(["tiny.yaml", "gap_um=3"]) == 1
+    assert "changed since its pads were pressed" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("changes", [OTHERS[1], OTHERS[2], OTHERS[-1]], ids=str)
+def test_another_device_releases_as_on_a_pad_that_is_pressed_for_it(pressed, changes):
+    """All twelve: `python -m evidence pad.other_devices`."""
+    point, pad, contact = pressed
+    row = compared(point, pad, contact, changes)
+    assert abs(row["release_V"] - row["pressed_anew_V"]) <= row["error_V"]
