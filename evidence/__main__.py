@@ -20,6 +20,7 @@ RENAMED = {
     "pad.budget": "answer.budget",
     "pad.direct": "answer.direct",
     "pad.loop": "circuit.loop",
+    "pad.other_devices": "answer.other_devices",
     "pad.rare_failures": "failure.rare_failures",
     "pad.touch": "switch.touch",
     "pad.two_loops": "failure.two_loops",
