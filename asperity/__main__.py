@@ -5,6 +5,7 @@ import importlib.metadata
 import importlib.util
 import os
 import re
+import shlex
 import sys
 import webbrowser
 from functools import partial
@@ -285,7 +286,20 @@ def _open(chosen: argparse.Namespace) -> int:
         return _refuse(f"{report}: no such report; asperity run {chosen.scene}")
     webbrowser.open(report.resolve().as_uri())
     print(report)
+    if _is_older(report):
+        print(
+            f"it is older than the results beside it; asperity run {shlex.quote(chosen.scene)}"
+            " renews it"
+        )
     return 0
+
+
+def _is_older(report: Path) -> bool:
+    """Whether a result was made after the page, which may be of a former version then."""
+    from workflow.files.checksums import recorded
+
+    made = report.stat().st_mtime
+    return any(path.stat().st_mtime > made for path in recorded(report.parent) if path != report)
 
 
 def _demo(chosen: argparse.Namespace) -> int:

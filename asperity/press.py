@@ -220,7 +220,7 @@ def press(
         raise InputError(f"attraction = {attraction!r:.60}: {ATTRACTION}")
     if h_macro is None and h_prime != 0.0:
         raise InputError(
-            f"h_prime = {h_prime!r:.60} without h_macro: the size effect of a hardness; give"
+            f"h_prime = {h_prime!s:.60} without h_macro: the size effect of a hardness; give"
             " h_macro, too"
         )
     by_load = loads_nN is not None
