@@ -29,6 +29,7 @@ COMMANDS = {
     "film": "what measured files show, a scene of them, and its run; short: asperity FILES",
     "demo": "a small run on a published diamond film; its page opens",
     "what-if": "the answer of a scene that has run, with another device on its pads",
+    "sweep": "run a scene for several values of one of its keys",
     "scenes": "list the scenes that ship",
     "targets": "list the stages that a run can be held to",
     "new": "write a scene file to start from",
@@ -59,6 +60,9 @@ def main(arguments: list[str] | None = None) -> int:
         _become("-m", "workflow.compare", chosen.first, chosen.second)
     if chosen.command == "what-if":
         _become("-m", "workflow.run.what_if", chosen.scene, *chosen.changes)
+    if chosen.command == "sweep":
+        hours = ["--hours", f"{chosen.hours:g}"] if chosen.hours else []
+        _become("-m", "workflow.run.sweep", chosen.scene, chosen.values, *hours)
     if chosen.command == "schema":
         print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
     elif chosen.command == "scenes":
@@ -138,6 +142,7 @@ def _parser() -> argparse.ArgumentParser:
         added[name].add_argument(
             "--cores", type=_cores, default="all", help="how many may work at once; default: all"
         )
+    for name in ("run", "plan", "film", "demo", "sweep"):
         added[name].add_argument(
             "--hours", type=_hours, help="longest run that is not refused; default: 12"
         )
@@ -149,6 +154,9 @@ def _parser() -> argparse.ArgumentParser:
         metavar="KEY=VALUES",
         help="hold_voltage_V=30, gap_um=1,1.5,2, material=aluminium; each key by itself",
     )
+    sweep = added["sweep"]
+    sweep.add_argument("scene", help="name of a shipped scene, or path of a YAML file")
+    sweep.add_argument("values", metavar="KEY=VALUES", help="for instance contact.pixels=128,256")
     added["new"].add_argument("file", help="for instance film.yaml")
     comparison = added["compare"]
     comparison.add_argument("first", help="for instance results/ci")
