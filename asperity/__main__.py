@@ -5,6 +5,7 @@ import importlib.metadata
 import importlib.util
 import os
 import re
+import shlex
 import sys
 import webbrowser
 from functools import partial
@@ -28,6 +29,7 @@ COMMANDS = {
     "film": "what measured files show, a scene of them, and its run; short: asperity FILES",
     "demo": "a small run on a published diamond film; its page opens",
     "what-if": "the answer of a scene that has run, with another device on its pads",
+    "sweep": "run a scene for several values of one of its keys",
     "scenes": "list the scenes that ship",
     "targets": "list the stages that a run can be held to",
     "new": "write a scene file to start from",
@@ -61,6 +63,9 @@ def main(arguments: list[str] | None = None) -> int:
         _become("-m", "workflow.run.what_if", chosen.scene, *chosen.changes)
     if chosen.command == "export":
         _become("-m", "workflow.export", chosen.scene, chosen.folder)
+    if chosen.command == "sweep":
+        hours = ["--hours", f"{chosen.hours:g}"] if chosen.hours else []
+        _become("-m", "workflow.run.sweep", chosen.scene, chosen.values, *hours)
     if chosen.command == "schema":
         print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
     elif chosen.command == "scenes":
@@ -140,6 +145,7 @@ def _parser() -> argparse.ArgumentParser:
         added[name].add_argument(
             "--cores", type=_cores, default="all", help="how many may work at once; default: all"
         )
+    for name in ("run", "plan", "film", "demo", "sweep"):
         added[name].add_argument(
             "--hours", type=_hours, help="longest run that is not refused; default: 12"
         )
@@ -153,6 +159,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     added["export"].add_argument("scene", help="name or file of a scene that has run")
     added["export"].add_argument("folder", help="folder to write, new or empty")
+    sweep = added["sweep"]
+    sweep.add_argument("scene", help="name of a shipped scene, or path of a YAML file")
+    sweep.add_argument("values", metavar="KEY=VALUES", help="for instance contact.pixels=128,256")
     added["new"].add_argument("file", help="for instance film.yaml")
     comparison = added["compare"]
     comparison.add_argument("first", help="for instance results/ci")
@@ -282,7 +291,20 @@ def _open(chosen: argparse.Namespace) -> int:
         return _refuse(f"{report}: no such report; asperity run {chosen.scene}")
     webbrowser.open(report.resolve().as_uri())
     print(report)
+    if _is_older(report):
+        print(
+            f"it is older than the results beside it; asperity run {shlex.quote(chosen.scene)}"
+            " renews it"
+        )
     return 0
+
+
+def _is_older(report: Path) -> bool:
+    """Whether a result was made after the page, which may be of a former version then."""
+    from workflow.files.checksums import recorded
+
+    made = report.stat().st_mtime
+    return any(path.stat().st_mtime > made for path in recorded(report.parent) if path != report)
 
 
 def _demo(chosen: argparse.Namespace) -> int:

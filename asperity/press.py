@@ -128,6 +128,20 @@ class PressedMap(Shown):
         site_nm2 = np.prod(self.lengths_nm) / spots.size
         return np.sort(sizes)[::-1] * site_nm2
 
+    def plot_pressures(self, bins: int = 40) -> Any:
+        """How much area carries which pressure, a line a load, as a Matplotlib figure."""
+        with needs("plot"):
+            import matplotlib.pyplot as plt
+        figure, axes = plt.subplots(figsize=(5.0, 3.6), layout="constrained")
+        edges = np.linspace(0.0, float(self.pressure_GPa.max()), bins + 1)
+        site_nm2 = float(np.prod(self.lengths_nm)) / self.pressure_GPa[0].size
+        for load_nN, pressure in zip(self.loads_nN, self.pressure_GPa, strict=True):
+            sites, _ = np.histogram(pressure[pressure > 0.0], edges)
+            axes.stairs(sites * site_nm2, edges, label=f"{load_nN:.4g} nN")
+        axes.set(xlabel="pressure (GPa)", ylabel="area in contact (nm²)")
+        axes.legend()
+        return figure
+
     def plot(self, load: int = -1) -> Any:
         """Pressure and gap at one of the loads, by its place in `loads_nN`, as a Matplotlib
         figure.
@@ -206,7 +220,7 @@ def press(
         raise InputError(f"attraction = {attraction!r:.60}: {ATTRACTION}")
     if h_macro is None and h_prime != 0.0:
         raise InputError(
-            f"h_prime = {h_prime!r:.60} without h_macro: the size effect of a hardness; give"
+            f"h_prime = {h_prime!s:.60} without h_macro: the size effect of a hardness; give"
             " h_macro, too"
         )
     by_load = loads_nN is not None

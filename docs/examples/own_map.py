@@ -6,9 +6,6 @@
 # 4.0), pressed on ruby.
 
 # %%
-import matplotlib.pyplot as plt
-import numpy as np
-
 import asperity as asp
 from asperity.guards.bundle import ROOT
 
@@ -32,9 +29,4 @@ pressed.plot().savefig("own_map.png", dpi=120)
 # with the noise of its instrument, and without the roughness that the tip misses.
 
 # %%
-figure, axes = plt.subplots(figsize=(5.5, 3.4), layout="constrained")
-for load_nN, pressure_GPa in zip(pressed.loads_nN, pressed.pressure_GPa):
-    axes.hist(pressure_GPa[pressure_GPa > 0], np.linspace(0, 20, 41), label=f"{load_nN:g} nN")
-axes.set(xlabel="pressure (GPa)", ylabel="sites in contact")
-axes.legend()
-figure.savefig("pressures.png", dpi=120)
+pressed.plot_pressures().savefig("pressures.png", dpi=120)

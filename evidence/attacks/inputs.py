@@ -34,6 +34,8 @@ PLACE, BALANCE = 0.03, 0.01
 """Of landed share and capacitance, which have not six digits: balances are sought to a thousandth
 of a nanometre of some ten. Of seed 741128 one of 150 beams lands in jerks, where rounding moves its
 capacitance by 0.15 %."""
+PIXELS = 32
+MECHANICS = ("asperity", "coupled", "adhesive")
 JUMP = 0.02
 """Of a voltage from one stress to the next, over the largest: a mesh moves a release by some per
 cent where it tears off in jerks (`tests/mesoscale/switch/test_hard_beams.py`)."""
@@ -44,16 +46,19 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--presses", type=int, default=1000)
     parser.add_argument("--devices", type=int, default=600)
+    parser.add_argument("--sweeps", type=int, default=4, help="of stress")
     parser.add_argument("--contacts", type=int, default=400, help="of each mechanics")
+    parser.add_argument("--mechanics", nargs="+", choices=MECHANICS, default=MECHANICS)
+    parser.add_argument("--pixels", type=int, default=PIXELS, help="of a contact, along a side")
 
 
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """A row for each kind."""
     yield from table(presses(given.seed, given.presses))
     yield from table(devices(given.seed, given.devices))
-    yield from table(stresses(given.seed, 4))
-    for mechanics in ("asperity", "coupled", "adhesive"):
-        yield from table(contacts(given.seed, given.contacts, mechanics))
+    yield from table(stresses(given.seed, given.sweeps))
+    for mechanics in given.mechanics:
+        yield from table(contacts(given.seed, given.contacts, mechanics, given.pixels))
 
 
 def _tried(kind: str, attempt: Callable[[], str]) -> Attack:
@@ -213,15 +218,14 @@ def _swept(rng: np.random.Generator) -> str:
     return ""
 
 
-def contacts(seed: int, count: int, mechanics: str) -> Iterator[Attack]:
+def contacts(seed: int, count: int, mechanics: str, pixels: int = PIXELS) -> Iterator[Attack]:
     """Cycles of one mechanics, of inputs far beyond Table 1."""
     for number in range(count):
         rng = np.random.default_rng([seed, 4, number])
-        yield _tried(f"contact, {mechanics}", lambda rng=rng: _cycled(rng, mechanics))
+        yield _tried(f"contact, {mechanics}", lambda rng=rng: _cycled(rng, mechanics, pixels))
 
 
-def _cycled(rng: np.random.Generator, mechanics: str) -> str:
-    pixels = 32
+def _cycled(rng: np.random.Generator, mechanics: str, pixels: int) -> str:
     length = 10.0 ** rng.uniform(1, 3.3)
     modulus = 10.0 ** rng.uniform(-1, 3)
     plastic = bool(rng.random() < 0.5)

@@ -60,14 +60,17 @@ def arguments(parser: Any) -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--count", type=int, default=38, help="ends; each way comes in turn")
     parser.add_argument("--scene", choices=SCENES, default="contact")
+    parser.add_argument("--only", choices=WAYS, help="this way alone; default: each in turn")
 
 
 def rows(given: Any) -> Iterator[dict[str, Any]]:
     """A row for each way."""
-    yield from campaign_table(campaign, given.scene, given.count, given.seed)
+    yield from campaign_table(campaign, given.scene, given.count, given.seed, given.only)
 
 
-def campaign(folder: Path, scene: str, ends: int, seed: int) -> Iterator[Attack]:
+def campaign(
+    folder: Path, scene: str, ends: int, seed: int, only: str | None = None
+) -> Iterator[Attack]:
     """The attacks of one scene; a folder that ends with other results makes a fault of the last of
     them.
     """
@@ -80,6 +83,8 @@ def campaign(folder: Path, scene: str, ends: int, seed: int) -> Iterator[Attack]
         for way in WAYS
         if scene == "glass" or (LAMMPS.upper() not in way and "LAMMPS" not in way)
     ]
+    if only is not None:
+        ways = [only]
     rng = random.Random(seed)
     for start in range(0, ends, ENDS_PER_FOLDER):
         place = folder / f"{scene}_{seed}_{start}"

@@ -121,7 +121,7 @@ def commanded(folder: Path, *arguments: str) -> tuple[int, str, float]:
 
 CONTACT = scene(
     "contact: {pixels: 64}",
-    "uncertainty: {seeds: 1, direct_runs: 200, response: polynomial}",
+    "uncertainty: {seeds: 1, direct_runs: 200}",
 )
 GLASS = scene(
     "compute: [hardness]",

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from mesoscale.extras import needs
+from mesoscale.uncertainty.likeliest_process import likeliest
 
 Array = NDArray[np.float64]
 
@@ -45,6 +46,10 @@ class Process:
     ----------
     x : points of the runs, shape (m, k); columns that do not vary are left out.
     y : values, shape (m,).
+
+    Raises
+    ------
+    InputError : the likeliest process was not found.
     """
 
     def __init__(self, x: Array, y: Array):
@@ -54,35 +59,20 @@ class Process:
         self.low = x.min(axis=0)
         self.width = np.ptp(x, axis=0)
         self.sample = ot.Sample
-        count = int((self.width > 0).sum())
-        kernel = ot.MaternModel([2.0] * count, [1.0], 2.5)
+        scaled = self._scaled(x)
+        process = likeliest(np.array(scaled), y)
+        kernel = ot.MaternModel(process.lengths, [process.amplitude], 2.5)
         kernel.activateNuggetFactor(True)
-        # a likelihood that is flat in some input ends by its number of calls; runs of the model
-        # judge the process
-        ot.Log.Show(0)
-        fitted = self._fitted(x, y, kernel)
-        kernel = fitted.getCovarianceModel()
-        # OpenTURNS 1.27 may leave it as given; the likeliest is this one
-        if kernel.getAmplitude()[0] == 1.0:
-            scaled = self._scaled(x)
-            left = y - np.array(fitted.getMetaModel()(scaled))[:, 0]
-            correlation = np.array(kernel.discretize(scaled))
-            square = left @ np.linalg.solve(correlation, left) / y.size
-            kernel.setAmplitude([np.sqrt(square)])
-            fitted = self._fitted(x, y, kernel, optimize=False)
-        regression = ot.GaussianProcessRegression(fitted)
+        kernel.setNuggetFactor(process.noise)
+        trend = ot.LinearBasisFactory(kernel.getInputDimension()).build()
+        fitter = ot.GaussianProcessFitter(scaled, ot.Sample(y[:, None]), kernel, trend)
+        # its own search ends far from the maximum, where the last digits of the values put it
+        fitter.setOptimizeParameters(False)
+        fitter.run()
+        regression = ot.GaussianProcessRegression(fitter.getResult())
         regression.run()
         self.mean = regression.getResult().getMetaModel()
         self.covariance = ot.GaussianProcessConditionalCovariance(regression.getResult())
-
-    def _fitted(self, x: Array, y: Array, kernel: Any, optimize: bool = True) -> Any:
-        import openturns as ot
-
-        trend = ot.LinearBasisFactory(kernel.getInputDimension()).build()
-        fitter = ot.GaussianProcessFitter(self._scaled(x), ot.Sample(y[:, None]), kernel, trend)
-        fitter.setOptimizeParameters(optimize)
-        fitter.run()
-        return fitter.getResult()
 
     def _scaled(self, x: Array) -> Any:
         used = self.width > 0

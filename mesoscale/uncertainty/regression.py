@@ -13,6 +13,10 @@ MEAN = 10.0
 of the constant term, by which LARS takes one way or another. Far from 0 the constant enters
 first."""
 
+LEAST = 1e-9
+"""Coefficient of a term, in deviations. Where few terms reproduce all values, LARS takes others
+from what rounding left of them."""
+
 
 def sparse_chaos(
     x: Array, y: Array, ranges: Array, transform: str = "identity", degree: int = 3
@@ -75,7 +79,9 @@ def sparse_chaos(
         ot.LeastSquaresStrategy(selection),
     )
     chaos.run()
-    chosen = [int(k) for k in chaos.getResult().getIndices()]
+    result = chaos.getResult()
+    shares = np.abs(np.array(result.getCoefficients())[:, 0])
+    chosen = [int(k) for k in np.array(result.getIndices())[shares > LEAST]]
     degrees = np.zeros((len(chosen), inputs), int)
     terms = np.array([list(enumerate_terms(k)) for k in chosen], int)
     degrees[:, varying] = terms.reshape(-1, len(varying))

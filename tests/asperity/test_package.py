@@ -3,6 +3,7 @@ the schema.
 """
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -14,6 +15,7 @@ import pytest
 import yaml
 
 from asperity.__main__ import main
+from workflow.files.results import write_text
 from workflow.scene import SCENES, load_scene
 from workflow.scene.documented import SCHEMA, scene_schema
 
@@ -119,3 +121,21 @@ def test_plan_runs_nothing_outside_the_checkout(tmp_path):
     shown = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "report" in shown.stdout + shown.stderr
     assert not list(tmp_path.glob("results/*"))
+
+
+def test_a_page_that_is_older_than_its_results_is_opened_with_a_word(tmp_path, monkeypatch, capsys):
+    """A page of a former version beside results of this one, say."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("webbrowser.open", lambda address: True)
+    page = tmp_path / "results" / "film" / "report.html"
+    page.parent.mkdir(parents=True)
+    write_text(page.parent / "law.csv", "x\n")
+    write_text(page, "<html>\n")
+    os.utime(page.parent / "law.csv", (1e9, 1e9))
+    assert main(["open", "film"]) == 0
+    assert "older" not in capsys.readouterr().out
+    os.utime(page, (5e8, 5e8))
+    assert main(["open", "film"]) == 0
+    assert "it is older than the results beside it; asperity run film renews it" in (
+        capsys.readouterr().out
+    )

@@ -112,6 +112,9 @@ def test_neighbours_lower_a_periodic_sphere():
 def test_a_pressed_map_is_drawn_and_says_what_it_is():
     pressed = asp.press(SPHERE, SIDE, [100.0, 1000.0], E_STAR)
     assert [axes.get_xlabel() for axes in pressed.plot().axes[:2]] == ["x (µm)"] * 2
+    lines = pressed.plot_pressures().axes[0].patches
+    shown_nm2 = [line.get_data().values.sum() for line in lines]
+    assert shown_nm2 == pytest.approx(pressed.area_share * SIDE**2)
     assert repr(pressed) == "Map of 128 x 128 sites; loads: 2"
     assert list(pressed.lines())[2].startswith("1000 nN: ")
 

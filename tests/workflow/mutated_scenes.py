@@ -83,12 +83,25 @@ def _given_key(rng: random.Random, content: dict[str, Any]) -> None:
 
 
 def _scaled_number(rng: random.Random, content: dict[str, Any]) -> None:
-    numbers = [
-        way for way in _places(content) if type(_owner(content, way)[way[-1]]) in (int, float)
-    ]
+    numbers = _numbers(content)
     if numbers:
         way = rng.choice(numbers)
         _owner(content, way)[way[-1]] *= rng.choice((-1, 0, 0.5, 2, 1e-9, 1e9))
+
+
+def _other_number(rng: random.Random, content: dict[str, Any]) -> None:
+    """A number of the same kind, up to twice as large or half as large."""
+    numbers = _numbers(content)
+    if numbers:
+        way = rng.choice(numbers)
+        owner, name = _owner(content, way), way[-1]
+        other = owner[name] * 2.0 ** rng.uniform(-1.0, 1.0)
+        owner[name] = round(other) if isinstance(owner[name], int) else other
+
+
+def _numbers(content: dict[str, Any]) -> list[tuple[Any, ...]]:
+    """The way to each number of a scene."""
+    return [way for way in _places(content) if type(_owner(content, way)[way[-1]]) in (int, float)]
 
 
 def _misspelt(rng: random.Random, content: dict[str, Any]) -> None:
@@ -127,6 +140,15 @@ def _broken_text(rng: random.Random, text: str) -> str:
     if kind == 2:
         return text[:place]
     return text[:place] + chr(rng.randrange(1, 256)) + text[place + 1 :]
+
+
+def varied(seed: int) -> str:
+    """Text of a shipped scene, one to four of whose numbers are halved, doubled or between."""
+    rng = random.Random(seed)
+    content = copy.deepcopy(rng.choice(list(base_scenes().values())))
+    for _ in range(rng.randint(1, 4)):
+        _other_number(rng, content)
+    return json.dumps(content, ensure_ascii=False, indent=1)
 
 
 def mutated(seed: int) -> str:

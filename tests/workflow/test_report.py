@@ -15,13 +15,16 @@ from PIL import Image
 
 from mesoscale.inputs.table import from_rows
 from tests.workflow.browser import probed
+from workflow.files.results import write_csv
 from workflow.report.available import Results
 from workflow.report.drawing import draw
 from workflow.report.gates import gates_of, trust
 from workflow.report.numbers import show
+from workflow.report.page import Figure
 from workflow.report.render import render
 from workflow.report.stages import pad
 from workflow.report.stages.humidity import against_humidity, begins_to_stick
+from workflow.report.stages.humidity import describe as describe_humidity
 from workflow.report.stages.inputs import _distribution, stated_beside_computed
 from workflow.report.studies import Error, KnobTable, Value, pareto_front, recommended, tables_of
 
@@ -426,3 +429,16 @@ def test_the_page_says_from_which_humidity_on_the_switch_sticks():
     )
     assert said.endswith("at none of these humidities (their volume stays).")
     assert "<svg" in against_humidity([{**row, "stuck": ""} for row in rows])
+
+
+def test_a_switch_that_sticks_in_any_air_has_no_empty_axes(tmp_path):
+    row = dict.fromkeys(("reach_nm", "energy_mJ_m2", "pull_off_kPa"), 1.0)
+    row |= {"opening": "balance", "release_V": 0.0, "points": 3}
+    rows = [{**row, "humidity": 0.1, "stuck": 1.0}, {**row, "humidity": 0.9, "stuck": 1.0}]
+    for released, drawn in ((0.0, 0), (2.0, 1)):
+        rows[0]["release_V"] = released
+        write_csv(tmp_path / "humidity/humidity.csv", rows)
+        results = Results(tmp_path, [tmp_path / "humidity/humidity.csv"], "any")
+        shown = describe_humidity(results)
+        assert shown is not None
+        assert sum(isinstance(block, Figure) for block in shown.blocks) == drawn

@@ -146,6 +146,16 @@ def load_csv(path: str | Path) -> list[dict[str, str]]:
     return rows
 
 
+def has_other_columns(path: Path) -> bool:
+    """Whether a CSV result file has not the columns of this version; its rows are not read."""
+    schema = schema_of(path)
+    if schema is None or path.suffix != ".csv":
+        return False
+    with path.open(newline="", encoding="utf-8", errors="replace") as stream:
+        header = next(csv.reader(stream), [])
+    return bool(schema.misfit(header, ()))
+
+
 def load_numbers(path: str | Path) -> list[dict[str, float]]:
     """Read a CSV result file of numbers alone; an empty cell is NaN."""
     return [{name: float(value or "nan") for name, value in row.items()} for row in load_csv(path)]

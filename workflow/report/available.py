@@ -115,6 +115,11 @@ class Results:
         """Whether an input of this scene comes from the stage."""
         return any(row["origin"] == stage for row in self.rows("inputs.csv"))
 
+    def uses_input(self, name: str) -> bool:
+        """Whether the contact of this scene has this input."""
+        rows = self.csv("inputs.csv") if self.has("inputs.csv") else []
+        return any(row["parameter"] == name for row in rows)
+
     def origin_of(self, stage: str) -> str:
         """Badge of a stage: computed or synthetic, and whether this scene uses it."""
         if stage == "topography" and self.json("topography/parameters.json").get("synthetic"):

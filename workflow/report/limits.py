@@ -27,6 +27,8 @@ def limits(results: Results) -> list[str]:
         of_model.append(_UNDEFORMED)
     if contact.get("mechanics") == "coupled" and contact.get("attraction") == "clamped":
         of_model.append(_CLAMPED)
+    is_humid = contact.get("air") or results.uses_input("humidity")
+    no_water = "" if is_humid else ", no water between the walls"
     return [
         (
             "The law of attraction is a choice, not a measurement: the first screen shows the"
@@ -38,8 +40,5 @@ def limits(results: Results) -> list[str]:
             "Only few asperities carry a square micrometre, so the law of one cell differs much"
             " between surfaces."
         ),
-        (
-            "No creep unless the scene asks for it (history); no liquid films, no charging, no"
-            " sliding."
-        ),
+        f"No creep unless the scene asks for it (history); no charging, no sliding{no_water}.",
     ]

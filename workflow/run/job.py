@@ -22,10 +22,12 @@ from typing import Any, TextIO, TypeVar
 
 from pydantic import BaseModel
 
+from asperity.guards.bundle import ROOT
 from asperity.guards.errors import InputError
 from asperity.guards.foreign_text import shown
 from workflow.files.checksums import file_checksum, is_damaged, record_of
 from workflow.run.ownership import join
+from workflow.run.shared import key_of, leave_note, take
 from workflow.schemas import UnfitTable
 
 PACKAGES = (
@@ -41,6 +43,8 @@ PACKAGES = (
     "openturns",
     "snakemake",
 )
+OF_PLACES = {"contents", "work", "store"}
+"""Parameters that name places on this machine; what they hold is told by the input files."""
 SECONDS_BETWEEN_PROGRESS_LINES = 15.0
 # columns and keys that differ from run to run: no result
 MACHINE_TIME = re.compile(r"(wall|cpu|started|ended)_(s|share)$|rss_MB$")
@@ -65,8 +69,7 @@ class Job:
     @cached_property
     def provenance(self) -> dict[str, Any]:
         """Rule, hash of the settings and input files, and package versions."""
-        # `contents` repeats what the input files hold, and names places of this machine
-        settings = {name: value for name, value in self.params.items() if name != "contents"}
+        settings = {name: value for name, value in self.params.items() if name not in OF_PLACES}
         digest = hashlib.sha256(json.dumps(settings, sort_keys=True, default=str).encode())
         for path in self.inputs:
             ours = record_of(path).is_file()  # a file of the user may have any encoding
@@ -175,9 +178,14 @@ def without_machine_times(content: Any) -> Any:
 
 
 @contextmanager
-def job(snakemake: Any) -> Iterator[Job]:
+def job(snakemake: Any, shared: bool = False) -> Iterator[Job]:
     """Run a script's body: a failure is one line on the console, with the traceback in the rule's
     log.
+
+    Parameters
+    ----------
+    shared : take the results from a scene beside this one that has made them from the same inputs;
+        the body then does not run.
     """
     log_path = Path(snakemake.log[0])  # results/<scene>/logs/...
     try:
@@ -196,7 +204,16 @@ def job(snakemake: Any) -> Iterator[Job]:
         )
         try:
             _refuse_damaged(inputs)
+            key = ""
+            if shared:
+                of_job = {"wildcards": running.wildcards, **running.provenance}
+                key = key_of(of_job, own_commit(ROOT))
+            if other := take(log_path, map(str, snakemake.output), key):
+                running.say(f"taken from {other}, which made it from the same inputs")
+                leave_note(log_path, key)
+                sys.exit(0)
             yield running
+            leave_note(log_path, key)
         except Exception as error:
             line = shown(f"ERROR {running.label}: {_one_line(error, log_path)}")
             print(line, file=sys.stderr, flush=True)

@@ -5,6 +5,7 @@ from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 from workflow.files.checksums import recorded
+from workflow.run.damage import made_place
 from workflow.scene.renamed import SINCE, STAGES, place_now
 
 REMOVE = "nothing here reads them; remove them when you need them no more"
@@ -43,12 +44,7 @@ def foreign_results(results: Path, is_made: Callable[[str], bool]) -> list[str]:
     ----------
     is_made : whether a rule makes the file or the folder of this path.
     """
-    foreign = []
-    for path in recorded(results):
-        folders_above = path.relative_to(results).parents
-        places = (path, *(results / folder for folder in folders_above))
-        if not any(is_made(str(place)) for place in places):
-            foreign.append(path)
+    foreign = [path for path in recorded(results) if made_place(path, results, is_made) is None]
     before = [path for path in foreign if place_now(path.relative_to(results).as_posix())]
     folders = sorted({path.relative_to(results).parts[0] for path in before})
     lines = [f"{results / name} is `{STAGES[name]}` since {SINCE}; {REMOVE}" for name in folders]

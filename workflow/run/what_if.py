@@ -8,13 +8,14 @@ import argparse
 import csv
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from asperity.guards.foreign_text import shown, wrapped
 from asperity.words import device_of
-from mesoscale.answer.release import Answer, answer
+from mesoscale.answer.release import answer
 from mesoscale.answer.switches import PadModel
 from mesoscale.answer.what_if import with_device
 from mesoscale.errors import InputError
@@ -129,25 +130,26 @@ def what_if(scene: PressedScene, word: str) -> Iterator[dict[str, Any]]:
         devices[value] = device
     for value, device in devices.items():
         try:
-            numbers = _numbers(answer(scene.with_device(device)))
+            numbers = numbers_of(asdict(answer(scene.with_device(device))))
         except InputError as error:
             yield {"value": value, "reason": str(error)}
         else:
             yield {"value": value, **numbers, "reason": ""}
 
 
-def _numbers(said: Answer) -> dict[str, float]:
-    release_V = said.release_V["quantiles"]
+def numbers_of(answer: Mapping[str, Any]) -> dict[str, float]:
+    """The columns of a row, but for its value and reason, from `answer` of pad_switch.json."""
+    release_V = answer["release_V"]["quantiles"]
     return {
-        "pull_in_V": said.pull_in_V["quantiles"]["0.5"],
+        "pull_in_V": answer["pull_in_V"]["quantiles"]["0.5"],
         "release_5_V": release_V["0.05"],
         "release_V": release_V["0.5"],
         "release_95_V": release_V["0.95"],
-        "median_error_V": said.quantile_error_V["0.5"],
-        "stuck": said.stuck["value"],
-        "switches": said.points,
-        "no_answer": len(said.refused),
-        "continued": said.deepened,
+        "median_error_V": answer["quantile_error_V"]["0.5"],
+        "stuck": answer["stuck"]["value"],
+        "switches": answer["points"],
+        "no_answer": len(answer["refused"]),
+        "continued": answer["deepened"],
     }
 
 
@@ -179,7 +181,11 @@ def write_table(path: Path, rows: Sequence[dict[str, Any]]) -> None:
 def draw_figure(path: Path, name: str, rows: Sequence[dict[str, Any]]) -> bool:
     """Draw release and pull-in against the values, where these are numbers; says whether."""
     try:
-        solved = [(float(row["value"]), row) for row in rows[1:] if not row["reason"]]
+        solved = [
+            (float(row["value"]), row)
+            for row in rows
+            if row["value"] != AS_RUN and not row["reason"]
+        ]
     except ValueError:
         return False
     if len(solved) < 2:

@@ -85,22 +85,35 @@ def _as_model(annotation: Any) -> type[BaseModel] | None:
     return None
 
 
+def _model_of_entries(annotation: Any) -> type[BaseModel] | None:
+    """The model of each entry of a list; none where entries are plain values."""
+    annotation = _strip_optional(annotation)
+    is_list = get_origin(annotation) in (tuple, list)
+    return _as_model(get_args(annotation)[0]) if is_list else None
+
+
 def field_at(location: tuple[Any, ...]) -> FieldInfo | None:
     """The deepest settings field on the way to `location`."""
-    model: type[BaseModel] | None = Scene
-    field = None
-    for step in location:
-        if model is None or step not in model.model_fields:
-            return field
-        field = model.model_fields[step]
-        model = _as_model(field.annotation)
-    return field
+    return _field_and_model(location)[0]
 
 
 def model_at(location: tuple[Any, ...]) -> type[BaseModel] | None:
-    if not location:
-        return Scene
-    field = field_at(location)
-    if field is None:
-        return None
-    return _as_model(field.annotation)
+    """The model whose keys stand at `location`; none where a plain value stands."""
+    return _field_and_model(location)[1]
+
+
+def _field_and_model(
+    location: tuple[Any, ...],
+) -> tuple[FieldInfo | None, type[BaseModel] | None]:
+    """The deepest field on the way, and the model that follows it."""
+    model: type[BaseModel] | None = Scene
+    field = None
+    for step in location:
+        if isinstance(step, int) and field is not None:
+            model = _model_of_entries(field.annotation)
+            continue
+        if model is None or step not in model.model_fields:
+            return field, model
+        field = model.model_fields[step]
+        model = _as_model(field.annotation)
+    return field, model

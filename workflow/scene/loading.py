@@ -253,6 +253,8 @@ def _explain(path: Path, error: Any) -> str:
         return f"{path}: tails: {renamed}; write `{TAILS[error['input']]}`"
     field = field_at(location)
     accepted = accepted_values(field) if field else error["msg"]
+    if error["type"] == "missing":
+        return f"{path}: {key}: missing; accepted is {accepted}"
     value = _cut(json.dumps(error["input"], ensure_ascii=False, default=str))
     if error["type"] == "json_invalid":
         return (

@@ -14,7 +14,7 @@ from workflow.files.results import Dataset, load_csv, write_h5
 from workflow.run.contact_settings import contact_settings
 from workflow.run.job import job
 
-with job(snakemake) as run:
+with job(snakemake, shared=True) as run:
     contact = contact_settings(snakemake.params.contact, snakemake)
     table = from_rows(load_csv(snakemake.input.inputs))
     runs = collocation_runs(table, *snakemake.params.bounds)

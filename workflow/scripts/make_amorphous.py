@@ -13,7 +13,7 @@ from workflow.files.results import write_csv, write_text
 from workflow.files.structures import load_structure, structure_text
 from workflow.run.job import job, settings_from_job
 
-with job(snakemake) as run:
+with job(snakemake, shared=True) as run:
     material = load_material(snakemake.input.material)
     settings = settings_from_job(NitrideGlassSettings, snakemake.params.glass)
     number = int(snakemake.wildcards.amorphous[1:])

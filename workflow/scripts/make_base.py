@@ -13,7 +13,7 @@ from atomistic.materials import load_material
 from workflow.files.results import atomic_path
 from workflow.run.job import job
 
-with job(snakemake) as run:
+with job(snakemake, shared=True) as run:
     base = base_of(load_material(snakemake.input.material))
     params = snakemake.params
     edge_A = float(load_data(snakemake.input.glass, ()).cell_A[0])

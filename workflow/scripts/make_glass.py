@@ -15,7 +15,7 @@ from atomistic.settings import GlassSettings
 from workflow.files.results import atomic_path, write_json
 from workflow.run.job import job, settings_from_job
 
-with job(snakemake) as run:
+with job(snakemake, shared=True) as run:
     material = load_material(snakemake.input.material)
     seed = int(snakemake.params.seed)
     settings = settings_from_job(GlassSettings, snakemake.params.glass)

@@ -11,12 +11,14 @@ from workflow.files.results import write_text
 from workflow.run.job import job
 from workflow.run.pads import points_of_job, write_solved
 
-with job(snakemake) as run:
+numbers = range(*snakemake.params.bounds)
+is_central = 0 in numbers  # its job also draws the first page
+
+with job(snakemake, shared=not is_central) as run:
     points, pad = points_of_job(snakemake)
-    numbers = range(*snakemake.params.bounds)
     solved = {}
     follows = False
-    if 0 in numbers:
+    if is_central:
         solved[0] = solve_point(
             points.by_number[0], points.on_grid, pad.cells, surfaces_of(0), run.progress
         )

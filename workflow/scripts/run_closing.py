@@ -20,7 +20,7 @@ from atomistic.settings import ClosingSettings
 from workflow.files.results import write_csv, write_json
 from workflow.run.job import job, settings_from_job
 
-with job(snakemake) as run:
+with job(snakemake, shared=True) as run:
     closing_run = settings_from_job(ClosingRun, snakemake.params.closing_run)
     settings = settings_from_job(ClosingSettings, snakemake.params.closing)
     protocol = settings_from_job(Protocol, snakemake.params.protocol)

@@ -12,7 +12,7 @@ from workflow.files.results import write_csv
 from workflow.files.structures import ScfStore
 from workflow.run.job import job, settings_from_job
 
-with job(snakemake) as run:
+with job(snakemake, shared=True) as run:
     dft = settings_from_job(DftSettings, snakemake.params.dft)
     name = snakemake.wildcards.crystal
     store = ScfStore(Path(snakemake.params.store))

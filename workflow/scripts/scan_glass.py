@@ -15,7 +15,7 @@ from workflow.files.results import load_csv, write_csv, write_json, write_text
 from workflow.files.structures import ScfStore, load_structure, structure_text
 from workflow.run.job import job, settings_from_job
 
-with job(snakemake) as run:
+with job(snakemake, shared=True) as run:
     material = load_material(snakemake.input.material)
     name = snakemake.wildcards.amorphous
     dft = settings_from_job(DftSettings, snakemake.params.dft)

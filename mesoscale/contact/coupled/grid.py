@@ -301,6 +301,8 @@ def _close_gaps(
     (around, stencil), (pressure, displacement) = near, solution
     first = np.where(free, -(gap + displacement), 0.0)
     largest = float(np.abs(first).max())
+    if largest == 0.0:  # closed to the last digit
+        return
     goal = max(goal / largest, share, SINGLE_SHARE)
     r = (first / largest).astype(np.float32)
     x, u, d, z = (np.zeros_like(r) for _ in range(4))

@@ -493,3 +493,14 @@ def test_rows_without_pressure_are_left_out_of_transforms(precision, error):
     np.testing.assert_allclose(
         whole.displacement_at(sites, pressure), exact[sites], atol=error * exact.max()
     )
+
+
+def test_gaps_that_are_closed_to_the_last_digit_are_left():
+    """Contact 82 of seed 20261129 (`evidence.attacks.inputs`) divided by what was left: nothing."""
+    displacement = np.array([0.5, -0.25, 2.0])
+    solution = (np.ones(3), displacement.copy())
+    nothing = np.empty(0)
+    free = np.ones(3, bool)
+    grid._close_gaps(None, nothing, free, (nothing, nothing), -displacement, solution, 0.1, 0.1)
+    assert (solution[0] == 1.0).all()
+    assert (solution[1] == displacement).all()

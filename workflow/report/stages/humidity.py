@@ -25,14 +25,12 @@ def describe(results: Results) -> Iterator[Block]:
         " (contact.air.contact_angles_deg): clean walls, 0°, are pulled most. Where liquid would be"
         " thinner than a molecule there is none; air this dry counts as dry."
     )
-    yield Figure(
-        against_humidity(rows),
-        f"{begins_to_stick(rows)} Left: release at central inputs; at zero the switch sticks."
-        " Right: share that sticks of the points with about this humidity, over all that is"
-        " uncertain, with its 95 % interval.",
-        wide=True,
-        front=True,
-    )
+    releases = any(float(row["release_V"] or 0.0) for row in rows)
+    some_free = any(float(row["stuck"] or 1.0) < 1.0 for row in rows)
+    if releases or some_free:
+        yield _figure(rows)
+    else:  # its axes would be empty
+        yield begins_to_stick(rows) or "The switch has no answer at any of these humidities."
     yield table(
         "The switch against humidity",
         rows,
@@ -46,6 +44,17 @@ def describe(results: Results) -> Iterator[Block]:
             "sticks": _sticking,
         },
         heads=2,
+    )
+
+
+def _figure(rows: list[CsvRow]) -> Figure:
+    return Figure(
+        against_humidity(rows),
+        f"{begins_to_stick(rows)} Left: release at central inputs; at zero the switch sticks."
+        " Right: share that sticks of the points with about this humidity, over all that is"
+        " uncertain, with its 95 % interval.",
+        wide=True,
+        front=True,
     )
 
 

@@ -1,0 +1,106 @@
+"""A scene run again for several values of one of its keys: table and picture of the release.
+
+For the command `asperity sweep`. Each value has a scene file of its own, which extends the scene,
+and results of its own. Jobs whose inputs are the same are done once (`workflow.run.shared`).
+"""
+
+import argparse
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from asperity.guards.foreign_text import shown, wrapped
+from asperity.guards.foreign_yaml import MistakenYaml
+from mesoscale.errors import InputError
+from workflow.files.results import load_json
+from workflow.run.what_if import draw_figure, line_of, numbers_of, write_table
+from workflow.scene import SceneError, load_scene
+from workflow.scene.loading import find_scene
+
+TARGET = "answer"
+
+
+def scenes_of(given: str, word: str) -> dict[str, Path]:
+    """Write a scene for each value of a key, and see that each is one.
+
+    Parameters
+    ----------
+    given : name or file of the scene.
+    word : the key with its sections, and the values, such as contact.pixels=128,256.
+
+    Returns
+    -------
+    The scene files by value.
+
+    Raises
+    ------
+    InputError : no key and values.
+    SceneError : a value that a scene does not accept.
+    """
+    key, equals, values = word.partition("=")
+    if not equals or not all(values.split(",")):
+        raise InputError(f"{word}: accepted is a key and its values: contact.pixels=128,256")
+    base = load_scene(given)
+    parent = given
+    if Path(given).suffix:
+        parent = str(find_scene(given).resolve())
+    files = {}
+    for value in values.split(","):
+        content: Any = yaml.safe_load(value)
+        for section in reversed(key.split(".")):
+            content = {section: content}
+        file = Path(f"{base.name}_{key.rpartition('.')[2]}_{value}.yaml")
+        head = {"extends": parent, "name": file.stem}
+        file.write_text(yaml.safe_dump(head | content, sort_keys=False), encoding="utf-8")
+        load_scene(str(file))
+        files[value] = file
+    return files
+
+
+def row_of(value: str, name: str) -> dict[str, Any]:
+    """What the finished run of a scene says, as a row of the table."""
+    content = load_json(f"results/{name}/answer/pad_switch.json")
+    if content["answer"] is None:
+        return {"value": value, "reason": content["answer_status"]}
+    return {"value": value, **numbers_of(content["answer"]), "reason": ""}
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the scenes one after the other, and write their table and picture."""
+    parser = argparse.ArgumentParser(prog="asperity sweep", description=__doc__)
+    parser.add_argument("scene")
+    parser.add_argument("values")
+    parser.add_argument("--hours", default="")
+    chosen = parser.parse_args(arguments)
+    key = chosen.values.partition("=")[0]
+    rows = []
+    try:
+        name = load_scene(chosen.scene).name
+        files = scenes_of(chosen.scene, chosen.values)
+        for value, file in files.items():
+            print(wrapped(shown(f"{file}: {key} = {value}")), flush=True)
+            command = [sys.executable, "-m", "asperity", "run", str(file), TARGET]
+            if chosen.hours:
+                command += ["--hours", chosen.hours]
+            if status := subprocess.run(command, check=False).returncode:
+                print(f"ERROR {file}: see above; what is finished is kept", file=sys.stderr)
+                return status
+            rows.append(row_of(value, file.stem))
+            print(wrapped(shown(line_of(key, rows[-1]))), flush=True)
+    except (InputError, MistakenYaml, SceneError, OSError, yaml.YAMLError) as error:
+        print(f"ERROR {shown(str(error))}", file=sys.stderr)
+        return 1
+    table = Path(f"{name}_{key.rpartition('.')[2]}.csv")
+    write_table(table, rows)
+    written = [str(table)]
+    if draw_figure(table.with_suffix(".png"), key, rows):
+        written.append(str(table.with_suffix(".png")))
+    print(f"written: {', '.join(written)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
