@@ -33,6 +33,7 @@ COMMANDS = {
     "scenes": "list the scenes that ship",
     "targets": "list the stages that a run can be held to",
     "new": "write a scene file to start from",
+    "export": "write maps and curves of a scene that has run for other programs",
     "compare": "say what differs between two folders of results",
     "schema": "print the JSON Schema of a scene",
     "serve": "offer contact cycle, law and pad over UM-Bridge",
@@ -60,6 +61,8 @@ def main(arguments: list[str] | None = None) -> int:
         _become("-m", "workflow.compare", chosen.first, chosen.second)
     if chosen.command == "what-if":
         _become("-m", "workflow.run.what_if", chosen.scene, *chosen.changes)
+    if chosen.command == "export":
+        _become("-m", "workflow.export", chosen.scene, chosen.folder)
     if chosen.command == "sweep":
         hours = ["--hours", f"{chosen.hours:g}"] if chosen.hours else []
         _become("-m", "workflow.run.sweep", chosen.scene, chosen.values, *hours)
@@ -154,6 +157,8 @@ def _parser() -> argparse.ArgumentParser:
         metavar="KEY=VALUES",
         help="hold_voltage_V=30, gap_um=1,1.5,2, material=aluminium; each key by itself",
     )
+    added["export"].add_argument("scene", help="name or file of a scene that has run")
+    added["export"].add_argument("folder", help="folder to write, new or empty")
     sweep = added["sweep"]
     sweep.add_argument("scene", help="name of a shipped scene, or path of a YAML file")
     sweep.add_argument("values", metavar="KEY=VALUES", help="for instance contact.pixels=128,256")

@@ -16,7 +16,7 @@ from mesoscale.errors import InputError
 from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
 from mesoscale.switch import States, switch_of
-from mesoscale.units import NM, VACUUM_PERMITTIVITY
+from mesoscale.theory.charging import charge_shift
 
 HERE = "this scene's points"
 SETTLE = {"common": "measure it", "each": "control it from device to device"}
@@ -273,7 +273,7 @@ def _moved_V(
         return pressed.reach_V(_changed(effect, pressed))
     if effect.charge_e_cm2 is not None:
         density = effect.charge_e_cm2 * elementary_charge * 1e4
-        return density * device.dielectric_nm * NM / (VACUUM_PERMITTIVITY * device.permittivity), ""
+        return float(charge_shift(density, device.dielectric_nm, device.permittivity)), ""
     if effect.squared_V2 is not None:
         left = release**2 - effect.squared_V2
         return release - float(np.sqrt(max(left, 0.0))), "; it may stick" * (left <= 0.0)

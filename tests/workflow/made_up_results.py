@@ -97,6 +97,8 @@ def _curves(root: Path) -> None:
                 "contact_area_nm2": Dataset(
                     0.3 * force, "nm^2", "area of contacting sites", ("point",)
                 ),
+                "asperities": Dataset(np.full(h.size, 9), "1", "asperities", ("point",)),
+                "sweeps": Dataset(np.ones(h.size, int), "1", "flow sweeps", ("point",)),
             }
     contact = {
         "length_nm": 1000.0,

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from evidence.pad.loop import central_pad
+from evidence.circuit.loop import central_pad
 from mesoscale.answer.departures import departed_properties, with_properties
 from mesoscale.answer.measured import narrowed, observed
 from mesoscale.answer.spread import properties_at
