@@ -82,11 +82,14 @@ _STATED = re.compile(r"(.+?)(?:\+-|±)(.+)")
 
 def _value_and_error(stated: Any) -> Any:
     """The two numbers of a text such as 72 +- 2; two numbers in a list as they are."""
-    if isinstance(stated, str) and (both := _STATED.fullmatch(stated.replace(" ", ""))):
-        return both.groups()
     if isinstance(stated, (list, tuple)) and len(stated) == 2:
-        return stated
-    raise ValueError("accepted are a value and its standard error, as in 72 +- 2")
+        return tuple(stated)
+    both = _STATED.fullmatch(str(stated).replace(" ", ""))
+    try:
+        value, error = both.groups() if both else ()
+        return float(value), float(error)
+    except ValueError:
+        raise ValueError("accepted are a value and its standard error, as in 72 +- 2") from None
 
 
 Positive = Annotated[float, Field(gt=0.0)]

@@ -220,8 +220,8 @@ def newton_step(
                 moved = nodal[e + j // 2, j % 2]
                 at_rest = rest[e + j // 2, j % 2]
                 drawn = pulled[e, i, j]
-                along = tension * moved + more * (moved + at_rest)
-                pushed -= bends[e, i, j] * moved + drawn * along
+                tension_part = tension * moved + more * (moved + at_rest)
+                pushed -= bends[e, i, j] * moved + drawn * tension_part
                 right[node, 2, turned] += drawn * (moved + at_rest)
 
                 # the matrix is symmetric: one half of it is enough

@@ -189,3 +189,17 @@ def test_files_of_the_system_are_neither_tables_nor_scans():
     ):
         with pytest.raises(InputError, match="of the system, not of data"):
             read()
+
+
+@pytest.mark.parametrize("stated", ["72 +- 2", "72 ± 2", "72+-2", "[72, 2]"])
+def test_a_measured_value_has_its_error(tmp_path, stated):
+    scene = load(tmp_path, f"device: {{measured: {{pull_in_V: {stated}}}}}")
+    assert scene.device.measured is not None
+    assert scene.device.measured.pull_in_V == (72.0, 2.0)
+
+
+@pytest.mark.parametrize("stated", ["72", "72 +- two", "[72, 2, 1]", "high"])
+def test_a_measured_value_without_an_error_is_one_line(tmp_path, stated):
+    (line,) = lines(tmp_path, f"device: {{measured: {{pull_in_V: {stated}}}}}")
+    assert "device.measured.pull_in_V" in line
+    assert "72 +- 2" in line

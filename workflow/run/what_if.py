@@ -119,6 +119,10 @@ def what_if(scene: PressedScene, word: str) -> Iterator[dict[str, Any]]:
         raise InputError(
             f"{word}: changes what pads are pressed from; copy the scene, change it and run it"
         )
+    if scene.device.measured and name != "hold_voltage_V":
+        raise InputError(
+            f"{word}: device.measured tells of the device as it is; another one was not measured"
+        )
     devices = {AS_RUN: scene.device}
     for value in values.split(","):
         changes = device_of([f"{name}={value}"])

@@ -51,9 +51,10 @@ def _type_words(annotation: Any) -> str:
     origin = get_origin(annotation)
     if origin is Annotated:
         inner, *extras = get_args(annotation)
-        return (
-            f"{_type_words(inner)} {_bounds(item for extra in extras for item in extra.metadata)}"
-        )
+        if inner is tuple or get_origin(inner) is tuple:
+            return "a value and its standard error, as in 72 +- 2"
+        bounds = _bounds(item for extra in extras for item in extra.metadata)
+        return f"{_type_words(inner)} {bounds}"
     if origin is Literal:
         return "one of " + ", ".join(str(choice) for choice in get_args(annotation))
     if origin in (tuple, list):
