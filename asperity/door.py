@@ -164,6 +164,10 @@ def scene_lines(
         value = device.get(name, getattr(defaults, name))
         about = DeviceSettings.model_fields[name].description
         yield f"  {name}: {_as_yaml(value)}  # {about}"
+    if measured := device.get("measured"):
+        yield "  measured:  # value and standard error, which narrow the device"
+        for name, pair in measured.items():
+            yield f"    {name}: {_as_yaml(pair)}"
 
 
 def _as_yaml(value: float | str | tuple[float, float] | None) -> str:

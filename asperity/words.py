@@ -14,13 +14,15 @@ from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings, InputRow
 from mesoscale.settings.contact import MaterialSettings, base_modulus
 from mesoscale.settings.definitions import definition
-from mesoscale.settings.device import unit_of
+from mesoscale.settings.device import MEASURABLE, unit_of
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 KINDS = {None: "fixed", ":": "uniform", "+-": "normal"}
 SUBSTRATE_PPM_C = 2.6
 """Thermal expansion of silicon, on which the beam is taken to be anchored."""
-SCALAR_KEYS = tuple(name for name in DeviceSettings.model_fields if name != "spread")
+SCALAR_KEYS = tuple(
+    name for name in DeviceSettings.model_fields if name not in ("spread", "measured")
+)
 """Keys of the device that a word can state; departures are rows of a scene."""
 
 
@@ -143,7 +145,7 @@ def _modulus_of_bodies(word: str, names: str) -> InputRow:
 
 def device_of(words: Sequence[str]) -> dict[str, Any]:
     """Keys of the section `device` from words such as gap_um=2, ends=cantilever,
-    electrode=0.2:0.8 and material=aluminium.
+    electrode=0.2:0.8 and material=aluminium; measured is pull_in_V=72+-2.
 
     Raises
     ------
@@ -151,6 +153,7 @@ def device_of(words: Sequence[str]) -> dict[str, Any]:
     """
     keys: dict[str, Any] = {}
     of_material: dict[str, float] = {}
+    measured: dict[str, tuple[float, float]] = {}
     for word in words:
         name, _, value = word.partition("=")
         if name == "material" and not of_material:
@@ -160,16 +163,32 @@ def device_of(words: Sequence[str]) -> dict[str, Any]:
             raise InputError(f"{word}: {name} is given twice; leave one of them out")
         if name == "humidity":
             raise InputError(f"{word}: the air's, not the device's; write --material {word}")
+        if name in measured:
+            raise InputError(f"{word}: {name} is given twice; leave one of them out")
+        if name in MEASURABLE:
+            measured[name] = _value_and_error(word, name, value)
+            continue
         if name not in SCALAR_KEYS:
-            meant = did_you_mean(name, (*SCALAR_KEYS, "material"))
+            meant = did_you_mean(name, (*SCALAR_KEYS, "material", *MEASURABLE))
             raise InputError(
                 f"{word}: accepted is KEY=VALUE with a key of material,"
-                f" {', '.join(SCALAR_KEYS)}{meant}"
+                f" {', '.join(SCALAR_KEYS)}, or measured {', '.join(MEASURABLE)}{meant}"
             )
         keys[name] = _device_value(word, name, value)
     stated = of_material | keys
+    if measured:
+        stated["measured"] = measured
     DeviceSettings(**stated)
     return stated
+
+
+def _value_and_error(word: str, name: str, text: str) -> tuple[float, float]:
+    """A measured value and its standard error."""
+    value, sign, error = text.replace("±", "+-").partition("+-")
+    if not sign:
+        raise InputError(f"{word}: measured; accepted are value and standard error, {name}=72+-2")
+    unit = name.rpartition("_")[2]
+    return number_of(word, value, unit), number_of(word, error, unit)
 
 
 def _device_value(word: str, name: str, value: str) -> Any:

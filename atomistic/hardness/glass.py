@@ -21,10 +21,8 @@ from atomistic.potentials import ForceField, Potential
 from atomistic.settings import GlassSettings
 
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
-MELT_K, FINAL_K = (
-    4000.0,
-    300.0,
-)  # every shipped potential melts in some ps; the temperature of the closings
+MELT_K = 4000.0  # every shipped potential melts in some ps
+FINAL_K = 300.0  # the temperature of the closings
 TIMESTEP_FS = 2.0  # energy is kept to 0.2 meV per atom and ps, also in the melt
 
 
@@ -46,9 +44,9 @@ def random_start(
     units = max(1, round(settings.atoms / sum(formula.values())))
     counts = [units * count for count in formula.values()]
     masses_u = [potential.species[ion].mass_u for ion in elements]
-    mass_u = sum(n * mass for n, mass in zip(counts, masses_u, strict=True))
-    mass_g = mass_u / AVOGADRO
-    edge_A = (mass_g / material.part("oxide_glass").density_g_cm3 * 1e24) ** (1 / 3)
+    mass_u = sum(count * mass for count, mass in zip(counts, masses_u, strict=True))
+    volume_A3 = mass_u / AVOGADRO / material.part("oxide_glass").density_g_cm3 * 1e24
+    edge_A = volume_A3 ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 1]))
     placed = random_places(sum(counts), np.full(3, edge_A), NEAREST_START_A, rng)
     types = rng.permutation(np.repeat(np.arange(1, len(elements) + 1), counts))
@@ -181,22 +179,19 @@ def schedule(settings: GlassSettings, segment_steps: int) -> list[dict]:
     def steps(duration_ps: float) -> int:
         return max(1, round(1000 * duration_ps / TIMESTEP_FS))
 
-    melt, end = MELT_K, FINAL_K
-    quench_ps = (melt - end) / settings.quench_rate_K_ps
+    def segment(ensemble: str, begin_K: float, end_K: float, duration_ps: float) -> dict:
+        return {"ensemble": ensemble, "from": begin_K, "to": end_K, "steps": steps(duration_ps)}
+
+    quench_ps = (MELT_K - FINAL_K) / settings.quench_rate_K_ps
     count = max(1, round(steps(quench_ps) / segment_steps))
-    ramp = np.linspace(melt, end, count + 1).tolist()
-    segments = [
-        {"ensemble": "nvt", "from": 1.5 * melt, "to": melt, "steps": steps(0.3 * settings.melt_ps)},
-        {"ensemble": "nvt", "from": melt, "to": melt, "steps": steps(0.7 * settings.melt_ps)},
+    ramp_K = np.linspace(MELT_K, FINAL_K, count + 1).tolist()
+    hotter = segment("nvt", 1.5 * MELT_K, MELT_K, 0.3 * settings.melt_ps)
+    melt = segment("nvt", MELT_K, MELT_K, 0.7 * settings.melt_ps)
+    quench = [
+        segment("npt", high_K, low_K, quench_ps / count) for high_K, low_K in pairwise(ramp_K)
     ]
-    segments += [
-        {"ensemble": "npt", "from": high, "to": low, "steps": steps(quench_ps / count)}
-        for high, low in pairwise(ramp)
-    ]
-    return [
-        *segments,
-        {"ensemble": "npt", "from": end, "to": end, "steps": steps(settings.rest_ps)},
-    ]
+    rest = segment("npt", FINAL_K, FINAL_K, settings.rest_ps)
+    return [hotter, melt, *quench, rest]
 
 
 def density_g_cm3(atoms: Atoms, force: ForceField) -> float:
@@ -223,6 +218,15 @@ def unlike_neighbours(
     return pairs, np.linalg.norm(apart, axis=1)
 
 
+def commonest_A(distances_A: np.ndarray) -> float:
+    """Commonest distance of unlike neighbours, where their radial distribution is largest."""
+    edges = np.arange(SHORTEST_BOND_A, SEARCHED_A, 0.02)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    distribution = np.histogram(distances_A, edges)[0] / middle**2
+    smooth = np.convolve(distribution, np.ones(3) / 3, mode="same")
+    return float(middle[np.argmax(smooth)])
+
+
 def glass_properties(material: Material, potential: Potential, atoms: Atoms) -> dict:
     """Density, coordination, bond length of a glass, and the gate of its material file."""
     reference: OxideGlass = material.part("oxide_glass")
@@ -231,16 +235,12 @@ def glass_properties(material: Material, potential: Potential, atoms: Atoms) -> 
     density = density_g_cm3(atoms, potential)
     ions = [atoms.elements.index(ion) + 1 for ion in cations(material, potential)]
     is_cation = np.isin(atoms.types, ions)
-    _, r = unlike_neighbours(atoms, is_cation, SEARCHED_A)
-    edges = np.arange(SHORTEST_BOND_A, SEARCHED_A, 0.02)
-    middle = 0.5 * (edges[1:] + edges[:-1])
-    density_of_r = np.histogram(r, edges)[0] / middle**2
-    smooth = np.convolve(density_of_r, np.ones(3) / 3, mode="same")
-    bond = float(middle[np.argmax(smooth)])
-    coordination = float(np.sum(r < reference.cutoff_A) / np.sum(is_cation))
+    _, distances_A = unlike_neighbours(atoms, is_cation, SEARCHED_A)
+    bonded = np.sum(distances_A < reference.cutoff_A)
+    coordination = float(bonded / np.sum(is_cation))
     checks = {
         "density_g_cm3": (density, reference.density_range_g_cm3),
-        "bond_A": (bond, reference.bond_range_A),
+        "bond_A": (commonest_A(distances_A), reference.bond_range_A),
         "cation_coordination": (coordination, reference.coordination_range),
     }
     reasons = []

@@ -18,6 +18,8 @@ from mesoscale.uncertainty.censored import Censored, most_likely
 
 Array = NDArray[np.float64]
 ENDS = (0.05, 0.5, 0.95)
+SMALLEST_V = 1e-9
+"""A release counts as this at least, so that the slope of its square stays positive."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,8 @@ class Additive:
 
     def deviation(self, release_V: Array, errors_V: Array) -> float:
         """Root mean square error of fitted values by errors of the releases."""
-        return float(np.sqrt(np.mean((self.power * release_V ** (self.power - 1) * errors_V) ** 2)))
+        slope = self.power * release_V ** (self.power - 1)
+        return float(np.sqrt(np.mean((slope * errors_V) ** 2)))
 
     def volts(self, values: Array) -> Array:
         """Release of fitted values."""
@@ -113,9 +116,8 @@ def _sum(columns: Array, values: Array, stuck: NDArray[np.bool_]) -> Censored:
     """
     if stuck.any() and not stuck.all():
         return most_likely(columns, values, stuck)
-    values = np.where(
-        stuck, -1.0, values
-    )  # where all stick, nothing says how far below zero they are
+    # where all stick, nothing says how far below zero they are
+    values = np.where(stuck, -1.0, values)
     inverse = np.linalg.pinv(columns)
     coefficients = inverse @ values
     missed = ((values - columns @ coefficients) ** 2).sum()
@@ -147,39 +149,54 @@ def known(
     rng = np.random.default_rng(np.random.SeedSequence([0, 0x2100]))
     columns = basis(rng.random((draws, common.size)), fit.degree)
     of_common = np.concatenate([[True], np.tile(common, fit.degree)])
-    chosen = rng.multivariate_normal(fit.coefficients, fit.covariance, errors, method="eigh")
-    coefficients = np.vstack([fit.coefficients, chosen])
+    within_error = rng.multivariate_normal(fit.coefficients, fit.covariance, errors, method="eigh")
+    coefficients = np.vstack([fit.coefficients, within_error])
     unknown = coefficients[:, of_common] @ columns[:, of_common].T
     between = coefficients[:, ~of_common] @ columns[:, ~of_common].T
-    missed_beyond = np.sqrt(max(fit.missed**2 - cells**2, 0.0))
-    noise = rng.normal(size=draws)
+    missed_beyond = float(np.sqrt(max(fit.missed**2 - cells**2, 0.0)))
+    typical = np.median(unknown, axis=1)[:, None]
     devices = between.std(axis=1)[:, None]
-    with np.errstate(
-        divide="ignore", invalid="ignore"
-    ):  # where no device differs, all stick or none
-        by_rest = [
-            ndtr(np.nan_to_num(-unknown / np.hypot(devices, missed_beyond), nan=-np.inf)),
-            ndtr(np.nan_to_num(-(unknown + missed_beyond * noise) / devices, nan=-np.inf)),
-        ]
-    quantiles = [np.quantile(rates, ENDS, axis=1) for rates in by_rest]
-    low, high = (
-        np.quantile(np.hstack([part[:, 1:] for part in quantiles]), q, axis=1) for q in (0.05, 0.95)
-    )
-    tellable = tellable_share(fit.values.size)
-    middle = float(np.median(unknown[0]))
-    slope = fit.power * max(float(fit.volts(np.array(middle))), 1e-9) ** (fit.power - 1)
+    # what the fit misses differs from device to device, or is common to all
+    if_each = _share_below_zero(unknown, np.hypot(devices, missed_beyond))
+    missed = missed_beyond * rng.normal(size=draws)
+    if_common = _share_below_zero(unknown + missed, devices)
+    typical_V = max(float(fit.volts(np.array(np.median(unknown[0])))), SMALLEST_V)
+    slope = fit.power * typical_V ** (fit.power - 1)
     return {
         "unknown_V": _quantiles(fit.volts(unknown)),
-        "between_V": _quantiles(fit.volts(np.median(unknown, axis=1)[:, None] + between)),
-        "rest_V": float(missed_beyond / slope),
-        "stuck_share": {
-            f"{q:g}": {
-                "value": max(float(quantiles[0][k, 0]), tellable),
-                "low": float(low[k]),
-                "high": max(float(high[k]), tellable),
-            }
-            for k, q in enumerate(ENDS)
-        },
+        "between_V": _quantiles(fit.volts(typical + between)),
+        "rest_V": missed_beyond / slope,
+        "stuck_share": _stuck_shares(if_each, if_common, fit.values.size),
+    }
+
+
+def _share_below_zero(middle: Array, deviation: Array) -> Array:
+    """Share of normal numbers that are negative; where none differs, all are or none."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return ndtr(np.nan_to_num(-middle / deviation, nan=-np.inf))
+
+
+def _stuck_shares(if_each: Array, if_common: Array, switches: int) -> dict[str, dict[str, float]]:
+    """Quantiles of the share that sticks, of the fit itself (first rows) and within its error.
+
+    Parameters
+    ----------
+    if_each, if_common : shares where what the fit misses is of each device, and where it is common;
+        shape (1 + errors, draws).
+    switches : that were solved: of a small share they know no more than `tellable_share`.
+    """
+    quantiles_if_each = np.quantile(if_each, ENDS, axis=1)
+    quantiles_if_common = np.quantile(if_common, ENDS, axis=1)
+    within_error = np.hstack([quantiles_if_each[:, 1:], quantiles_if_common[:, 1:]])
+    low, high = np.quantile(within_error, (0.05, 0.95), axis=1)
+    tellable = tellable_share(switches)
+    return {
+        f"{q:g}": {
+            "value": max(float(quantiles_if_each[k, 0]), tellable),
+            "low": float(low[k]),
+            "high": max(float(high[k]), tellable),
+        }
+        for k, q in enumerate(ENDS)
     }
 
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.answer.spread import properties_at, with_properties
+from mesoscale.answer.departures import with_properties
+from mesoscale.answer.spread import properties_at, typical
 from mesoscale.contact.surface import shortest_wave
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.distributions import InputTable
@@ -75,7 +76,7 @@ def cutoff_range(table: InputTable, contact: ContactSettings) -> tuple[float, fl
 
 def central_point(table: InputTable, contact: ContactSettings, settings: DeviceSettings) -> Point:
     """The switch at the medians of the inputs and in the middle of the range of D0."""
-    return Point(table.medians(), float(np.mean(cutoff_range(table, contact))), settings)
+    return Point(table.medians(), float(np.mean(cutoff_range(table, contact))), typical(settings))
 
 
 def plan_points(

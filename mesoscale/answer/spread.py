@@ -5,29 +5,30 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.answer.departures import (
+    departed_properties,
+    stated_departures,
+    with_properties,
+)
 from mesoscale.errors import InputError
-from mesoscale.inputs.distributions import InputTable, UncertainInput
-from mesoscale.inputs.table import stated_distribution
+from mesoscale.inputs.distributions import InputTable
 from mesoscale.settings import DeviceSettings
-from mesoscale.settings.device import unit_of
 
 Array = NDArray[np.float64]
 
 
 def departures(settings: DeviceSettings) -> InputTable:
-    """Departures from the stated properties, each in its unit or as a share.
+    """Departures from the stated properties, narrowed by what was measured.
 
     Raises
     ------
-    InputError : samples that cannot be read.
+    InputError : samples that cannot be read; measurements that contradict the stated device.
     """
-    rows = []
-    for name in settings.varied:
-        row = getattr(settings.spread, name)
-        given = stated_distribution(name, row, "device.spread")
-        unit = "1" if row.relative else unit_of(name)
-        rows.append(UncertainInput(name, unit, given, "literature", row.source, row.varies))
-    return InputTable(tuple(rows), np.eye(len(rows)))
+    if settings.measured is None:
+        return stated_departures(settings)
+    from mesoscale.answer.measured import narrowed  # compiles
+
+    return narrowed(settings).table
 
 
 def properties_at(settings: DeviceSettings, units: Array) -> Array:
@@ -36,14 +37,28 @@ def properties_at(settings: DeviceSettings, units: Array) -> Array:
     """
     table = departures(settings)
     moved = table.transform(units) if table.rows else np.empty((len(units), 0))
-    stated = np.array([getattr(settings, name) for name in table.names])
-    relative = np.array([getattr(settings.spread, name).relative for name in table.names], bool)
-    return np.where(relative, stated * (1.0 + moved), stated + moved)
+    return departed_properties(settings, moved)
 
 
-def with_properties(settings: DeviceSettings, values: Array) -> DeviceSettings:
-    """The device with these values of the properties of `DeviceSettings.varied`, shape (k,)."""
-    return settings.model_copy(update=dict(zip(settings.varied, values.tolist(), strict=True)))
+def typical(settings: DeviceSettings) -> DeviceSettings:
+    """The device in the middle of what is known of it, departing by what remains unknown.
+
+    It is as stated where nothing was measured. Else each property departs by a normal distribution
+    of its own.
+    """
+    if settings.measured is None:
+        return settings
+    middle = np.full((1, len(settings.varied)), 0.5)
+    device = with_properties(settings, properties_at(settings, middle)[0])
+    remaining = {}
+    for row in departures(settings).rows:
+        spread = getattr(settings.spread, row.name)
+        deviation = float(row.distribution.values.std())
+        if spread.relative:
+            deviation *= abs(getattr(settings, row.name) / getattr(device, row.name))
+        narrow = {"distribution": "normal", "values": (0.0, deviation), "source": row.source}
+        remaining[row.name] = spread.model_copy(update=narrow)
+    return device.model_copy(update={"spread": settings.spread.model_copy(update=remaining)})
 
 
 def departed(

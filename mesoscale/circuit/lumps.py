@@ -163,6 +163,18 @@ def choose_lumps(settings: DeviceSettings, pad: PadCurves) -> LumpErrors:
 
 
 def _errors(made: BeamStates, exact: BeamStates) -> tuple[float, float, float]:
-    pairs = ((made.pull_in_V, exact.pull_in_V), (made.release_V, exact.release_V))
-    pull_in, release = (0.0 if a == b else abs(a / b - 1.0) if a and b else 1.0 for a, b in pairs)
-    return pull_in, release, abs(made.capacitance_fF / exact.capacitance_fF - 1.0)
+    """Relative errors of pull-in, release and capacitance."""
+    return (
+        _relative_error(made.pull_in_V, exact.pull_in_V),
+        _relative_error(made.release_V, exact.release_V),
+        abs(made.capacitance_fF / exact.capacitance_fF - 1.0),
+    )
+
+
+def _relative_error(made_V: float, exact_V: float) -> float:
+    """Of a voltage; 1 where one of both has none."""
+    if made_V == exact_V:
+        return 0.0
+    if not made_V or not exact_V:
+        return 1.0
+    return abs(made_V / exact_V - 1.0)

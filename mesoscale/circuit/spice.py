@@ -125,19 +125,12 @@ def spice_pad(pad: PadCurves, cells: int) -> str:
     for k in range(depths.size):
         depths_here = places[max(k - 1, 0) : k + 2]
         weights.append(_pwl(deepest, Piece(depths_here, (depths_here == depths[k]).astype(float))))
-    sums = []
-    for force_kind, closed in enumerate(
-        (_pwl(deepest, push, CIRCUIT.reach_nm), _pwl(deepest, pull))
-    ):
-        rises = (_pwl("V(risen)", pieces[force_kind]) for pieces in tables.opening)
-        terms = [
-            f"({weight} > 0 ? {weight}*{rise} : 0)"
-            for weight, rise in zip(weights, rises, strict=True)
-        ]
-        sums.append("\n+   + ".join([closed, *terms]))
-    most = [
-        piece.y.max() + CIRCUIT.most_folds for piece in tables.closing
-    ]  # wild steps of a simulator stay finite
+    pushes = [_pwl("V(risen)", pieces[0]) for pieces in tables.opening]
+    pulls = [_pwl("V(risen)", pieces[1]) for pieces in tables.opening]
+    push_sum = _weighted(_pwl(deepest, push, CIRCUIT.reach_nm), weights, pushes)
+    pull_sum = _weighted(_pwl(deepest, pull), weights, pulls)
+    # wild steps of a simulator stay finite
+    most = [piece.y.max() + CIRCUIT.most_folds for piece in tables.closing]
     return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
 * {note(tables, cells)}
 * nodes     s      mean separation less rest, 1 V = 1 nm
@@ -160,9 +153,9 @@ Bnear 0 near I = max(V(closed), {{{start:g}-rest}} - V(s))
 Rrisen risen 0 1
 Brisen 0 risen I = V(s) + V(near) + {{rest-{start:g}}}
 Rpush push 0 1
-Bpush 0 push I = {sums[0]}
+Bpush 0 push I = {push_sum}
 Rpull pull 0 1
-Bpull 0 pull I = {sums[1]}
+Bpull 0 pull I = {pull_sum}
 Rforce force 0 1
 Bforce 0 force I = {{area}} * (exp(min(V(push) + {far[0]:.7g}, {most[0]:.4g})) - {tables.faint_GPa:.7g}
 +   - ({{hamaker/(6*3.14159265358979324)}} / pow(max(V(s) + {{rest}}, 1) + {{offset_nm}}, 3) + {tables.floor_GPa:g})
@@ -171,17 +164,31 @@ Bforce 0 force I = {{area}} * (exp(min(V(push) + {far[0]:.7g}, {most[0]:.4g})) -
 """
 
 
-def _pwl(of: str, piece: Piece, below: float = 0.0) -> str:
-    """Straight pieces of ngspice, the ends held, four nodes a line; `below` the first node, the
-    slope of the first.
+def _weighted(closed: str, weights: list[str], opened: list[str]) -> str:
+    """Text of a closing and the openings that count, each with its weight."""
+    terms = [
+        f"({weight} > 0 ? {weight}*{opening} : 0)"
+        for weight, opening in zip(weights, opened, strict=True)
+    ]
+    return "\n+   + ".join([closed, *terms])
+
+
+def _pwl(variable: str, piece: Piece, below: float = 0.0) -> str:
+    """Straight pieces of ngspice over a variable, four nodes a line; beyond the ends the first and
+    last value hold.
+
+    Parameters
+    ----------
+    below : length below the first node over which its slope goes on, before the value holds; 0:
+        none.
     """
-    x, y = piece.x, piece.y
-    held = [(x[0] - 1e3, y[0]), *zip(x, y, strict=True), (x[-1] + 1e3, y[-1])]
+    x = piece.x
+    y = piece.y
+    first = (x[0] - 1e3, y[0])
     if below:
-        held[0] = x[0] - below, y[0] - below * (y[1] - y[0]) / (x[1] - x[0])
-    nodes = [f"{x:.7g},{y:.7g}" for x, y in held]
-    return (
-        f"pwl({of}"
-        + "".join((",\n+   " if k % 4 == 0 else ", ") + node for k, node in enumerate(nodes))
-        + ")"
-    )
+        first = (x[0] - below, y[0] - below * (y[1] - y[0]) / (x[1] - x[0]))
+    last = (x[-1] + 1e3, y[-1])
+    places = [first, *zip(x, y, strict=True), last]
+    nodes = [f"{place:.7g},{value:.7g}" for place, value in places]
+    lines = [", ".join(nodes[k : k + 4]) for k in range(0, len(nodes), 4)]
+    return ",\n+   ".join([f"pwl({variable}", *lines]) + ")"

@@ -12,13 +12,14 @@ so that force and slope are continuous; SPICE gets straight ones.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.pad.curves import FLOOR, PadCurves, rows_at
+from mesoscale.pad.curves import FLOOR, Flats, PadCurves, rows_at
 
 Array = NDArray[np.float64]
 
@@ -61,62 +62,110 @@ def tables_of(pad: PadCurves, cubic: bool, looser: float = 1.0) -> Tables:
     looser : so many times the usual errors are allowed beside the curves.
     """
     wells = np.array([-min(np.nanmin(opened.sum(axis=0)), 0.0) for opened in pad.opening])
+    shallowest_well = float(wells.min())
     floor = pad.floor_GPa
-    faint = max(CIRCUIT.faint * float(wells.min()), 1e2 * floor)
+    faint = max(CIRCUIT.faint * shallowest_well, 1e2 * floor)
     s = pad.separation_nm
-
-    def logarithms(pressures: Array, at_nm: Array) -> Array:
-        pull = (floor - pressures[1]) / (floor + pad.flats.pull_GPa(at_nm))
-        return np.log(np.stack([pressures[0] + faint, np.maximum(pull, FLOOR)]))
-
-    def fitted(
-        x: Array, values: Array, at_nm: Array, start: Array, well: float, nodes: Sequence[int] = ()
-    ) -> tuple[tuple[Piece, Piece], float, float]:
-        flats = pad.flats.pull_GPa(at_nm) + floor
-        push = np.exp(values[0]) - faint
-        pull = flats * np.exp(values[1])
-        net = push - pull
-
-        def missed(made: Array) -> Array:
-            return abs(np.exp(made[0]) - faint - flats * np.exp(made[1]) - net)
-
-        allowed = (
-            np.minimum(CIRCUIT.of_well * well, CIRCUIT.of_pull * pull)
-            + CIRCUIT.of_net * abs(net)
-            + floor
-        )
-        node_places, made = _nodes(
-            x, values, lambda made: missed(made) / (looser * allowed), nodes, cubic
-        )
-        near = abs(net) < CIRCUIT.near_wells * well
-        of_well = missed(made) / well
-        of_net = missed(made) / np.maximum(abs(net), faint)
-        first, second = (
-            Piece(x[node_places], row[node_places] - shift)
-            for row, shift in zip(values, start, strict=True)
-        )
-        return (
-            (first, second),
-            float(of_well.max(initial=0.0, where=near)),
-            float(of_net.max(initial=0.0, where=~near)),
-        )
-
+    closing = _Curve(pad.flats, s, pad.closing, floor, faint, shallowest_well or faint)
     at_depths = [int(abs(s - depth).argmin()) for depth in pad.depth_nm]
-    closing, _, of_closing = fitted(
-        s, logarithms(pad.closing, s), s, np.zeros(2), float(wells.min()) or faint, at_depths
-    )
+    fitted = closing.fitted(s, np.zeros(2), cubic, looser, at_depths)
+    largest_of_well = 0.0
+    largest_of_net = fitted.of_net
     opening = []
-    errors = []
     for depth, opened, well in zip(pad.depth_nm, pad.opening, wells, strict=True):
         known = np.isfinite(opened[0])
-        values = logarithms(opened[:, known], s[known])
-        pieces, *missed = fitted(s[known] - depth, values, s[known], values[:, 0], well or faint)
-        opening.append(pieces)
-        errors.append(missed)
-    of_well, of_net = np.max(errors, axis=0)
+        curve = _Curve(pad.flats, s[known], opened[:, known], floor, faint, well or faint)
+        # pieces over the rise, from where the opening starts
+        rise = curve.fitted(s[known] - depth, curve.logarithms[:, 0], cubic, looser)
+        opening.append(rise.pieces)
+        largest_of_well = max(largest_of_well, rise.of_well)
+        largest_of_net = max(largest_of_net, rise.of_net)
     return Tables(
-        closing, pad.depth_nm, opening, faint, floor, float(of_well), max(float(of_net), of_closing)
+        closing=fitted.pieces,
+        depth_nm=pad.depth_nm,
+        opening=opening,
+        faint_GPa=faint,
+        floor_GPa=floor,
+        of_well=largest_of_well,
+        of_net=largest_of_net,
     )
+
+
+class _Fitted(NamedTuple):
+    """Pieces of push and pull, and their largest errors near the well and elsewhere."""
+
+    pieces: tuple[Piece, Piece]
+    of_well: float
+    of_net: float
+
+
+class _Curve:
+    """One curve of a pad, closing or opening, which pieces are fitted to.
+
+    Parameters
+    ----------
+    separation_nm : shape (n,).
+    pressures : repulsive and attractive (GPa, attraction negative), shape (2, n).
+    well_GPa : depth of its well, to which errors are compared.
+    """
+
+    def __init__(
+        self,
+        flats: Flats,
+        separation_nm: Array,
+        pressures: Array,
+        floor_GPa: float,
+        faint_GPa: float,
+        well_GPa: float,
+    ) -> None:
+        self.faint = faint_GPa
+        self.well = well_GPa
+        self.flats = flats.pull_GPa(separation_nm) + floor_GPa
+        pull_over_flats = (floor_GPa - pressures[1]) / self.flats
+        self.logarithms = np.log(
+            np.stack([pressures[0] + faint_GPa, np.maximum(pull_over_flats, FLOOR)])
+        )
+        pull = self.flats * np.exp(self.logarithms[1])
+        self.net = np.exp(self.logarithms[0]) - faint_GPa - pull
+        self.allowed = (
+            np.minimum(CIRCUIT.of_well * well_GPa, CIRCUIT.of_pull * pull)
+            + CIRCUIT.of_net * abs(self.net)
+            + floor_GPa
+        )
+
+    def missed(self, logarithms: Array) -> Array:
+        """By how much (GPa) the net pressure by other logarithms differs from that of the curve."""
+        push = np.exp(logarithms[0]) - self.faint
+        return abs(push - self.flats * np.exp(logarithms[1]) - self.net)
+
+    def fitted(
+        self, x: Array, start: Array, cubic: bool, looser: float, nodes: Sequence[int] = ()
+    ) -> _Fitted:
+        """Pieces over places x, as near to the curve as allowed.
+
+        Parameters
+        ----------
+        start : logarithms of push and pull from which the pieces count.
+        nodes : positions in x that have a node at least.
+        """
+
+        def over_allowed(logarithms: Array) -> Array:
+            return self.missed(logarithms) / (looser * self.allowed)
+
+        places, by_pieces = _nodes(x, self.logarithms, over_allowed, nodes, cubic)
+        push, pull = (
+            Piece(x[places], logarithm[places] - first)
+            for logarithm, first in zip(self.logarithms, start, strict=True)
+        )
+        missed = self.missed(by_pieces)
+        near = abs(self.net) < CIRCUIT.near_wells * self.well
+        of_well = missed / self.well
+        of_net = missed / np.maximum(abs(self.net), self.faint)
+        return _Fitted(
+            (push, pull),
+            of_well=float(of_well.max(initial=0.0, where=near)),
+            of_net=float(of_net.max(initial=0.0, where=~near)),
+        )
 
 
 def _nodes(
@@ -127,45 +176,44 @@ def _nodes(
     """
     chosen = {0, x.size // 2, x.size - 1, *nodes}
     while True:
-        node_places = sorted(chosen)
-        made = (
-            PchipInterpolator(x[node_places], values[:, node_places], axis=1)(x)
-            if cubic
-            else rows_at(x, x[node_places], values[:, node_places])
-        )
-        missed = error(made)
-        missed[node_places] = 0.0
+        places = sorted(chosen)
+        by_pieces = _interpolated(x, x[places], values[:, places], cubic)
+        missed = error(by_pieces)
+        missed[places] = 0.0
         if missed.max() <= 1.0:
-            return node_places, made
+            return places, by_pieces
         chosen.add(int(missed.argmax()))
+
+
+def _interpolated(x: Array, nodes: Array, values: Array, cubic: bool) -> Array:
+    """Values at nodes, shape (2, nodes), at other places by cubic or straight pieces."""
+    if cubic:
+        return PchipInterpolator(nodes, values, axis=1)(x)
+    return rows_at(x, nodes, values)
 
 
 def curves_of_tables(tables: Tables, pad: PadCurves, cubic: bool) -> PadCurves:
     """The pad as its tables have it, at the separations of its curves."""
 
-    def curves(pieces: tuple[Piece, Piece], at_nm: Array) -> Array:
-        pairs = [(piece.x, piece.y) for piece in pieces]
+    def logarithms(pieces: tuple[Piece, Piece], at_nm: Array) -> Array:
         if cubic:
-            return np.stack([PchipInterpolator(*pair)(at_nm) for pair in pairs])
-        return np.stack([np.interp(at_nm, *pair) for pair in pairs])
+            return np.stack([PchipInterpolator(piece.x, piece.y)(at_nm) for piece in pieces])
+        return np.stack([np.interp(at_nm, piece.x, piece.y) for piece in pieces])
 
     def pressures(logarithms: Array, at_nm: Array) -> Array:
-        pull = (pad.flats.pull_GPa(at_nm) + tables.floor_GPa) * np.exp(
-            logarithms[1]
-        ) - tables.floor_GPa
-        return np.stack(
-            [np.maximum(np.exp(logarithms[0]) - tables.faint_GPa, 0.0), -np.maximum(pull, 0.0)]
-        )
+        push = np.exp(logarithms[0]) - tables.faint_GPa
+        flats = pad.flats.pull_GPa(at_nm) + tables.floor_GPa
+        pull = flats * np.exp(logarithms[1]) - tables.floor_GPa
+        return np.stack([np.maximum(push, 0.0), -np.maximum(pull, 0.0)])
 
     s = pad.separation_nm
-    closing = pressures(curves(tables.closing, s), s)
+    closing = pressures(logarithms(tables.closing, s), s)
     opening = np.full_like(pad.opening, np.nan)
     for number, (depth, pieces) in enumerate(zip(tables.depth_nm, tables.opening, strict=True)):
-        solved_places = np.isfinite(pad.opening[number, 0])
-        start = curves(tables.closing, np.array([depth]))
-        opening[number][:, solved_places] = pressures(
-            start + curves(pieces, s[solved_places] - depth), s[solved_places]
-        )
+        computed = np.isfinite(pad.opening[number, 0])
+        start = logarithms(tables.closing, np.array([depth]))
+        above = s[computed]
+        opening[number][:, computed] = pressures(start + logarithms(pieces, above - depth), above)
     return PadCurves(s, closing, pad.depth_nm, opening, pad.flats)
 
 

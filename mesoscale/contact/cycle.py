@@ -234,6 +234,11 @@ def run_cycle(
     if contact.adhesion and contact.adhesion.menisci:
         remarks["filled_share"] = contact.filled_share(last.separation)
     back = open_again(contact, closing, approach, numerics.force_steps)
+    if not all(np.isfinite(row.force) for row in back.touching):
+        raise InputError(
+            f"max_force_nN = {force:.4g}: pressed to {last.force:.4g} nN almost the whole cell"
+            " touches, and how it opens again is not found; lower it"
+        )
     if not contact.REVERSIBLE:
         remarks["jump_loss_aJ"] = float(contact.lost)
     unconverged = closing.unconverged + back.unconverged

@@ -124,48 +124,60 @@ def learn(
     from scipy.stats import qmc  # slow to import
 
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0xFA11]))
-    low, high = voltages(population)[[0, -1]]
-    first = qmc.LatinHypercube(population.dimension, rng=rng).random(FAILURE.first)
-    z = ndtri(first) * np.where(np.arange(FAILURE.first) % 2, 1.0, FAILURE.wide)[:, None]
+    volts = voltages(population).tolist()
+    # switches that the answer has solved, and others over all voltages: every second one farther
+    # out than devices are
     units, pads = population.solved
-    known_z = ndtri(units)
+    solved_z = ndtri(units)
     hold_V = population.hold_V
-    columns = population.columns(known_z, np.full(len(known_z), hold_V))
-    reserves = population.reserves(known_z, hold_V, pads)
-    batches = [
-        (z[k :: FAILURE.voltages], float(volts)) for k, volts in enumerate(voltages(population))
-    ]
-    number = 0
+    columns = population.columns(solved_z, np.full(len(solved_z), hold_V))
+    reserves = population.reserves(solved_z, hold_V, pads)
+    first = qmc.LatinHypercube(population.dimension, rng=rng).random(FAILURE.first)
+    farther = np.where(np.arange(FAILURE.first) % 2, 1.0, FAILURE.wide)
+    z = ndtri(first) * farther[:, None]
+    batches = [(z[k :: FAILURE.voltages], hold_V) for k, hold_V in enumerate(volts)]
+    rounds = 0
     while True:
-        for part, hold_V in batches:
-            tell(0.2 * number / FAILURE.rounds, f"{len(reserves)} switches")
-            columns = np.concatenate(
-                [columns, population.columns(part, np.full(len(part), hold_V))]
-            )
-            reserves = np.concatenate([reserves, population.reserves(part, hold_V)])
-        # a switch that fails with the least attraction says nothing of where others begin to
-        within = np.isfinite(reserves)
-        known = reserves > np.log(FAILURE.least_times) + FAILURE.step
-        if within.sum() < FAILURE.fewest:
-            raise InputError(
-                f"failure: {within.sum()} of {len(reserves)} switches can be solved; accepted are"
-                f" at least {FAILURE.fewest}; lower device.hold_voltage_V, or narrow the inputs"
-            )
-        if known.sum() < FAILURE.fewest:
-            raise InputError(
-                f"failure.release_V = {population.release_V:.4g}: {known.sum()} of {within.sum()}"
-                f" switches release above it; accepted are at least {FAILURE.fewest}; lower it, or"
-                " device.hold_voltage_V"
-            )
-        learned = columns[known], reserves[known]
-        response = ReserveResponse(population, Process(*learned), len(reserves), *learned)
-        if number == FAILURE.rounds:
+        for batch_z, hold_V in batches:
+            tell(0.2 * rounds / FAILURE.rounds, f"{len(reserves)} switches")
+            of_batch = population.columns(batch_z, np.full(len(batch_z), hold_V))
+            columns = np.concatenate([columns, of_batch])
+            reserves = np.concatenate([reserves, population.reserves(batch_z, hold_V)])
+        response = _learned(population, columns, reserves)
+        if rounds == FAILURE.rounds:
             return response
-        hold_V = float(rng.uniform(low, high))
-        times = WORKS[number % len(WORKS)]
-        likely = response.sample(times, hold_V, seed + number).points
-        number += 1
-        batches = [(likely[rng.permutation(len(likely))[: FAILURE.batch]], hold_V)]
+        # then such as nearly fail by the response so far
+        hold_V = float(rng.uniform(volts[0], volts[-1]))
+        times = WORKS[rounds % len(WORKS)]
+        likely = response.sample(times, hold_V, seed + rounds).points
+        chosen = rng.permutation(len(likely))[: FAILURE.batch]
+        batches = [(likely[chosen], hold_V)]
+        rounds += 1
+
+
+def _learned(population: Population, columns: Array, reserves: Array) -> ReserveResponse:
+    """The response of the reserve from those of some switches.
+
+    Raises
+    ------
+    InputError : too few of them can be solved, or let go above the asked voltage.
+    """
+    solved = np.isfinite(reserves)
+    # a switch that fails with the least attraction says nothing of where others begin to
+    known = reserves > np.log(FAILURE.least_times) + FAILURE.step
+    if solved.sum() < FAILURE.fewest:
+        raise InputError(
+            f"failure: {solved.sum()} of {len(reserves)} switches can be solved; accepted are"
+            f" at least {FAILURE.fewest}; lower device.hold_voltage_V, or narrow the inputs"
+        )
+    if known.sum() < FAILURE.fewest:
+        raise InputError(
+            f"failure.release_V = {population.release_V:.4g}: {known.sum()} of {solved.sum()}"
+            f" switches release above it; accepted are at least {FAILURE.fewest}; lower it, or"
+            " device.hold_voltage_V"
+        )
+    process = Process(columns[known], reserves[known])
+    return ReserveResponse(population, process, len(reserves), columns[known], reserves[known])
 
 
 def corrected(

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -114,15 +114,14 @@ class Pad:
         """
         chosen = np.flatnonzero(half_of(self.count, other))
         pairs = np.bincount(np.arange(self.count) // 2, self.weight)[chosen // 2]
-        return Pad(
-            self.grid,
-            pairs / pairs.sum(),
-            self.rms_ratio[chosen],
-            self.first_contact_nm[chosen],
-            self.closing[chosen],
-            self.opening[chosen],
-            self.settled[chosen],
-            self.flats,
+        return replace(
+            self,
+            weight=pairs / pairs.sum(),
+            rms_ratio=self.rms_ratio[chosen],
+            first_contact_nm=self.first_contact_nm[chosen],
+            closing=self.closing[chosen],
+            opening=self.opening[chosen],
+            settled=self.settled[chosen],
         )
 
     @property

@@ -1,8 +1,15 @@
 """Settings of the switch."""
 
-from typing import TYPE_CHECKING, Any, Literal
+import re
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
 
 from asperity.guards.settings import Settings, key
 from mesoscale.settings.inputs import DistributionRow
@@ -14,6 +21,8 @@ if TYPE_CHECKING:  # rules read settings, and are linted where Snakemake is alon
 REFERENCE_C = 20.0
 """Temperature at which stress and shape at rest are stated."""
 PartOfBeam = tuple[float, float]
+NOTHING = ("measured", None)
+"""A device of which nothing was measured."""
 
 
 class SpreadRow(DistributionRow):
@@ -68,6 +77,45 @@ class SpreadSettings(Settings):
     temperature_C: SpreadRow | None = _departs("temperature_C", None)
 
 
+_STATED = re.compile(r"(.+?)(?:\+-|±)(.+)")
+
+
+def _value_and_error(stated: Any) -> Any:
+    """The two numbers of a text such as 72 +- 2; two numbers in a list as they are."""
+    if isinstance(stated, str) and (both := _STATED.fullmatch(stated.replace(" ", ""))):
+        return both.groups()
+    if isinstance(stated, (list, tuple)) and len(stated) == 2:
+        return stated
+    raise ValueError("accepted are a value and its standard error, as in 72 +- 2")
+
+
+Positive = Annotated[float, Field(gt=0.0)]
+ValueAndError = Annotated[
+    tuple[Positive, Positive],
+    BeforeValidator(_value_and_error, json_schema_input_type=tuple[Positive, Positive] | str),
+]
+"""A measured value and its standard error."""
+
+
+def _measured(meaning: str, unit: str) -> Any:
+    return key(None, f"{meaning}: value and standard error, as in 72 +- 2", unit)
+
+
+class MeasuredSettings(Settings):
+    """What was measured of the open device, which narrows its properties (docs/switch.md)."""
+
+    pull_in_V: ValueAndError | None = _measured("pull-in", "V")
+    capacitance_fF: ValueAndError | None = _measured("capacitance without voltage", "fF")
+    resonance_kHz: ValueAndError | None = _measured("lowest resonance, in a vacuum", "kHz")
+
+    @property
+    def stated(self) -> dict[str, tuple[float, float]]:
+        """Values and errors of what was measured, by name."""
+        return {name: pair for name, pair in self if pair is not None}
+
+
+MEASURABLE = tuple(MeasuredSettings.model_fields)
+"""What can be measured of an open device."""
 SPREAD = tuple(SpreadSettings.model_fields)
 """The properties of a device that can be uncertain."""
 Kind = Literal["beam", "plate"]
@@ -170,6 +218,26 @@ class DeviceSettings(Settings):
     hold_voltage_V: float | None = key(
         None, "voltage of the closed switch; null: its pull-in voltage", "[0.001, 1e4] V"
     )
+    measured: MeasuredSettings | None = key(
+        None, "what was measured of this device; null: its properties are known by `spread` alone"
+    )
+
+    @model_serializer(mode="wrap")
+    def _without_nothing_measured(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Nothing measured is left out, so that results without it stay as they were."""
+        return {name: value for name, value in dump(self).items() if (name, value) != NOTHING}
+
+    @model_validator(mode="after")
+    def _measured_of_a_beam(self) -> "DeviceSettings":
+        if self.measured is None:
+            return self
+        if self.kind == "plate":
+            raise ValueError("measured narrows a beam; a plate is stated by spring_N_per_m")
+        if self.measured.resonance_kHz and "density_g_cm3" not in self.model_fields_set:
+            raise ValueError(
+                "measured.resonance_kHz needs the density of the beam: give density_g_cm3"
+            )
+        return self
 
     @model_validator(mode="after")
     def _parts_of_the_beam(self) -> "DeviceSettings":

@@ -28,6 +28,8 @@ from mesoscale.uncertainty.runs import compute_rows
 from mesoscale.uncertainty.sensitivity import sensitivity_rows
 from mesoscale.uncertainty.validation import direct_runs_of_rows, validation_rows
 
+LARGEST_GPA = 0.007
+"""Largest pressure of the made-up curves."""
 CHECKS = "the known answer, or none and counted as missing"
 Array = NDArray[np.float64]
 Function = Callable[[Array], Array]
@@ -60,7 +62,9 @@ def _table(*distributions: Distribution, correlation: Array | None = None) -> In
         UncertainInput(f"x{k}", "1", distribution, "literature", "")
         for k, distribution in enumerate(distributions)
     )
-    return InputTable(rows, np.eye(len(rows)) if correlation is None else correlation)
+    if correlation is None:
+        correlation = np.eye(len(rows))
+    return InputTable(rows, correlation)
 
 
 def _answer(
@@ -78,26 +82,31 @@ def _answer(
     `place` 0 is an output whose response is fitted as it is, 1 one fitted in logarithm.
     """
     settings = SETTINGS.model_copy(update=changes)
+    inputs = len(table.rows)
     rng = np.random.default_rng(5)
-    x_nodes = to_values(nodes(len(table.rows)), table.ranges())
+    # the same function in the places of all outputs, at the nodes and at random
+    x_nodes = to_values(nodes(inputs), table.ranges())
     of_every_seed = np.tile(function(x_nodes), (seeds, 1))
-    distribution = NodeOutputs(
-        list(range(seeds)), np.repeat(of_every_seed[..., None], len(FITTED), axis=2)
-    )
-    distribution.values[rng.random(distribution.values.shape[:2]) < missing] = np.nan
+    at_nodes = np.repeat(of_every_seed[..., None], len(FITTED), axis=2)
+    at_nodes[rng.random(at_nodes.shape[:2]) < missing] = np.nan
+    distribution = NodeOutputs(list(range(seeds)), at_nodes)
     x = table.sample(runs, 11)
     y = np.repeat(function(x)[:, None], len(FITTED), axis=1)
     y[rng.random(runs) < missing] = np.nan
     result = propagate(distribution, table, settings, (x, y))
+    outputs = output_rows(distribution, result, (x, y), {}, {})
     with np.errstate(all="ignore"):
-        ranked = sensitivity_rows(
+        sensitivity = sensitivity_rows(
             distribution, table, settings, np.zeros(len(OUTPUTS)), {}, {}, (x, y)
         )
+    validation = validation_rows(
+        (x, y), table, result, settings, np.empty((0, len(FITTED))), LARGEST_GPA
+    )
     return Answer(
-        output_rows(distribution, result, (x, y), {}, {})[place],
-        ranked[place * len(table.rows) : (place + 1) * len(table.rows)],
-        validation_rows((x, y), table, result, settings, np.empty((0, len(FITTED))), 0.007)[place],
-        sum(response is not None for response in result.responses),
+        output=outputs[place],
+        sensitivity=sensitivity[place * inputs : (place + 1) * inputs],
+        validation=validation[place],
+        responses=sum(response is not None for response in result.responses),
     )
 
 
@@ -179,7 +188,8 @@ def _failing_runs(share: float) -> list[str]:
 
 
 def _failing_engine() -> list[str]:
-    runs = [Run(k, -1, k, {**MIDDLE, "e_star": -1.0 if k == 1 else 91.0}) for k in range(3)]
+    e_stars = (91.0, -1.0, 91.0)
+    runs = [Run(k, -1, k, {**MIDDLE, "e_star": e_star}) for k, e_star in enumerate(e_stars)]
     rows = list(compute_rows(runs, ContactSettings(mechanics="asperity", pixels=128)))
     text = [{key: str(value) for key, value in row.items()} for row in rows]
     _, y = direct_runs_of_rows(text, list(MIDDLE), 3)
@@ -223,13 +233,12 @@ def _not_identifiable() -> list[str]:
     h = np.linspace(10.0, 40.0, 60)
     repulsion = 200.0 * np.maximum(30.0 - h, 0.0)
     fit = fit_branch(h, repulsion, -np.ones_like(h), 1e6, 0.215, 30.0)
-    row = {
-        name: "" if np.isnan(value) else value
-        for name, value in zip(FITTED, [*fit.parameters] * 2, strict=True)
-    }
-    _, y = direct_runs_of_rows(
-        [{"x0": "0", **{key: str(value) for key, value in row.items()}}], ["x0"], 1
-    )
+    row = {"x0": "0"}
+    for name, value in zip(FITTED, [*fit.parameters] * 2, strict=True):
+        row[name] = ""
+        if not np.isnan(value):
+            row[name] = str(value)
+    _, y = direct_runs_of_rows([row], ["x0"], 1)
     repulsion = [name for name in FITTED if name.endswith(("_C_r_GPa", "_rho_r_nm"))]
     return _unless(
         status_says_so=fit.status.startswith("not_identifiable"),

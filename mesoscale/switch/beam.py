@@ -103,9 +103,8 @@ class Beam:
     @property
     def at_m(self) -> Array:
         """Positions of the integration points along the beam, shape (elements, points)."""
-        return (np.cumsum(self.sizes_m) - self.sizes_m)[:, None] + self.sizes_m[
-            :, None
-        ] * self.within
+        first_m = np.cumsum(self.sizes_m) - self.sizes_m
+        return first_m[:, None] + self.sizes_m[:, None] * self.within
 
     @cached_property
     def mechanics(self) -> tuple[Array, Array, Array, Array, Array, float, float, Array, int]:
@@ -235,60 +234,51 @@ def _beam(settings: DeviceSettings, sizes: Array, within: Array, weights: Array)
     """The beam of the settings on these elements."""
     if touching := settings.touching_at_rest:
         raise InputError(touching)
-    width, thickness, length = (
-        1e-6 * of for of in (settings.width_um, settings.thickness_um, settings.length_um)
-    )
-    section = width * thickness
-    cantilever = settings.ends == "cantilever"
-    node_shares = np.concatenate([[0.0], np.cumsum(sizes)])
-    flat = Beam(
-        width,
-        1e9 * settings.bending_GPa * section * thickness**2 / 12.0,
-        (
-            0.0
-            if cantilever
-            else 1e6 * settings.residual_stress_MPa * (1.0 - settings.poisson_ratio) * section
-        ),
+    width_m = 1e-6 * settings.width_um
+    thickness_m = 1e-6 * settings.thickness_um
+    length_m = 1e-6 * settings.length_um
+    section_m2 = width_m * thickness_m
+    tension_N = 0.0
+    stretching_N_m = 0.0
+    if settings.ends != "cantilever":
+        stress_Pa = 1e6 * settings.residual_stress_MPa * (1.0 - settings.poisson_ratio)
+        tension_N = stress_Pa * section_m2
         # edges of the beam are free, so that it stretches with E, however wide it is
-        (
-            0.0
-            if cantilever
-            else 1.0
-            / (
-                length / (1e9 * settings.youngs_modulus_GPa * section)
-                + 1e-6 * settings.anchor_um_per_N
-            )
-        ),
-        cantilever,
-        NM
-        * np.stack(
-            [
-                settings.shape_at_rest_nm(node_shares / length),
-                settings.slope_at_rest_nm(node_shares / length) / length,
-            ],
-            1,
-        ),
-        np.zeros(weights.shape),
-        sizes,
-        within,
-        weights,
-        np.zeros(weights.shape),
-        np.zeros(weights.shape),
-        settings.dimple_nm,
-        settings.stopper_nm,
+        beam_m_N = length_m / (1e9 * settings.youngs_modulus_GPa * section_m2)
+        stretching_N_m = 1.0 / (beam_m_N + 1e-6 * settings.anchor_um_per_N)
+    node_share = np.concatenate([[0.0], np.cumsum(sizes)]) / length_m
+    height_nm = settings.shape_at_rest_nm(node_share)
+    slope_nm_m = settings.slope_at_rest_nm(node_share) / length_m
+    nowhere = np.zeros(weights.shape)
+    flat = Beam(
+        width_m=width_m,
+        bending_N_m2=1e9 * settings.bending_GPa * section_m2 * thickness_m**2 / 12.0,
+        tension_N=tension_N,
+        stretching_N_m=stretching_N_m,
+        cantilever=settings.ends == "cantilever",
+        rest_nodal=NM * np.stack([height_nm, slope_nm_m], 1),
+        rest_m=nowhere,
+        sizes_m=sizes,
+        within=within,
+        weights_m=weights,
+        wired=nowhere,
+        lands=nowhere,
+        dimple_nm=settings.dimple_nm,
+        stopper_nm=settings.stopper_nm,
     )
-    share = flat.at_m / length
-    masks = [
-        ((a <= share) & (share <= b)).astype(float)
-        for a, b in (settings.electrode, settings.contact)
-    ]
+    share = flat.at_m / length_m
     stated = replace(
         flat,
         rest_m=settings.gap_um * 1e-6 + NM * settings.shape_at_rest_nm(share),
-        wired=masks[0],
-        lands=masks[1],
+        wired=_between(share, *settings.electrode),
+        lands=_between(share, *settings.contact),
     )
     return _at_rest(stated, settings)
+
+
+def _between(share: Array, first: float, last: float) -> Array:
+    """1 where a share of the length lies in a part of the beam, else 0."""
+    return ((first <= share) & (share <= last)).astype(float)
 
 
 def euler_MPa(settings: DeviceSettings) -> float:
@@ -327,19 +317,14 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
     excess_N = -(stated.tension_N + heat) - euler_MPa(settings) * newton_MPa
     u = np.zeros(unknowns)
     if excess_N > 0.0:  # on the side of the height that a flat beam would have
-        height = (
-            2.0
-            / np.pi
-            * stated.length_m
-            * np.sqrt(excess_N / (stated.stretching_N_m * stated.length_m))
-        )
-        mode = np.stack(
-            [
-                0.5 * (1.0 - np.cos(2.0 * np.pi * share)),
-                np.pi / stated.length_m * np.sin(2 * np.pi * share),
-            ]
-        )
-        u = (1.0 if settings.buckled == "up" else -1.0) * height * mode.T.ravel()[freedoms] - z0
+        length_m = stated.length_m
+        strain = excess_N / (stated.stretching_N_m * length_m)
+        height = 2.0 / np.pi * length_m * np.sqrt(strain)
+        side = 1.0 if settings.buckled == "up" else -1.0
+        mode = 0.5 * (1.0 - np.cos(2.0 * np.pi * share))
+        slope = np.pi / length_m * np.sin(2 * np.pi * share)
+        buckled = np.stack([mode, slope], 1).ravel()[freedoms]
+        u = side * height * buckled - z0
     moved_nm = np.inf
     for _ in range(REST_STEPS):
         gradient = pulls @ (z0 + u)

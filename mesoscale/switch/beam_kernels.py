@@ -9,6 +9,19 @@ from mesoscale.units import GPA, NM
 CLOSING_NM, OPENING_NM = 1.0, 0.25
 """Largest step of a place in contact. Where a pad of few cells tears off, longer steps overshoot:
 with 0.5 and 1 nm that of `ci` (16 cells) lets go 0.9 and 1.8 % too early."""
+MOST_STEPS = 60_000
+"""Of a motion to balance."""
+FARTHEST_NM = 100.0
+"""Largest step of a place that is far from landing."""
+BEGUN_PER_M, WEAKEST_PER_M, STRONGEST_PER_M = 6.6e4, 66.0, 6.6e20
+"""Stiffnesses that hold a beam back, over the pull of its spring: where it begins and after a turn,
+the least, and that of a step which is gone whatever it does. They are 1e9, 1e6 and 1e25 Pa/m of the
+default switch."""
+STILL_NM = 1e-3
+"""Last step of a motion that has settled: a thousandth of the length over which a pad's pressure
+changes."""
+BALANCED_SHARE = 6.6e-5
+"""Of the pull of the spring: pressure that may be left unbalanced, 1 Pa of the default switch."""
 SETTLED, BEYOND, FREE, UNSETTLED = range(4)
 """How a motion ends: in balance, below the computed closing, off the pad, or not within the allowed
 steps.
@@ -74,10 +87,12 @@ def solve_beam_matrix(blocks, coupling, right, stretching):
     """
     nodes = len(blocks)
     sides = right.shape[1] - 1
+    # the row of the axial force, below those of the nodes
     corner = -1.0
     below = np.zeros(sides)
     solved = np.empty((sides + 1, 2))
     for k in range(nodes - 1):
+        # the node's block [a b; b d], and [p q; r t] to the next node
         a = blocks[k, 0, 0]
         b = blocks[k, 1, 0]
         d = blocks[k, 1, 1]
@@ -86,7 +101,8 @@ def solve_beam_matrix(blocks, coupling, right, stretching):
         q = coupling[k, 0, 1]
         r = coupling[k, 1, 0]
         t = coupling[k, 1, 1]
-        # inverse of the node's block times that to the next
+
+        # [u v; w x]: inverse of the block times the coupling; the next block loses what it couples
         u = scale * (d * p - b * r)
         v = scale * (d * q - b * t)
         w = scale * (a * r - b * p)
@@ -94,7 +110,12 @@ def solve_beam_matrix(blocks, coupling, right, stretching):
         blocks[k + 1, 0, 0] -= p * u + r * w
         blocks[k + 1, 1, 0] -= q * u + t * w
         blocks[k + 1, 1, 1] -= q * v + t * x
-        coupling[k, 0, 0], coupling[k, 0, 1], coupling[k, 1, 0], coupling[k, 1, 1] = u, v, w, x
+        coupling[k, 0, 0] = u
+        coupling[k, 0, 1] = v
+        coupling[k, 1, 0] = w
+        coupling[k, 1, 1] = x
+
+        # [y z]: each right side, and that of stretching in the row of the axial force
         for side in range(sides + 1):
             y, z = right[k, side]
             solved[side, 0] = scale * (d * y - b * z)
@@ -106,6 +127,8 @@ def solve_beam_matrix(blocks, coupling, right, stretching):
         for side in range(sides):
             below[side] -= stretching * (y * solved[side, 0] + z * solved[side, 1])
         right[k] = solved
+
+    # the last node and the axial force together: [a b y; b d z; m n corner], by Cramer's rule
     a = blocks[-1, 0, 0]
     b = blocks[-1, 1, 0]
     d = blocks[-1, 1, 1]
@@ -120,6 +143,8 @@ def solve_beam_matrix(blocks, coupling, right, stretching):
         right[-1, side, 0] = determinant(f, b, y, g, d, z, h, n, corner) / full_determinant
         right[-1, side, 1] = determinant(a, f, y, b, g, z, m, h, corner) / full_determinant
         force = determinant(a, b, f, b, d, g, m, n, h) / full_determinant
+
+        # back from node to node: [f g] of the next one
         for k in range(nodes - 2, -1, -1):
             f, g = right[k + 1, side]
             right[k, side, 0] -= (
@@ -137,12 +162,9 @@ def elongation(nodal, pulled, rest):
     for e in range(nodal.shape[0] - 1):
         for i in range(4):
             for j in range(4):
-                more = nodal[e + j // 2, j % 2]
-                longer += (
-                    pulled[e, i, j]
-                    * more
-                    * (0.5 * nodal[e + i // 2, i % 2] + rest[e + i // 2, i % 2])
-                )
+                moved = nodal[e + j // 2, j % 2]
+                middle = 0.5 * nodal[e + i // 2, i % 2] + rest[e + i // 2, i % 2]
+                longer += pulled[e, i, j] * moved * middle
     return longer
 
 
@@ -176,26 +198,33 @@ def newton_step(
     coupling = np.zeros((nodes, 2, 2))
     right = np.zeros((nodes, 3, 2))
     more = stretching * elongation(nodal, pulled, rest)
+    # Hermite's four shapes of an element: i and j are height (0) and slope (1) of its first node,
+    # and of its second (2, 3); the clamped node of the beam is none of the unknown ones
     for e in range(elements):
         for i in range(4):
             node = e + i // 2 - 1
             turned = i % 2
             if node < 0 or node >= nodes:
                 continue
-            pushed, other = 0.0, 0.0
+
+            # forces of the two loads on shape i
+            pushed = 0.0
+            other = 0.0
             for g in range(points):
                 share = weights[e, g] * shape[e, i, g]
                 pushed += pressure_Pa[e, g] * share
                 other += other_Pa[e, g] * share
             right[node, 1, turned] += other
             for j in range(4):
+                # forces of bending and tension on it
                 moved = nodal[e + j // 2, j % 2]
                 at_rest = rest[e + j // 2, j % 2]
                 drawn = pulled[e, i, j]
-                pushed -= bends[e, i, j] * moved + drawn * (
-                    tension * moved + more * (moved + at_rest)
-                )
+                along = tension * moved + more * (moved + at_rest)
+                pushed -= bends[e, i, j] * moved + drawn * along
                 right[node, 2, turned] += drawn * (moved + at_rest)
+
+                # the matrix is symmetric: one half of it is enough
                 if j > i or e + j // 2 < 1:
                     continue
                 entry = bends[e, i, j] + (tension + more) * drawn
@@ -206,6 +235,7 @@ def newton_step(
                 else:
                     coupling[node - 1, j % 2, turned] += entry
             right[node, 0, turned] += pushed
+
     force = right[:, 0].copy()
     solve_beam_matrix(blocks, coupling, right, stretching)
     change = np.zeros((elements + 1, 2))
@@ -262,39 +292,50 @@ def creep(
     free_nm : a rising beam is off the pad where no place is below this separation.
     most_nm : largest step of a place in contact.
     """
-    # stiffnesses (Pa/m) that hold the beam back: where it begins and after a turn, the least, and
-    # that of a step which is gone whatever it does: 1e9, 1e6 and 1e25 of the default switch
-    begun = 6.6e4 * spring_Pa
-    weakest = 66.0 * spring_Pa
-    strongest = 6.6e20 * spring_Pa
-    inertia, least, turns, lowest = begun, 0.0, 0, np.inf
+    begun = BEGUN_PER_M * spring_Pa
+    weakest = WEAKEST_PER_M * spring_Pa
+    strongest = STRONGEST_PER_M * spring_Pa
+    inertia = begun
+    least = 0.0
+    turns = 0
+    lowest = np.inf
     last = np.zeros(nodal.shape[0])
     pressure = np.empty_like(rest_m)
     slope = np.empty_like(rest_m)
     nothing = np.zeros_like(rest_m)
     _, lands, dimple_nm, stopper_nm, _ = places
     s = (rest_m + deflect(nodal, beam[0])) / NM
-    for _ in range(60000):
+    for _ in range(MOST_STEPS):
         pad_pressure(s - dimple_nm, deepest_nm, pressure, slope, *pad)
         add_loads(s, pressure, slope, electric, places)
         change, _, work = newton_step(
             nodal, pressure * GPA, slope * (GPA / NM), nothing, inertia, *beam
         )
         moved = deflect(change, beam[0]) / NM
-        excess, largest_move = 0.0, 0.0
+
+        # the largest step over what is allowed there: a quarter of the way to landing
+        excess = 0.0
+        largest_move = 0.0
         for e in range(s.shape[0]):
             for g in range(s.shape[1]):
-                height_nm = s[e, g] - (dimple_nm + contact_nm if lands[e, g] > 0.0 else stopper_nm)
-                allowed = min(max(0.25 * height_nm, most_nm), 100.0)  # nm, of the way to landing
+                height_nm = s[e, g] - stopper_nm
+                if lands[e, g] > 0.0:
+                    height_nm = s[e, g] - (dimple_nm + contact_nm)
+                allowed = min(max(0.25 * height_nm, most_nm), FARTHEST_NM)
                 excess = max(excess, abs(moved[e, g]) / allowed)
                 largest_move = max(largest_move, abs(moved[e, g]))
+
+        # too far, or towards a balance that is not stable: again, held back more
         if excess > 1.0 or work < 0.0:
             inertia = max(min(max(1.2 * excess, 1.5), 10.0) * inertia, weakest)
             if inertia < strongest:
                 continue
+
+        # go, and remember how deep each place came
         nodal += change
         s += moved
-        before, lowest = lowest, np.inf
+        before = lowest
+        lowest = np.inf
         for e in range(s.shape[0]):
             for g in range(s.shape[1]):
                 if lands[e, g] > 0.0:
@@ -304,16 +345,22 @@ def creep(
             return BEYOND
         if lowest > free_nm and lowest > before:
             return FREE
-        back = (change[:, 0] * last).sum() < 0.0
-        last = change[:, 0].copy()
+
         # the curves are of straight pieces, between which plain steps may cycle: hold back more
         # after each turn, and forget it the later the more turns there were: after ten half as fast
-        turns += back
-        least = max(10.0 * least, begun) if back else least * (1.0 - 3.0 / (10 + turns))
+        back = (change[:, 0] * last).sum() < 0.0
+        last = change[:, 0].copy()
+        if back:
+            turns += 1
+            least = max(10.0 * least, begun)
+        else:
+            least = least * (1.0 - 3.0 / (10 + turns))
         if excess < 0.5 or back:
             inertia = max(0.3 * inertia, least)
-        # a thousandth of the length over which a pad's pressure changes (nm), 1 Pa of the default
-        # switch
-        if largest_move < 1e-3 and largest_move * NM * inertia < 6.6e-5 * spring_Pa:
-            return SETTLED if lowest < off_nm else FREE
+
+        unbalanced_Pa = largest_move * NM * inertia
+        if largest_move < STILL_NM and unbalanced_Pa < BALANCED_SHARE * spring_Pa:
+            if lowest < off_nm:
+                return SETTLED
+            return FREE
     return UNSETTLED

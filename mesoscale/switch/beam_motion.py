@@ -222,12 +222,16 @@ class MovingBeam:
             f"device: the free beam does not settle at {voltage:.6g} V, too near its pull-in"
         )
 
-    def come_down(self) -> PullIn:
+    def come_down(self, steps: int = STEPS_DOWN) -> PullIn:
         """Bring the open beam down, and leave it where it snaps or touches.
 
         A beam snaps at the largest voltage of its way down, and is left just beyond it. One whose
         electrode stays far enough away touches before it would snap, and is left where it touches.
         So does one that the attraction of its pad takes over the last steps of its way.
+
+        Parameters
+        ----------
+        steps : separations of the way; fewer where devices are only compared.
 
         Raises
         ------
@@ -235,7 +239,7 @@ class MovingBeam:
         """
         self._check_rest()
         node = self._leading()
-        way, reaches = self._way_down(node)
+        way, reaches = self._way_down(node, steps)
         top = _highest(way)
         touches = reaches and top >= len(way) - 2
         if touches:
@@ -258,7 +262,7 @@ class MovingBeam:
         self.nodal = way[top + 1].nodal
         return PullIn(float(np.sqrt(_vertex(*squares_V2[top - 1 : top + 2]))), touches)
 
-    def _way_down(self, node: int) -> tuple[list[_Lowered], bool]:
+    def _way_down(self, node: int, steps: int) -> tuple[list[_Lowered], bool]:
         """Balances while a node is brought down from rest; whether the last of them touches.
 
         Raises
@@ -266,7 +270,7 @@ class MovingBeam:
         InputError : the way ends before it either turns or touches.
         """
         height_nm = float(self._above_nm()[max(node - 1, 0) : node + 1].mean())
-        downs_nm = np.linspace(0.0, height_nm, STEPS_DOWN)
+        downs_nm = np.linspace(0.0, height_nm, steps)
         # the lowest place may be a little higher than those around the node
         downs_nm = np.append(downs_nm, height_nm + downs_nm[1])
         way = [_Lowered(0.0, 0.0, self.nodal)]

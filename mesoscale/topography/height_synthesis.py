@@ -76,17 +76,17 @@ def _gaussian_power(pixels: int, target: Array, heights: tuple[float, ...]) -> A
     """Spectrum by squared wave number of the Gaussian that F carries to `target`."""
     number_x = np.fft.fftfreq(pixels, 1 / pixels)[:, None]
     number_y = np.arange(pixels // 2 + 1)[None, :]
-    number = np.rint(number_x**2 + number_y**2).astype(np.int64)
-    inside = number < len(target)
-    grid = np.zeros(number.shape)
-    grid[inside] = target[number[inside]]
+    squared_number = np.rint(number_x**2 + number_y**2).astype(np.int64)
+    inside = squared_number < len(target)
+    grid = np.zeros(squared_number.shape)
+    grid[inside] = target[squared_number[inside]]
     correlation = np.asarray(fft.irfft2(grid, s=(pixels, pixels)))
     correlation /= correlation[0, 0]
     r, carried = _carried_correlation(heights)
     power = np.real(np.asarray(fft.rfft2(np.interp(correlation, carried, r))))
-    # the mean over the waves of one number: the noise is filtered by it
-    total = np.bincount(number[inside], power[inside], len(target))
-    count = np.bincount(number[inside], minlength=len(target))
+    # the mean over the waves of one length: the noise is filtered by it
+    total = np.bincount(squared_number[inside], power[inside], len(target))
+    count = np.bincount(squared_number[inside], minlength=len(target))
     mean = np.maximum(total / np.maximum(count, 1), 0.0)
     mean[0] = 0.0
     return np.where(target > 0, mean, 0.0)

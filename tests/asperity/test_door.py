@@ -49,6 +49,9 @@ def test_words_of_an_engineer_are_keys_of_the_device():
         ("gap_um=two", "'two' is no number; write for instance gap_um=2.5"),
         ("gap_um=", "'' is no number"),
         ("gap_u=2", "did you mean gap_um"),
+        ("pull_in_V=72", "value and standard error, pull_in_V=72+-2"),
+        ("pull_in_V=72+-2%", "pull_in_V is in V, not in %"),
+        ("resonance_kHz=52+-1", "needs the density of the beam"),
         ("humidity=40%", "the air's, not the device's; write --material humidity=40%"),
     ],
 )
@@ -91,6 +94,14 @@ def test_a_scene_of_words_is_the_device_that_they_state(tmp_path):
     path.write_text("\n".join(scene_lines(None, material_of(["e_star=Au/SiN"]), stated)))
     device = yaml.safe_load(path.read_text())["device"]
     assert DeviceSettings(**device) == DeviceSettings(**stated)
+
+
+def test_what_was_measured_of_a_device_goes_into_its_scene(tmp_path):
+    stated = device_of(["material=gold", "pull_in_V=72+-2V", "resonance_kHz=50±1"])
+    path = tmp_path / "words.yaml"
+    path.write_text("\n".join(scene_lines(None, material_of(["e_star=Au/SiN"]), stated)))
+    device = DeviceSettings(**yaml.safe_load(path.read_text())["device"])
+    assert device.measured.stated == {"pull_in_V": (72.0, 2.0), "resonance_kHz": (50.0, 1.0)}
 
 
 def test_what_nobody_stated_is_told_with_its_source():

@@ -1,8 +1,10 @@
 """A small campaign of `evidence.attacks.inputs`, its seed stated before the first run: 741128."""
 
+import numpy as np
 import pytest
 
-from evidence.attacks.inputs import contacts, devices, presses, stresses
+from evidence.attacks.inputs import _cycled, contacts, devices, presses, stresses
+from mesoscale.errors import InputError
 
 SEED = 741128
 CAMPAIGNS = {
@@ -23,3 +25,10 @@ def test_random_inputs_are_solved_soundly_or_refused_for_a_reason(name):
     assert not faults, "\n".join(faults)
     solved = sum(attack.outcome == "used" for attack in attacks)
     assert solved >= len(attacks) / 4  # else it shows little
+
+
+def test_a_flattened_contact_whose_way_back_is_not_found_is_refused():
+    """Contact 65 of seed 20261130 had infinite forces, and was only said not to have converged."""
+    rng = np.random.default_rng([20261130, 4, 65])
+    with pytest.raises(InputError, match="almost the whole cell touches"):
+        _cycled(rng, "adhesive", 32)

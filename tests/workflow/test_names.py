@@ -7,6 +7,8 @@ import pytest
 
 from asperity.__main__ import targets
 from asperity.guards.bundle import ROOT
+from evidence.__main__ import RENAMED, studies
+from evidence.record import DATA, ended
 from workflow.files.results import write_text
 from workflow.report.stages import PARTS
 from workflow.scene.renamed import MOVED, SCENES, STAGES, TAILS, place_now
@@ -34,6 +36,8 @@ OTHER_FILES = {  # results that stand in no folder of their stage
 }
 PARTS_OF_ROOMS = {"humidity": "answer"}
 """Stages that are a module of a room, not a room."""
+OTHER_ROOMS_OF_EVIDENCE = {"attacks", "predictions", "switch"}
+"""The door, all stages together, and a room of `mesoscale` that no stage has the name of."""
 PARTS_OF_PAGE = {"budget": "answer", "sensitivity": "uncertainty"}
 """Sections beside that of their stage."""
 
@@ -87,6 +91,20 @@ def test_the_report_has_a_section_a_stage():
     assert {name for name in modules if name not in PARTS_OF_PAGE} == set(NAMES)
     assert set(PARTS_OF_PAGE) <= set(modules)
     assert set(PARTS_OF_PAGE.values()) <= set(NAMES)
+
+
+def test_rooms_of_evidence_have_the_names_of_stages():
+    rooms = {name.partition(".")[0] for name in studies()}
+    assert rooms <= {*NAMES, *OTHER_ROOMS_OF_EVIDENCE}
+
+
+def test_every_command_of_a_table_of_evidence_leads_to_a_study():
+    known = {*studies(), *ended(), *RENAMED}
+    assert set(RENAMED.values()) <= set(studies())
+    assert not set(RENAMED) & set(studies())
+    for table in DATA.glob("*.csv"):
+        commands = re.findall(r"python -m evidence ([\w.]+)", table.read_text(encoding="utf-8"))
+        assert {name for name in commands if name not in known} == set(), table.name
 
 
 def test_names_of_before_lead_to_names_of_now():

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from evidence.pad.rare_failures import known_pad
+from evidence.failure.rare_failures import known_pad
 from mesoscale.answer import switches as answer_switches
 from mesoscale.answer.points import central_point, cutoff_range, plan_points
 from mesoscale.answer.switches import PadModel, solve_point, solve_points

@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-from evidence.pad.other_devices import OTHERS, central_of_table_1, compared
+from evidence.answer.other_devices import OTHERS, central_of_table_1, compared
 from mesoscale.answer.release import answer
 from mesoscale.answer.switches import solve_points
 from mesoscale.inputs.table import collect, film_table, from_rows, to_rows
@@ -104,7 +104,7 @@ def test_a_scene_that_changed_or_never_ran_is_told(here, capsys):
 
 @pytest.mark.parametrize("changes", [OTHERS[1], OTHERS[2], OTHERS[-1]], ids=str)
 def test_another_device_releases_as_on_a_pad_that_is_pressed_for_it(pressed, changes):
-    """All twelve: `python -m evidence pad.other_devices`."""
+    """All twelve: `python -m evidence answer.other_devices`."""
     point, pad, contact = pressed
     row = compared(point, pad, contact, changes)
     assert abs(row["release_V"] - row["pressed_anew_V"]) <= row["error_V"]

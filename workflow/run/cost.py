@@ -17,12 +17,13 @@ TIMES = Path(".snakemake/asperity_seconds.json")
 """Seconds that jobs took, beside the typical ones, by scene and rule; delete it to start again from
 these.
 """
-LONGEST_RUN_H = (
-    12.0  # of a run on one machine, unless it is said to be meant: what a night finishes
-)
-
-# On one core of a server
-TYPICAL_S = {
+LONGEST_RUN_H = 12.0
+"""Of a run on one machine, unless it is said to be meant: what a night finishes."""
+TABLES_COUNT_S = 60.0
+"""Jobs of so many typical seconds count as much as the tables below."""
+COLLECTING_S = 3.0
+"""Of a rule that is in neither table, which collects or fits."""
+TYPICAL_S = {  # on one core of a server
     "make_glass": 20.0,
     "make_base": 2000.0,
     "make_amorphous": 60.0,
@@ -55,8 +56,8 @@ CYCLES = {  # contacts that a job closes and opens, to the largest force of the 
 
 def typical_cycle_s(contact: SceneContact) -> float:
     """Seconds of one closing and opening."""
-    of_1024 = {"asperity": 0.06, "coupled": 2.5, "adhesive": 36.0}
-    return of_1024[contact.mechanics] * (contact.pixels / 1024) ** 3
+    on_1024 = {"asperity": 0.06, "coupled": 2.5, "adhesive": 36.0}
+    return on_1024[contact.mechanics] * (contact.pixels / 1024) ** 3
 
 
 class Costs:
@@ -70,7 +71,9 @@ class Costs:
     """
 
     def __init__(self, scene: Scene, closing_s: Mapping[str, float], times: Path = TIMES) -> None:
-        self._scene, self._closing_s, self._file = scene, closing_s, times
+        self._scene = scene
+        self._closing_s = closing_s
+        self._file = times
         self._all = _read(times)
         # former jobs count half, since this run may find the machine busier
         former = self._all.get(scene.name, {})
@@ -78,21 +81,25 @@ class Costs:
 
     def seconds(self, rule: str, wildcards: Mapping[str, str]) -> float:
         """Seconds of one core of this machine, by all that jobs took so far."""
-        # jobs of 60 typical seconds count as much as the tables
-        logs = zip((60.0, 60.0), *self._learned.values(), strict=True)
-        # a rule that has not run here is as slow as the others were
-        took, typical = self._learned.get(rule) or map(sum, logs)
+        took, typical = self._learned.get(rule) or self._of_all_rules()
         return took / typical * self._typical_s(rule, wildcards)
+
+    def _of_all_rules(self) -> tuple[float, float]:
+        """What all jobs took, and what is typical of them: a rule that has not run here is as slow
+        as the others were.
+        """
+        pairs = [(TABLES_COUNT_S, TABLES_COUNT_S), *self._learned.values()]
+        return sum(took for took, _ in pairs), sum(typical for _, typical in pairs)
 
     def learn(self, rule: str, wildcards: Mapping[str, str], took: float) -> None:
         """Keep what a job took, for the rest of this run and for later ones."""
-        former = self._learned.get(rule, (0.0, 0.0))
-        self._learned[rule] = former[0] + took, former[1] + self._typical_s(rule, wildcards)
+        took_before, typical_before = self._learned.get(rule, (0.0, 0.0))
+        typical = self._typical_s(rule, wildcards)
+        self._learned[rule] = took_before + took, typical_before + typical
+        content = json.dumps(self._all | {self._scene.name: self._learned})
         with suppress(OSError):  # a full disk
             self._file.parent.mkdir(exist_ok=True)
-            self._file.write_text(
-                json.dumps(self._all | {self._scene.name: self._learned}), encoding="utf-8"
-            )
+            self._file.write_text(content, encoding="utf-8")
 
     def known(self, rules: Iterable[str]) -> bool:
         """Did jobs of all these rules run for this scene before?"""
@@ -102,9 +109,7 @@ class Costs:
         if "closing" in rule and "run" in wildcards:
             return self._closing_s[wildcards["run"]]
         cycles_s = CYCLES.get(rule, 0) * typical_cycle_s(self._scene.contact)
-        return (
-            TYPICAL_S.get(rule, 3.0) + cycles_s
-        )  # a rule that is in neither table collects or fits
+        return TYPICAL_S.get(rule, COLLECTING_S) + cycles_s
 
 
 def _read(times: Path) -> dict[str, dict[str, tuple[float, float]]]:
@@ -113,16 +118,25 @@ def _read(times: Path) -> dict[str, dict[str, tuple[float, float]]]:
     """
     try:
         content: Any = json.loads(times.read_text(encoding="utf-8"))
-        learned = {
-            str(scene): {
-                str(rule): (float(took), float(typical)) for rule, (took, typical) in rules.items()
-            }
-            for scene, rules in content.items()
-        }
+        return {str(scene): _pairs(rules) for scene, rules in content.items()}
     except (OSError, ValueError, TypeError, AttributeError, RecursionError):
         return {}
-    pairs = [pair for rules in learned.values() for pair in rules.values()]
-    return learned if all(0 < number < math.inf for pair in pairs for number in pair) else {}
+
+
+def _pairs(rules: Any) -> dict[str, tuple[float, float]]:
+    """What the jobs of each rule took, and what is typical of them (s).
+
+    Raises
+    ------
+    ValueError, TypeError, AttributeError : it is no mapping to pairs of positive numbers.
+    """
+    pairs = {}
+    for rule, (took, typical) in rules.items():
+        pair = (float(took), float(typical))
+        if not all(0 < seconds < math.inf for seconds in pair):
+            raise ValueError(pair)
+        pairs[str(rule)] = pair
+    return pairs
 
 
 def refusal(seconds: Mapping[str, float], wall_s: float, cores: int, hours: float) -> str:
@@ -137,12 +151,14 @@ def refusal(seconds: Mapping[str, float], wall_s: float, cores: int, hours: floa
     if wall_s <= hours * 3600:
         return ""
     rule = max(seconds, key=lambda rule: seconds[rule])
-    allowed = math.ceil(1.2 * wall_s / 3600)
+    of_rule_h = seconds[rule] / 3600
+    of_all_h = sum(seconds.values()) / 3600
+    wall_h = wall_s / 3600
+    allowed = math.ceil(1.2 * wall_h)
     return (
-        f"jobs {rule} take {seconds[rule] / 3600:.3g} of the {sum(seconds.values()) / 3600:.3g}"
-        f" hours of one core, {wall_s / 3600:.3g} hours on {cores}, and a run on one machine may"
-        f" take {hours:g}; ask for less, allow it (--hours {allowed}, make run HOURS={allowed}), or"
-        " run on a cluster (docs/cluster.md)"
+        f"jobs {rule} take {of_rule_h:.3g} of the {of_all_h:.3g} hours of one core, {wall_h:.3g}"
+        f" hours on {cores}, and a run on one machine may take {hours:g}; ask for less, allow it"
+        f" (--hours {allowed}, make run HOURS={allowed}), or run on a cluster (docs/cluster.md)"
     )
 
 
@@ -157,10 +173,9 @@ def wall_seconds(
     seconds : of each job on one core, by number.
     needs : numbers of the jobs that each waits for; of others than these it waits no more.
     """
-    waits = {number: [other for other in needs[number] if other in seconds] for number in seconds}
-    finish: dict[int, float] = {}
+    waits = {number: seconds.keys() & set(needs[number]) for number in seconds}
+    ends: dict[int, float] = {}
     for number in TopologicalSorter(waits).static_order():
-        finish[number] = seconds[number] + max(
-            (finish[other] for other in waits[number]), default=0.0
-        )
-    return max(sum(seconds.values()) / cores, max(finish.values(), default=0.0))
+        begins = max((ends[other] for other in waits[number]), default=0.0)
+        ends[number] = begins + seconds[number]
+    return max(sum(seconds.values()) / cores, max(ends.values(), default=0.0))

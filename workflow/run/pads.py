@@ -62,17 +62,10 @@ def write_solved(
     attributes: dict[str, dict[str, Any]] = {}
     for number, solved_point in solved.items():
         name = f"point_{number:04d}"
-        groups[name] = {} if solved_point.pad is None else _curves(solved_point.pad)
-        device = solved_point.point.device.model_dump(mode="json", exclude={"spread"})
-        attributes[name] = {
-            **(solved_point.states.numbers if solved_point.states else {}),
-            "halves_V": solved_point.halves_V,
-            "refused": solved_point.refused,
-            "inputs": solved_point.point.values,
-            "gap_cutoff_nm": solved_point.point.gap_cutoff_nm,
-            "device": device,
-            **(asdict(solved_point.pad.flats) if solved_point.pad else {}),
-        }
+        groups[name] = {}
+        if solved_point.pad is not None:
+            groups[name] = _curves(solved_point.pad)
+        attributes[name] = _stated(solved_point)
     if design is not None:
         drawn = Dataset(
             design.probability, "1", "probability of what is drawn, by `drawn`", ("point", "drawn")
@@ -80,6 +73,23 @@ def write_solved(
         groups["design"] = {"probability": drawn}
         attributes["design"] = {"drawn": list(design.names), "varies": list(design.varies)}
     write_h5(path, groups, {}, provenance, attributes)
+
+
+def _stated(solved: Solved) -> dict[str, Any]:
+    """What a file states of a switch beside the curves of its pad."""
+    stated: dict[str, Any] = {}
+    if solved.states is not None:
+        stated |= solved.states.numbers
+    stated |= {
+        "halves_V": solved.halves_V,
+        "refused": solved.refused,
+        "inputs": solved.point.values,
+        "gap_cutoff_nm": solved.point.gap_cutoff_nm,
+        "device": solved.point.device.model_dump(mode="json", exclude={"spread"}),
+    }
+    if solved.pad is not None:
+        stated |= asdict(solved.pad.flats)
+    return stated
 
 
 def _curves(pad: Pad) -> dict[str, Dataset]:
@@ -262,37 +272,44 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
     for name, stated in attributes.items():
         if not name.startswith("point_"):
             continue
-        digits = name.removeprefix("point_")
-        pad = None
         where = f"{path}: {name}"
-        _check(
-            where,
-            digits.isascii() and digits.isdigit() and int(digits) in points,
-            "no point of this scene",
-        )
+        digits = name.removeprefix("point_")
+        is_number = digits.isascii() and digits.isdigit()
+        _check(where, is_number and int(digits) in points, "no point of this scene")
         number = int(digits)
         _check_solved(where, stated)
-        _check(where, name in groups or bool(stated["refused"]), "no curves")
+        refused = str(stated["refused"])
+        _check(where, name in groups or bool(refused), "no curves")
+        pad = None
         if name in groups:
             _check_curves(where, stated, groups[name])
-            curves = groups[name]
-            pad = Pad(
-                PadGrid(curves["separation_nm"], curves["depth"]),
-                curves["weight"],
-                curves["rms_ratio"],
-                curves["first_contact_nm"],
-                curves["closing_GPa"],
-                curves["opening_GPa"],
-                curves["settled"].astype(bool),
-                Flats(float(stated["hamaker"]), float(stated["offset_nm"])),
-            )
+            pad = _pad_in(stated, groups[name])
         states = None
-        if not stated["refused"]:
-            pull_in_V, release_V, capacitance_fF, deepened = (float(stated[key]) for key in STATES)
-            touches = "touches" in stated  # stated only of a switch that does
-            states = States(pull_in_V, release_V, capacitance_fF, bool(deepened), touches)
-        first, second = (float(value) for value in stated["halves_V"])
-        yield number, Solved(points[number], pad, states, (first, second), str(stated["refused"]))
+        if not refused:
+            states = _states_in(stated)
+        first_V, second_V = (float(value) for value in stated["halves_V"])
+        yield number, Solved(points[number], pad, states, (first_V, second_V), refused)
+
+
+def _pad_in(stated: Mapping[str, Any], curves: Mapping[str, np.ndarray]) -> Pad:
+    """The pad of a group of a file."""
+    return Pad(
+        grid=PadGrid(curves["separation_nm"], curves["depth"]),
+        weight=curves["weight"],
+        rms_ratio=curves["rms_ratio"],
+        first_contact_nm=curves["first_contact_nm"],
+        closing=curves["closing_GPa"],
+        opening=curves["opening_GPa"],
+        settled=curves["settled"].astype(bool),
+        flats=Flats(float(stated["hamaker"]), float(stated["offset_nm"])),
+    )
+
+
+def _states_in(stated: Mapping[str, Any]) -> States:
+    """What a file states that a switch does."""
+    pull_in_V, release_V, capacitance_fF, deepened = (float(stated[key]) for key in STATES)
+    touches = "touches" in stated  # stated only of a switch that does
+    return States(pull_in_V, release_V, capacitance_fF, bool(deepened), touches)
 
 
 def population_of_job(snakemake: Any) -> tuple[Population, float]:

@@ -182,6 +182,7 @@ def _no_switch(device: DeviceSettings) -> str:
         "stopper_nm",
         "dimple_nm",
         "spread",
+        "measured",
     }
     if device.touching_at_rest or not unusual & device.model_fields_set:
         return device.touching_at_rest

@@ -19,7 +19,8 @@ SCHEMA = ROOT / "config" / "scene.schema.json"
 
 def value_in_json(model: BaseModel, name: str) -> str:
     """The value of a field as a scene may state it: JSON is valid YAML."""
-    return json.dumps(json.loads(model.model_dump_json(include={name}))[name], ensure_ascii=False)
+    dumped = json.loads(model.model_dump_json(include={name}))  # leaves out what nobody measured
+    return json.dumps(dumped.get(name), ensure_ascii=False)
 
 
 def documented_defaults() -> str:

@@ -29,6 +29,10 @@ with job(snakemake) as run:
     if model.central.sticks:
         further = freed_by_surface(model.central, points.on_grid, settings.cells)
         switch["reserve"]["freed_by"] += further
+    if points.device.measured:
+        from mesoscale.answer.measured import what_remains  # compiles
+
+        switch["measured"] = what_remains(points.device)
     write_json(snakemake.output.switch, switch, run.provenance)
     effects = effects_of(load_mapping(Path(snakemake.input.effects), "table of effects"))
     if points.contact.air or "humidity" in points.table.names:

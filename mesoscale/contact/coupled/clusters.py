@@ -7,19 +7,19 @@ from mesoscale.contact.coupled.dense import wrapped
 
 
 @njit(cache=True)
-def label(sites, place, pressure, pixels, number):
+def label(sites, place, pressure, pixels, cluster):
     """Number the clusters of connected sites under pressure, from 0; -1 for the sites apart.
 
     `place` holds the position of each site of the cell in `sites`, or -1. Returns how many clusters
     there are.
     """
     clusters = 0
-    number[:] = -1
+    cluster[:] = -1
     waiting = np.empty(sites.size, np.int32)
     for start in range(sites.size):
-        if number[start] >= 0 or not pressure[start] > 0.0:
+        if cluster[start] >= 0 or not pressure[start] > 0.0:
             continue
-        number[start] = clusters
+        cluster[start] = clusters
         waiting[0] = start
         end = 1
         while end > 0:
@@ -32,8 +32,8 @@ def label(sites, place, pressure, pixels, number):
                     other = place[
                         wrapped(row + rows, pixels) * pixels + wrapped(col + cols, pixels)
                     ]
-                    if other >= 0 and number[other] < 0 and pressure[other] > 0.0:
-                        number[other] = clusters
+                    if other >= 0 and cluster[other] < 0 and pressure[other] > 0.0:
+                        cluster[other] = clusters
                         waiting[end] = other
                         end += 1
         clusters += 1

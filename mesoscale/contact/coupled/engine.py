@@ -157,8 +157,8 @@ class CoupledContact(Contact):
         self.bounded = with_flow or self.capped
         if not self.bounded and separation + self.mean <= 0.0:  # no pressure parts the mean planes
             return State(math.inf, self.heights.size, 1, 0, math.inf, 0, False, False)
-        rounds, settled = self._solve_rounds() if self.bounded else (0, self._solve())
-        number, count = self._clusters()
+        rounds, settled = self._solve_as_bounded()
+        cluster, count = self._clusters()
         if with_flow:
             clusters.flatten(
                 self.heights,
@@ -169,9 +169,11 @@ class CoupledContact(Contact):
                 self._bounds(),
                 self.changes,
             )
-        touching = int(np.count_nonzero(number >= 0))
-        hardness = self._hardness_of(number)
-        load = float((self._traction() / hardness).max()) if touching and hardness.all() else 0.0
+        touching = int(np.count_nonzero(cluster >= 0))
+        hardness = self._hardness_of(cluster)
+        load = 0.0
+        if touching and hardness.all():
+            load = float((self._traction() / hardness).max())
         return State(self.force, touching, count, 0, load, rounds, settled, False)
 
     def _expect(self, separation: float) -> None:
@@ -186,44 +188,53 @@ class CoupledContact(Contact):
             self.pressure += share * change
         if self.grid is not None:
             self.guessed = True
-            self.ahead = (
-                (share, before.field)
-                if share and before.field is not None
-                else (0.0, self.grid.field)
-            )
+            self.ahead = (0.0, self.grid.field)
+            if share and before.field is not None:
+                self.ahead = (share, before.field)
             self.displacement = self._expected_field(self.sites)
 
     def _share(self, separation: float) -> float:
         """How far a first guess goes on as in the last step, over that step; 0 where it does
         not.
         """
-        now, before = self.before, self.earlier
+        now = self.before
+        before = self.earlier
         last = now.separation - before.separation
-        share = (separation - now.separation) / last if last and math.isfinite(last) else 0.0
-        same = (now.field is None) == (before.field is None)
-        return share if same and 0.0 < share <= self.LONGEST_GUESS else 0.0
+        same_way = (now.field is None) == (before.field is None)
+        if not same_way or not last or not math.isfinite(last):
+            return 0.0
+        share = (separation - now.separation) / last
+        if not 0.0 < share <= self.LONGEST_GUESS:
+            return 0.0
+        return share
 
     def _expected_field(self, sites: np.ndarray) -> np.ndarray:
         """Displacement (nm) of some sites by the first guess of the pressures."""
-        (share, before), field = self.ahead, self.whole.field[sites]
-        return field + share * (field - before[sites]) if share else field
+        share, before = self.ahead
+        field = self.whole.field[sites]
+        if not share:
+            return field
+        return field + share * (field - before[sites])
 
     def remarks(self) -> dict[str, float]:
         """What says whether the model holds, for the flags of a cycle (`validity`); the contact as
         it is now.
         """
-        number, count = self._clusters()
-        touching = number >= 0
-        area = self.site_area * max(int(touching.sum()) / max(count, 1), 1.0)
-        hardness = self.hardness.pressure(area)
-        reached = self._traction()[touching] >= (1.0 - 1e-12) * self._hardness_of(number)[touching]
-        yielded = float(np.mean(reached)) if count else 0.0
+        cluster, count = self._clusters()
+        touching = cluster >= 0
+        mean_area = self.site_area * max(int(touching.sum()) / max(count, 1), 1.0)
+        hardness = self.hardness.pressure(mean_area)
+        plasticity_index = math.inf
+        if hardness > 0.0:
+            plasticity_index = self.modulus * self.roughness.slope / hardness
+        yielded = 0.0
+        if count:
+            limit = (1.0 - 1e-12) * self._hardness_of(cluster)[touching]
+            yielded = float(np.mean(self._traction()[touching] >= limit))
         return {
             "rms_slope": self.roughness.slope,
             "rms_curvature_per_nm": self.roughness.curvature,
-            "plasticity_index": (
-                self.modulus * self.roughness.slope / hardness if hardness > 0.0 else math.inf
-            ),
+            "plasticity_index": plasticity_index,
             "yielded_share": yielded,
             **validity.adhesion_numbers(self.hamaker, self.settings, self.modulus, self.roughness),
         }
@@ -271,6 +282,12 @@ class CoupledContact(Contact):
         )
         return pressure.reshape(self.n, self.n), gap.reshape(self.n, self.n)
 
+    def _solve_as_bounded(self) -> tuple[int, bool]:
+        """Solve, in rounds where pressures have a limit; their number and whether they settled."""
+        if not self.bounded:
+            return 0, self._solve()
+        return self._solve_rounds()
+
     def _solve_rounds(self) -> tuple[int, bool]:
         """Solve with the hardness of each cluster until the clusters are those it belongs to.
 
@@ -307,17 +324,18 @@ class CoupledContact(Contact):
         """Number of the cluster of each known site, -1 where it is apart, and how many there
         are.
         """
-        number = np.empty(self.sites.size, np.int32)
-        return number, clusters.label(self.sites, self.place, self.pressure, self.n, number)
+        cluster = np.empty(self.sites.size, np.int32)
+        count = clusters.label(self.sites, self.place, self.pressure, self.n, cluster)
+        return cluster, count
 
-    def _hardness_of(self, number: np.ndarray) -> np.ndarray:
+    def _hardness_of(self, cluster: np.ndarray) -> np.ndarray:
         """Hardness (GPa) of the clusters, for each known site; for one apart that of a single
         site.
         """
-        sites = np.append(
-            np.bincount(number[number >= 0]), 1
-        )  # the last for those apart, number -1
-        return np.broadcast_to(self.hardness.pressure(self.site_area * sites), sites.shape)[number]
+        # the last for those apart, of cluster -1
+        sites = np.append(np.bincount(cluster[cluster >= 0]), 1)
+        hardness = self.hardness.pressure(self.site_area * sites)
+        return np.broadcast_to(hardness, sites.shape)[cluster]
 
     def _solve(self, coarser: float = 1.0) -> bool:
         """Find the pressures with the limits at hand, to so many tolerances; True if they

@@ -227,9 +227,9 @@ def solve(
             if not np.array_equal(grid.block_sites, sites[places]):
                 grid.block_sites = sites[places]
                 grid.block = dense.block(grid.table, grid.scale, grid.block_sites, grid.shape[0])
-            number = np.full(gap.size, -1)
-            number[places] = np.arange(places.size)
-            around = dense.neighbours(sites, place, grid.shape[0], places, number)
+            row_of_block = np.full(gap.size, -1)
+            row_of_block[places] = np.arange(places.size)
+            around = dense.neighbours(sites, place, grid.shape[0], places, row_of_block)
             open_gap = gap[places] + displacement[places]
             _follow(grid, sites, (pressure, change), places, open_gap)
             closed = dense.close_gaps(grid.block, around, stencil, open_gap, 0.0, SINGLE_SHARE)
@@ -253,9 +253,8 @@ def solve(
                 goal,
                 share,
             )
-            if (
-                places.size == grid.field.size
-            ):  # a uniform pressure moves nothing: take the least, so that sets change
+            # a uniform pressure moves nothing: take the least, so that sets change
+            if places.size == grid.field.size:
                 pressure -= pressure.min()
     displacement[:] = grid.displace(sites, pressure)
     return NEWTON_STEPS, False
@@ -280,7 +279,8 @@ def _follow(
     largest = float(size.max())
     small = float(size.sum()) <= SMALL * float(pressure.sum())
     unit = (change / largest).astype(np.float32)
-    displacement += largest * (grid.nearly if small else grid.displacement_at)(sites, unit)[places]
+    displaced = grid.nearly if small else grid.displacement_at
+    displacement += largest * displaced(sites, unit)[places]
 
 
 def _close_gaps(

@@ -19,9 +19,9 @@ BLOCK = 2**17  # sites whose rows are transformed at a time, so that they stay i
 
 def wave_numbers(pixels: int) -> np.ndarray:
     """abs(q) L / 2 pi of the modes of a real transform, shape (pixels, pixels // 2 + 1)."""
-    return np.hypot(
-        np.fft.fftfreq(pixels, 1 / pixels)[:, None], np.fft.rfftfreq(pixels, 1 / pixels)[None, :]
-    )
+    along_x = np.fft.fftfreq(pixels, 1 / pixels)
+    along_y = np.fft.rfftfreq(pixels, 1 / pixels)
+    return np.hypot(along_x[:, None], along_y[None, :])
 
 
 @lru_cache(maxsize=4)
@@ -59,10 +59,8 @@ def influence(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarra
     half = pixels // 2 + 1
     number = wave_numbers(pixels)
     number[0, 0] = np.inf
-    table = (
-        np.asarray(fft.irfft2(softness(pixels, length, bodies) / number, s=(pixels, pixels)))
-        / np.pi
-    )
+    spectrum = softness(pixels, length, bodies) / number
+    table = np.asarray(fft.irfft2(spectrum, s=(pixels, pixels))) / np.pi
     table = np.ascontiguousarray(table[:half, :half])
     table.flags.writeable = False
     return table
@@ -88,11 +86,11 @@ def convolve(
     room : for the spectrum, as large as `compliance`, complex in double precision; its contents are
         lost
     """
-    spectrum = room.view(np.result_type(pressure, np.complex64))[: compliance.size].reshape(
-        compliance.shape
-    )
-    moved = np.empty((wanted.size, pressure.shape[1]), pressure.dtype)
-    step = max(BLOCK // pressure.shape[1], 1)
+    pixels = pressure.shape[1]
+    in_its_precision = room.view(np.result_type(pressure, np.complex64))
+    spectrum = in_its_precision[: compliance.size].reshape(compliance.shape)
+    moved = np.empty((wanted.size, pixels), pressure.dtype)
+    step = max(BLOCK // pixels, 1)
     if rows.size < len(spectrum):
         spectrum[:] = 0.0
     for start in range(0, rows.size, step):
@@ -101,9 +99,8 @@ def convolve(
     spectrum *= compliance
     spectrum = np.asarray(fft.ifft(spectrum, axis=0, overwrite_x=True))
     for start in range(0, wanted.size, step):
-        moved[start : start + step] = fft.irfft(
-            spectrum[wanted[start : start + step]], n=pressure.shape[1]
-        )
+        block = wanted[start : start + step]
+        moved[start : start + step] = fft.irfft(spectrum[block], n=pixels)
     return moved
 
 

@@ -30,12 +30,9 @@ HYPERBOLIC = 0.5 * np.array(
 @lru_cache(maxsize=4)
 def softness_spline(bodies: tuple[Body, ...], lowest_q: float, highest_q: float) -> CubicSpline:
     """`softness` between two wave vectors (1/nm), over ln q."""
-    log_range = np.log([lowest_q, highest_q])
-    log_q = np.linspace(
-        log_range[0] - STEP,
-        log_range[1] + STEP,
-        3 + int(np.ceil((log_range[1] - log_range[0]) / STEP)),
-    )
+    first, last = np.log([lowest_q, highest_q])
+    count = 3 + int(np.ceil((last - first) / STEP))
+    log_q = np.linspace(first - STEP, last + STEP, count)
     return CubicSpline(log_q, softness(bodies, np.exp(log_q)))
 
 
@@ -43,9 +40,8 @@ def softness(bodies: tuple[Body, ...], q_per_nm: Array) -> Array:
     """Compliance of all bodies together over that of their bases alone, shape that of
     `q_per_nm`.
     """
-    return (
-        sum(compliance(body, q_per_nm) for body in bodies) * q_per_nm / 2.0 * base_modulus(bodies)
-    )
+    together = sum(compliance(body, q_per_nm) for body in bodies)
+    return together * q_per_nm / 2.0 * base_modulus(bodies)
 
 
 def compliance(body: Body, q_per_nm: Array) -> Array:
@@ -57,26 +53,29 @@ def compliance(body: Body, q_per_nm: Array) -> Array:
     body : materials from the surface down; all but the last, the base, have a thickness.
     """
     *layers, _ = body
+    # four amplitudes a layer, and two of the base, in which only falling solutions are
     unknown = 4 * len(layers) + 2
     matrix = np.zeros((q_per_nm.size, unknown, unknown))
     load = np.zeros((q_per_nm.size, unknown, 1))
     load[:, 0] = 1.0  # at the surface f = 1 and f' = 0
-    surface = np.empty((q_per_nm.size, 0))
+    sinks_by = np.empty((q_per_nm.size, 0))  # of the surface, by each amplitude of the first layer
     for i, material in enumerate(body):
-        waves = slice(4 * i, min(4 * i + 4, unknown))  # in the base only the falling ones
-        thickness = None if material.thickness_nm is None else q_per_nm * material.thickness_nm
-        top = _state(_waves(thickness, np.zeros_like(q_per_nm)), material)[
-            :, :, : waves.stop - waves.start
-        ]
+        amplitudes = slice(4 * i, min(4 * i + 4, unknown))
+        count = amplitudes.stop - amplitudes.start
+        thickness = None
+        if material.thickness_nm is not None:
+            thickness = q_per_nm * material.thickness_nm
+        at_top = _state(_waves(thickness, np.zeros_like(q_per_nm)), material)[:, :, :count]
         if i == 0:
-            matrix[:, :2, waves] = top[:, :2]
-            surface = top[:, 3]
-        else:
-            matrix[:, 4 * i - 2 : 4 * i + 2, waves] = -top
+            matrix[:, :2, amplitudes] = at_top[:, :2]
+            sinks_by = at_top[:, 3]
+        else:  # continuous with the layer above
+            matrix[:, 4 * i - 2 : 4 * i + 2, amplitudes] = -at_top
         if thickness is not None:
-            matrix[:, 4 * i + 2 : 4 * i + 6, waves] = _state(_waves(thickness, thickness), material)
-    amplitudes = np.linalg.solve(matrix, load)[:, : surface.shape[1], 0]
-    return np.einsum("ij,ij->i", surface, amplitudes) / q_per_nm
+            at_bottom = _state(_waves(thickness, thickness), material)
+            matrix[:, 4 * i + 2 : 4 * i + 6, amplitudes] = at_bottom
+    of_first_layer = np.linalg.solve(matrix, load)[:, : sinks_by.shape[1], 0]
+    return np.einsum("ij,ij->i", sinks_by, of_first_layer) / q_per_nm
 
 
 def _waves(thickness: Array | None, depth: Array) -> Array:
@@ -86,10 +85,13 @@ def _waves(thickness: Array | None, depth: Array) -> Array:
     They are exp(-z), z exp(-z), and the same rising from the bottom; in thin layers cosh z, sinh z,
     z cosh z, z sinh z.
     """
-    thin = np.zeros(depth.shape, bool) if thickness is None else thickness < THIN
+    thin = np.zeros(depth.shape, bool)
+    from_bottom = depth
+    if thickness is not None:
+        thin = thickness < THIN
+        from_bottom = np.where(thin, depth, depth - thickness)
     waves = np.empty((depth.size, 4, 4))
-    for column, sign in ((0, -1.0), (2, 1.0)):
-        z = depth if sign < 0.0 or thickness is None else np.where(thin, depth, depth - thickness)
+    for column, sign, z in ((0, -1.0, depth), (2, 1.0, from_bottom)):
         decay = np.exp(sign * z)
         for n in range(4):
             waves[:, n, column] = sign**n * decay

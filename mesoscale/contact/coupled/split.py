@@ -42,29 +42,24 @@ class Split:
         narrow = 2.0 * math.pi * WIDTH / self.coarse
         short = compliance * erf(narrow * half_space.wave_numbers(pixels))
         short[0, 0] = 2.0 * scale * narrow / math.pi**1.5  # the limit of small q
-        self.table = np.asarray(fft.irfft2(short, s=(pixels, pixels)))[
-            : REACH + 1, : REACH + 1
-        ].astype(np.float32)
+        near = np.asarray(fft.irfft2(short, s=(pixels, pixels)))[: REACH + 1, : REACH + 1]
+        self.table = near.astype(np.float32)
+        # the long range on the coarse grid, divided by the transform of the splines
         modes = np.fft.fftfreq(self.coarse, 1 / self.coarse).astype(int)
+        half_of_modes = modes[: self.coarse // 2 + 1]
         spline = ((2.0 + np.cos(2.0 * np.pi * modes / self.coarse)) / 3.0) ** 2 * (
             pixels / self.coarse
         )
-        coarse_modes = modes[: self.coarse // 2 + 1]
-        self.rest = (
-            (compliance - short)[modes][:, np.abs(coarse_modes)]
-            / spline[:, None]
-            / spline[: coarse_modes.size]
-        ).astype(np.float32)
+        long_range = (compliance - short)[modes][:, np.abs(half_of_modes)]
+        rest = long_range / spline[:, None] / spline[: half_of_modes.size]
+        self.rest = rest.astype(np.float32)
+        # cubic splines between a site and the four coarse ones around it
         coarse_place = np.arange(pixels) * (self.coarse / pixels)
-        self.nodes = ((coarse_place.astype(int)[:, None] + np.arange(4)) % self.coarse).astype(
-            np.int32
-        )
+        nodes = coarse_place.astype(int)[:, None] + np.arange(4)
+        self.nodes = (nodes % self.coarse).astype(np.int32)
         x = (coarse_place % 1.0)[:, None]
-        weights = (
-            np.hstack([(1 - x) ** 3, 3 * x**3 - 6 * x**2 + 4, 3 * (x + x**2 - x**3) + 1, x**3])
-            / 6.0
-        )
-        self.weights = weights.astype(np.float32)
+        weights = [(1 - x) ** 3, 3 * x**3 - 6 * x**2 + 4, 3 * (x + x**2 - x**3) + 1, x**3]
+        self.weights = (np.hstack(weights) / 6.0).astype(np.float32)
         self.room = np.empty(self.rest.size, np.complex128)
         self.others = np.empty(PAIRS_PER_SITE * pixels**2, np.int32)
         self.values = np.empty(self.others.size, np.float32)
@@ -81,27 +76,27 @@ class Split:
         pairs.
         """
         old = self.rows.size
-        new = sites.size - self.rows.size
-        if self.open and new:
-            self.rows, self.cols = (
-                index.astype(np.int32) for index in np.divmod(sites, self.pixels)
-            )
-            self.coarse_rows, places = half_space.rows_of(
-                self.nodes[self.rows].ravel(), self.coarse
-            )
-            self.row_nodes = places.reshape(-1, 4).astype(np.int32)
-            self.first = np.append(self.first, np.zeros(new, np.int64))
-            self.open = pair(
-                self.rows,
-                self.cols,
-                place,
-                self.pixels,
-                self.table,
-                old,
-                self.first,
-                self.others,
-                self.values,
-            )
+        new = sites.size - old
+        if not self.open or not new:
+            return self.open
+        rows, cols = np.divmod(sites, self.pixels)
+        self.rows = rows.astype(np.int32)
+        self.cols = cols.astype(np.int32)
+        nodes = self.nodes[self.rows].ravel()
+        self.coarse_rows, places = half_space.rows_of(nodes, self.coarse)
+        self.row_nodes = places.reshape(-1, 4).astype(np.int32)
+        self.first = np.append(self.first, np.zeros(new, np.int64))
+        self.open = pair(
+            self.rows,
+            self.cols,
+            place,
+            self.pixels,
+            self.table,
+            old,
+            self.first,
+            self.others,
+            self.values,
+        )
         return self.open
 
     def displacement(self, pressure: Array) -> Array:

@@ -52,20 +52,20 @@ class Cut:
 def levels_and_tilts(spectra: Sequence[TrustedSpectrum]) -> dict[str, tuple[Array, Array]]:
     """Level and tilt (n,) of the measurements about their means, with covariance."""
     bands = [on_bands(item) for item in spectra]
-    number = np.concatenate([numbers for numbers, _, _ in bands])
+    band = np.concatenate([numbers for numbers, _, _ in bands])
     owner = np.repeat(np.arange(len(bands)), [len(numbers) for numbers, _, _ in bands])
     value = np.concatenate([levels for _, levels, _ in bands])
     variance = np.concatenate([variances for _, _, variances in bands])
-    _, index, count = np.unique(number, return_inverse=True, return_counts=True)
+    _, index, count = np.unique(band, return_inverse=True, return_counts=True)
     shared = count[index] > 1
     if not shared.any():
         return {}
-    number = number[shared]
+    band = band[shared]
     owner = owner[shared]
     value = value[shared]
     variance = variance[shared]
     index = index[shared]
-    x = number * np.log(10) / BANDS_PER_DECADE
+    x = band * np.log(10) / BANDS_PER_DECADE
     x = x - np.average(x, weights=1 / variance)
     film = np.eye(len(count))[index]
     places = np.eye(len(bands))[owner]

@@ -62,10 +62,10 @@ def on_grid(
         )
     measured = np.isfinite(z)
     total = np.bincount(sites[measured], z[measured], size)
-    number = np.bincount(sites[measured], minlength=size)
-    mean = total / np.maximum(number, 1)
-    heights = np.where(number > 0, mean, np.nan).reshape(counts)
-    holes = int(np.count_nonzero(number == 0))
+    points = np.bincount(sites[measured], minlength=size)
+    mean = total / np.maximum(points, 1)
+    heights = np.where(points > 0, mean, np.nan).reshape(counts)
+    holes = int(np.count_nonzero(points == 0))
     lengths = along_x.count * along_x.step, along_y.count * along_y.step
     step = f"put {len(x)} points on a grid of {counts[0]} x {counts[1]}"
     if holes:

@@ -116,8 +116,8 @@ def _without_missing(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, tuple[st
     if not missing.any() or not in_order or missing.mean() > MAX_MISSING:
         return z, steps
     first, last = np.flatnonzero(~missing)[[0, -1]]
-    number = np.arange(len(z))
-    inside = missing & (number > first) & (number < last)
+    place = np.arange(len(z))
+    inside = missing & (place > first) & (place < last)
     z = np.where(inside, np.interp(x, x[~missing], z[~missing]), z)
     return z, (*steps, f"filled {int(inside.sum())} missing points from their neighbours")
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evidence.failure.rare_failures import known_pad
 from evidence.pad.closed_form import ClosedForm
-from evidence.pad.rare_failures import known_pad
 from mesoscale.answer import points, switches
 from mesoscale.answer.other_devices import release_by_key
 from mesoscale.answer.points import central_point, plan_points

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evidence.pad.rare_failures import CUTOFFS_NM, known_pad
+from evidence.failure.rare_failures import CUTOFFS_NM, known_pad
 from mesoscale.answer import switches as answer_switches
 from mesoscale.circuit import switches
 from mesoscale.circuit.numerics import CIRCUIT

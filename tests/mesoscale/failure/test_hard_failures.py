@@ -5,7 +5,7 @@ tells.
 import numpy as np
 import pytest
 
-from evidence.pad.rare_failures import population
+from evidence.failure.rare_failures import population
 from mesoscale.studies.failure_accuracy import relative_errors
 from mesoscale.studies.failure_stability import hard_cases
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from evidence.pad.rare_failures import KnownPad, known_pad, population
+from evidence.failure.rare_failures import KnownPad, known_pad, population
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE
 from mesoscale.failure.rate import (

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from evidence.pad.rare_failures import PLATE, known_pad, population
+from evidence.failure.rare_failures import PLATE, known_pad, population
 from mesoscale.answer import switches
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.errors import InputError

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from evidence.pad import finite_differences
+from evidence.switch import finite_differences
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.curves import PadCurves
 from mesoscale.pad.local import LocalPad

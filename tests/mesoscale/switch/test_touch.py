@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from evidence.pad.touch import DEVICES, Differences, pulling_pad
+from evidence.switch.touch import DEVICES, Differences, pulling_pad
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import attracting
 from mesoscale.pad.local import LocalPad

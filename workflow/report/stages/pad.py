@@ -11,6 +11,8 @@ from workflow.report.numbers import cell, column, show, spread
 from workflow.report.page import Block, DoubtNote, Figure, PageTable, stage, table
 from workflow.report.verdict import causes_of, in_words
 
+QUANTILES = ("0.5", "0.05", "0.95")
+"""Median and ends, in the order of `spread`."""
 CAUSES = {
     "common": "what all devices have in common and is not known",
     "each": "what differs from device to device",
@@ -41,6 +43,8 @@ def describe(results: Results) -> Iterator[Block]:
     )
     if answer := switch.get("answer"):
         yield from _answer(answer)
+    if measured := switch.get("measured"):
+        yield from _measured(measured)
     if opened := switch.get("adhesion"):
         yield table(
             "Adhesion of the pad at central inputs, opened from each load",
@@ -58,77 +62,79 @@ def describe(results: Results) -> Iterator[Block]:
     )
 
 
+def _measured(measured: dict[str, Any]) -> Iterator[Block]:
+    """What was measured of the device, and what of its properties remains unknown."""
+    for name, row in measured["measured"].items():
+        quantity, _, unit = name.rpartition("_")
+        yield (
+            f"Measured {quantity.replace('_', '-')}: {show(row['value'])} ± {show(row['error'], 2)}"
+            f" {unit}. As stated, such devices have {show(row['by_stated_device'])} ±"
+            f" {show(row['deviation_of_stated_devices'], 2)} {unit}."
+        )
+    if measured["doubt"]:
+        yield f"Doubt: {measured['doubt']}."
+    yield table(
+        "Properties of the device after what was measured",
+        measured["properties"],
+        {
+            "property": "name",
+            "stated": cell("stated"),
+            "after": cell("typical"),
+            "of its spread remains": lambda row: f"{row['remains']:.0%}",
+        },
+    )
+
+
 def _answer(answer: dict[str, Any]) -> Iterator[Block]:
     """What the answer is made of, and which input to measure better."""
-    errors = answer["quantile_error_V"]
-    solved = answer["points"]
+    pull_in = spread(answer["pull_in_V"]["quantiles"], *QUANTILES)
+    capacitance = spread(answer["capacitance_fF"]["quantiles"], *QUANTILES)
+    errors = spread(answer["quantile_error_V"], *QUANTILES, digits=2)
     refused = len(answer["refused"])
+    computed = answer["points"] + refused
     rows = [
-        ("pull-in (V)", spread(answer["pull_in_V"]["quantiles"], "0.5", "0.05", "0.95")),
-        (
-            "capacitance closed (fF)",
-            spread(answer["capacitance_fF"]["quantiles"], "0.5", "0.05", "0.95"),
-        ),
-        ("switches computed; of them without an answer", f"{solved + refused}; {refused}"),
-        (
-            "standard error of the median and of 5 and 95 %, by their number (V)",
-            spread(errors, "0.5", "0.05", "0.95", digits=2),
-        ),
+        ("pull-in (V)", pull_in),
+        ("capacitance closed (fF)", capacitance),
+        ("switches computed; of them without an answer", f"{computed}; {refused}"),
+        ("standard error of the median and of 5 and 95 %, by their number (V)", errors),
         ("error of one of them by the number of its cells (V)", show(answer["cells_error_V"], 2)),
-        *(
-            (f"share of {CAUSES[cause]}", f"{share:.1%}")
-            for cause, share in answer["causes"].items()
-        ),
     ]
-    yield PageTable(
-        "Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows
-    )
+    for cause, share in answer["causes"].items():
+        rows.append((f"share of {CAUSES[cause]}", f"{share:.1%}"))
+    caption = "Behind the interval of the release: median and 5 to 95 %"
+    yield PageTable(caption, ("quantity", "value"), rows)
     if no_cause := causes_of(answer)[1]:
         yield DoubtNote(f"The shares of the variance name no cause: {no_cause}.")
+    shrinks = "known exactly, the interval shrinks by"
+    columns = {
+        "uncertain": lambda row: in_words(row["name"]),
+        "share of the variance": lambda row: f"{row['share_of_variance']:.1%}",
+        shrinks: lambda row: f"{row['interval_shrinks_by']:.1%}",
+    }
     for kind, caption in KINDS.items():
-        yield table(
-            caption,
-            [row for row in answer["sensitivity"] if row["varies"] == kind],
-            {
-                "uncertain": lambda row: in_words(row["name"]),
-                "share of the variance": lambda row: f"{row['share_of_variance']:.1%}",
-                "known exactly, the interval shrinks by": lambda row: (
-                    f"{row['interval_shrinks_by']:.1%}"
-                ),
-            },
-        )
+        rows_of_kind = [row for row in answer["sensitivity"] if row["varies"] == kind]
+        yield table(caption, rows_of_kind, columns)
 
 
 def pad_curves(results: Results) -> str:
     """Closing and opening of the pad, and the well on opening."""
     rows = results.csv("pad/curves.csv")
     depths = sorted({float(row["depth_nm"]) for row in rows if row["branch"] == "opening"})
-    opened = {
-        depth: [row for row in rows if row["depth_nm"] and float(row["depth_nm"]) == depth]
-        for depth in depths
-    }
-    deepest = opened[depths[0]]
+    closing = [row for row in rows if row["branch"] == "closing"]
+    opened = {depth: _opened_from(rows, depth) for depth in depths}
+    farthest_nm = _last_contact(opened[depths[0]]) + 12
     drawn = depths[:: max(1, len(depths) // 4)]
 
     def plot(range_axis, well):
-        closing = [row for row in rows if row["branch"] == "closing"]
-        _line(range_axis, closing, 1e-3, BLUE, "closing")
-        for depth in drawn:
-            _line(
-                range_axis,
-                opened[depth],
-                1e-3,
-                ORANGE,
-                "opening" if depth == drawn[0] else None,
-                "--",
-            )
+        _plot_MPa(range_axis, closing, "-", color=BLUE, label="closing")
+        _plot_MPa(range_axis, opened[drawn[0]], "--", color=ORANGE, label="opening")
+        for depth in drawn[1:]:
+            _plot_MPa(range_axis, opened[depth], "--", color=ORANGE)
         top = max(column(closing, "net_kPa")) * 1e-3
         range_axis.set(
             yscale="log",
+            xlim=(depths[0] - 1, farthest_nm),
             ylim=(1e-4 * top, 2 * top),
-            xlim=(depths[0] - 1, _last_contact(deepest) + 12),
-        )
-        range_axis.set(
             xlabel="separation (nm)",
             ylabel="net pressure (MPa)",
             title="closing, and opening from each depth",
@@ -137,16 +143,18 @@ def pad_curves(results: Results) -> str:
         lowest = 0.0
         for place, depth in enumerate(drawn):
             line = opened[depth]
-            s, net, error = (
-                column(line, name) for name in ("separation_nm", "net_kPa", "standard_error_kPa")
-            )
+            separation = column(line, "separation_nm")
+            net = column(line, "net_kPa")
+            error = column(line, "standard_error_kPa")
             color = SERIES[place % len(SERIES)]
-            well.plot(s, net, color=color, label=f"closed to {depth:.1f} nm")
-            well.fill_between(s, net - error, net + error, color=color, alpha=0.15, linewidth=0)
+            well.plot(separation, net, color=color, label=f"closed to {depth:.1f} nm")
+            band = {"color": color, "alpha": 0.15, "linewidth": 0}
+            well.fill_between(separation, net - error, net + error, **band)
             lowest = min(lowest, float(net.min()))
         well.axhline(0, color=SOFT, linewidth=0.8)
-        well.set(xlim=(depths[0], _last_contact(deepest) + 12), ylim=(2.5 * lowest, -2.5 * lowest))
         well.set(
+            xlim=(depths[0], farthest_nm),
+            ylim=(2.5 * lowest, -2.5 * lowest),
             xlabel="separation (nm)",
             ylabel="net pressure (kPa)",
             title="near the last contact, on opening",
@@ -158,17 +166,16 @@ def pad_curves(results: Results) -> str:
     )
 
 
-def _line(
-    axis, rows: list[CsvRow], scale: float, color: str, label: str | None, style: str = "-"
-) -> None:
-    net = column(rows, "net_kPa") * scale
-    axis.plot(
-        column(rows, "separation_nm"),
-        np.where(net > 0, net, np.nan),
-        style,
-        color=color,
-        label=label,
-    )
+def _opened_from(rows: list[CsvRow], depth_nm: float) -> list[CsvRow]:
+    """The rows of the opening from a depth."""
+    return [row for row in rows if row["depth_nm"] and float(row["depth_nm"]) == depth_nm]
+
+
+def _plot_MPa(axis, rows: list[CsvRow], style: str, **line: str) -> None:
+    """Plot the net pressure where it pushes, on an axis in logarithm."""
+    net_MPa = column(rows, "net_kPa") * 1e-3
+    pushing = np.where(net_MPa > 0, net_MPa, np.nan)
+    axis.plot(column(rows, "separation_nm"), pushing, style, **line)
 
 
 def _last_contact(rows: list[CsvRow]) -> float:

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from evidence.pad.large_surfaces import random_cells
-from evidence.pad.runs import finished
+from evidence.scenes import finished
 from mesoscale.answer.points import Point, point_of, values_at
 from mesoscale.answer.switches import surfaces_of
 from mesoscale.errors import InputError

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from evidence.pad.runs import finished
+from evidence.scenes import finished
 from mesoscale.circuit.lumps import LumpErrors, Lumps, lumps_of
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import spice_switch

@@ -14,8 +14,8 @@ from pathlib import Path
 from time import process_time
 from typing import Any
 
-from evidence.pad import finite_differences
-from evidence.pad.loop import central_pad
+from evidence.circuit.loop import central_pad
+from evidence.switch import finite_differences
 from mesoscale.answer.spread import departed
 from mesoscale.pad.curves import on_deep_enough
 from mesoscale.settings import DeviceSettings

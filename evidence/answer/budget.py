@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from asperity.guards.foreign_yaml import load_mapping
-from evidence.pad.runs import finished
 from evidence.record import ROOT
+from evidence.scenes import finished
 from mesoscale.answer.budget import budget, effects_of
 from mesoscale.answer.release import switch_on_pad
 from mesoscale.answer.switches import solve_point, solve_points, surfaces_of

@@ -19,7 +19,14 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
-from evidence.pad.rare_failures import ATTRACTIONS, CUTOFFS_NM, PLATE, TABLE, known_pad, population
+from evidence.failure.rare_failures import (
+    ATTRACTIONS,
+    CUTOFFS_NM,
+    PLATE,
+    TABLE,
+    known_pad,
+    population,
+)
 from mesoscale.answer.known import ENDS, fit_additive, known
 from mesoscale.answer.points import point_of, values_at
 from mesoscale.failure.population import Population

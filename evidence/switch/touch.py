@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.sparse import block_array, csc_matrix, diags
 from scipy.sparse.linalg import splu
 
-from evidence.pad.loop import central_pad
+from evidence.circuit.loop import central_pad
 from mesoscale.pad.curves import Flats, PadCurves
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
