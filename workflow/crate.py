@@ -91,8 +91,8 @@ def _inputs(scene: Scene, given: str) -> list[tuple[Path, str]]:
         named[f"measurements.tables.{number}.file"] = [table.file]
     places = [(path, path.name) for path in lineage(given) if not _is_shipped(path)]
     for key, names in named.items():
-        for name, found in zip(names, locate(given, key, names), strict=True):
-            if _is_shipped(Path(found)):
+        for name, source in zip(names, locate(given, key, names), strict=True):
+            if _is_shipped(Path(source)):
                 continue
             place = PurePosixPath(name)
             if place.is_absolute() or ".." in place.parts:
@@ -100,7 +100,7 @@ def _inputs(scene: Scene, given: str) -> list[tuple[Path, str]]:
                     f"{given}: {key} = {name}: lies elsewhere; copy it beside the scene, and name"
                     " it from there"
                 )
-            places.append((Path(found), str(place)))
+            places.append((Path(source), str(place)))
     return places
 
 
