@@ -34,6 +34,7 @@ COMMANDS = {
     "targets": "list the stages that a run can be held to",
     "new": "write a scene file to start from",
     "export": "write maps and curves of a scene that has run for other programs",
+    "crate": "pack a run into one file for others, or check such a file",
     "compare": "say what differs between two folders of results",
     "schema": "print the JSON Schema of a scene",
     "serve": "offer contact cycle, law and pad over UM-Bridge",
@@ -66,6 +67,8 @@ def main(arguments: list[str] | None = None) -> int:
     if chosen.command == "sweep":
         hours = ["--hours", f"{chosen.hours:g}"] if chosen.hours else []
         _become("-m", "workflow.run.sweep", chosen.scene, chosen.values, *hours)
+    if chosen.command == "crate":
+        _become("-m", "workflow.crate", chosen.scene)
     if chosen.command == "schema":
         print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
     elif chosen.command == "scenes":
@@ -162,6 +165,9 @@ def _parser() -> argparse.ArgumentParser:
     sweep = added["sweep"]
     sweep.add_argument("scene", help="name of a shipped scene, or path of a YAML file")
     sweep.add_argument("values", metavar="KEY=VALUES", help="for instance contact.pixels=128,256")
+    added["crate"].add_argument(
+        "scene", help="name or file of a scene that has run, or a crate to check (.zip)"
+    )
     added["new"].add_argument("file", help="for instance film.yaml")
     comparison = added["compare"]
     comparison.add_argument("first", help="for instance results/ci")

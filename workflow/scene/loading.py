@@ -39,7 +39,7 @@ def load_scene(name_or_path: str) -> Scene:
         naming file,
         key, value and what is accepted.
     """
-    path, *parents = _lineage(str(name_or_path))
+    path, *parents = lineage(str(name_or_path))
     content: dict[str, Any] = {}
     for file in reversed([path, *parents]):
         stated = _content_of(file)
@@ -69,7 +69,7 @@ def _content_of(path: Path) -> dict[str, Any]:
         raise SceneError(f"{path}: {error}") from None
 
 
-def _lineage(name_or_path: str) -> list[Path]:
+def lineage(name_or_path: str) -> list[Path]:
     """The file of a scene, that of the scene it extends, and so on.
 
     Raises
@@ -230,7 +230,7 @@ def _folders_of(scene: str) -> list[Path]:
     """Folders of the files of a scene, which is given by name or by path, and of those that it
     extends.
     """
-    return [file.parent for file in _lineage(scene)]
+    return [file.parent for file in lineage(scene)]
 
 
 def _cut(text: str) -> str:
