@@ -20,7 +20,7 @@ import numpy as np
 
 from asperity.guards.foreign_text import shown
 from asperity.guards.foreign_yaml import load_mapping
-from workflow.files.checksums import is_damaged
+from workflow.files.checksums import is_damaged, recorded
 from workflow.files.results import checked_items, is_length_alone
 from workflow.report.available import results_in
 from workflow.report.verdict import verdict
@@ -177,7 +177,8 @@ def main() -> None:
     parser.add_argument("second", type=Path)
     chosen = parser.parse_args()
     for folder in (chosen.first, chosen.second):
-        if not os.path.isfile(folder / "scene.yaml"):
+        finished = os.path.isfile(folder / "scene.yaml")
+        if not finished and next(recorded(folder), None) is None:
             parser.error(
                 f"{shown(str(folder))}: no results of a scene are there; give two folders such as"
                 " results/ci"

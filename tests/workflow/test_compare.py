@@ -117,6 +117,15 @@ def test_the_command_says_it_by_its_exit_code(folders, change, code, says):
     assert says in done.stdout + done.stderr
 
 
+def test_results_of_one_target_are_compared_too(folders):
+    """A run held to a target has no record of the scene."""
+    for folder in folders:
+        (folder / "scene.yaml").unlink()
+    command = [sys.executable, "-m", "workflow.compare", *map(str, folders)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, "no difference" in done.stdout) == (0, True)
+
+
 def test_a_damaged_file_is_named(folders):
     first, second = folders
     change_last_digit(second)

@@ -39,6 +39,13 @@ def test_what_is_no_key_or_value_is_one_line_before_anything_runs(here, capsys, 
     assert main(["mine.yaml", word]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert message in line
+    assert [path.name for path in here.iterdir()] == ["mine.yaml"]
+
+
+def test_a_scene_without_an_interval_is_not_swept(here, capsys):
+    (here / "mine.yaml").write_text(SCENE + "pad: {points: 0}\n")
+    assert main(["mine.yaml", "contact.pixels=128,256"]) == 1
+    assert "give pad.points" in capsys.readouterr().err
 
 
 def test_a_row_has_the_numbers_of_a_run_or_the_reason(here):

@@ -212,17 +212,19 @@ def test_switches_without_answer_are_named_with_the_reason_of_the_first():
 
 
 @pytest.mark.parametrize(
-    ("inputs", "air", "words"),
+    ("span", "air", "words"),
     [
-        ({}, None, "In dry air"),
-        ({"humidity": None}, None, "In dry air"),  # a record has all keys of a scene
-        ({"humidity": {"values": [0.0, 0.8]}}, None, "In humid air"),
-        ({"humidity": None}, {"humidity": 0.4}, "In air of 40% humidity"),
+        (None, None, "In dry air"),
+        ((0.0, 0.8), None, "In air of 0% to 80% humidity"),
+        ((0.4, 0.4), None, "In air of 40% humidity"),
+        (None, {"humidity": 0.4}, "In air of 40% humidity"),
     ],
 )
-def test_the_first_screen_says_which_air_it_is_of(inputs, air, words):
-    scene = {"inputs": inputs, "contact": {"air": air}, "device": {"temperature_C": 85.0}}
-    results = SimpleNamespace(has=lambda name: True, record={"scene": scene})
+def test_the_first_screen_says_which_air_it_is_of(span, air, words):
+    scene = {"contact": {"air": air}, "device": {"temperature_C": 85.0}}
+    results = SimpleNamespace(
+        has=lambda name: True, record={"scene": scene}, span_of=lambda name: span
+    )
     said = _conditions(results)
     assert said.startswith(words)
     assert said.endswith(", at 85 °C, uncharged.")

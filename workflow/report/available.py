@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from asperity.guards.foreign_yaml import load_mapping
+from mesoscale.inputs.table import from_rows
 from workflow.files.results import load_csv, load_h5, load_json
 
 COMPUTED = "computed"
@@ -115,10 +116,12 @@ class Results:
         """Whether an input of this scene comes from the stage."""
         return any(row["origin"] == stage for row in self.rows("inputs.csv"))
 
-    def uses_input(self, name: str) -> bool:
-        """Whether the contact of this scene has this input."""
-        rows = self.csv("inputs.csv") if self.has("inputs.csv") else []
-        return any(row["parameter"] == name for row in rows)
+    def span_of(self, name: str) -> tuple[float, float] | None:
+        """Ends of an input's range; None where the contact of this scene has no such input."""
+        rows = [row for row in self.rows("inputs.csv") if row["parameter"] == name]
+        if not rows:
+            return None
+        return from_rows(rows).rows[0].distribution.span()
 
     def origin_of(self, stage: str) -> str:
         """Badge of a stage: computed or synthetic, and whether this scene uses it."""

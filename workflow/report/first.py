@@ -92,8 +92,11 @@ def _conditions(results: Results) -> str:
     scene = results.record["scene"]
     device = DeviceSettings(**scene["device"])
     air = scene["contact"].get("air") or {}
-    if scene.get("inputs", {}).get("humidity"):
-        words = "In humid air of the stated range"
+    ends = results.span_of("humidity")
+    if ends and ends[0] == ends[1]:
+        words = f"In air of {ends[0]:.0%} humidity"
+    elif ends:
+        words = f"In air of {ends[0]:.0%} to {ends[1]:.0%} humidity"
     elif air.get("humidity"):
         words = f"In air of {air['humidity']:.0%} humidity"
     else:

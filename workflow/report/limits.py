@@ -27,7 +27,7 @@ def limits(results: Results) -> list[str]:
         of_model.append(_UNDEFORMED)
     if contact.get("mechanics") == "coupled" and contact.get("attraction") == "clamped":
         of_model.append(_CLAMPED)
-    is_humid = contact.get("air") or results.uses_input("humidity")
+    is_humid = contact.get("air") or results.span_of("humidity")
     no_water = "" if is_humid else ", no water between the walls"
     return [
         (

@@ -44,6 +44,8 @@ def scenes_of(given: str, word: str) -> dict[str, Path]:
     if not equals or not all(values.split(",")):
         raise InputError(f"{word}: accepted is a key and its values: contact.pixels=128,256")
     base = load_scene(given)
+    if base.pad.points == 0:
+        raise InputError(f"{given}: pad.points = 0: a sweep compares intervals; give pad.points")
     parent = given
     if Path(given).suffix:
         parent = str(find_scene(given).resolve())
@@ -55,8 +57,14 @@ def scenes_of(given: str, word: str) -> dict[str, Path]:
         file = Path(f"{base.name}_{key.rpartition('.')[2]}_{value}.yaml")
         head = {"extends": parent, "name": file.stem}
         file.write_text(yaml.safe_dump(head | content, sort_keys=False), encoding="utf-8")
-        load_scene(str(file))
         files[value] = file
+    try:
+        for file in files.values():
+            load_scene(str(file))
+    except SceneError:
+        for file in files.values():
+            file.unlink()
+        raise
     return files
 
 
@@ -93,6 +101,9 @@ def main(arguments: list[str] | None = None) -> int:
     except (InputError, MistakenYaml, SceneError, OSError, yaml.YAMLError) as error:
         print(f"ERROR {shown(str(error))}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("\ninterrupted; what is finished is kept: sweep again", file=sys.stderr)
+        return 130
     table = Path(f"{name}_{key.rpartition('.')[2]}.csv")
     write_table(table, rows)
     written = [str(table)]
