@@ -132,11 +132,15 @@ def test_contact_repulsion_ends_smoothly_and_is_its_own_derivative():
 
 
 def test_the_plan_counts_what_a_run_has(close, oxides):
+    """A run may end before its travel does: where it leaves its window depends on the glass."""
     own = settings(base_nm=3)
     made = close(own, **PROTOCOL.model_dump()).summary
-    [planned] = closing_seconds(own, oxides[own.material]).values()
-    atom_steps = made["atoms"] * made["steps"]
-    assert planned == pytest.approx(atom_steps / ATOM_STEPS_PER_CORE_SECOND, rel=0.1)
+    [seconds] = closing_seconds(own, oxides[own.material]).values()
+    [run] = planned_runs(own)
+    planned_steps = plan_closing(own.closing, run, PROTOCOL).total_steps
+    planned_atoms = seconds * ATOM_STEPS_PER_CORE_SECOND / planned_steps
+    assert planned_atoms == pytest.approx(made["atoms"], rel=0.1)
+    assert 0.5 * planned_steps <= made["steps"] <= planned_steps
 
 
 @pytest.mark.parametrize("slab", [False, True])

@@ -302,9 +302,8 @@ def test_a_stiff_contact_attracts_as_if_not_deformed():
     ("nearest", "gaps"), [(0.0137, 20), (0.03, 30)]
 )  # some steps have the jump in their middle
 def test_what_an_elastic_cycle_loses_it_loses_in_jumps(nearest, gaps, monkeypatch):
-    monkeypatch.setattr(
-        "mesoscale.contact.cycle._gaps", lambda contact: np.geomspace(nearest, 10.0, gaps)
-    )
+    steps = property(lambda contact: np.geomspace(nearest, 10.0, gaps))
+    monkeypatch.setattr(AdhesiveContact, "gaps_apart_nm", steps)
     work_of = np.sqrt(2.5**3 * E_STAR**2 * (D0 / 2) ** 3 / RADIUS)
     settings = adhesive(96, 36.0, max_force_nN=np.pi * work_of * RADIUS)
     cycle = run_cycle(
