@@ -8,7 +8,6 @@ from pathlib import Path
 
 from asperity.guards.foreign_text import shown
 from workflow.files.checksums import is_damaged, is_late, recorded
-from workflow.files.results import has_other_columns
 
 FORMER = ".former"
 """Behind the name of a table of another version, which is kept."""
@@ -33,6 +32,9 @@ def renew_damaged(results: Path, is_made: Callable[[str], bool], plan: bool) -> 
         are.
     plan : whether nothing is to be changed.
     """
+    # needs NumPy; rules are also linted where Snakemake is alone
+    from workflow.files.results import has_other_columns
+
     former = []
     for path in recorded(results):
         place = made_place(path, results, is_made)

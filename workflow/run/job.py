@@ -204,16 +204,17 @@ def job(snakemake: Any, shared: bool = False) -> Iterator[Job]:
         )
         try:
             _refuse_damaged(inputs)
-            key = ""
-            if shared:
-                of_job = {"wildcards": running.wildcards, **running.provenance}
-                key = key_of(of_job, own_commit(ROOT))
+            if not shared:
+                yield running
+                return
+            key = key_of({"wildcards": running.wildcards, **running.provenance}, own_commit(ROOT))
             if other := take(log_path, map(str, snakemake.output), key):
                 running.say(f"taken from {other}, which made it from the same inputs")
-                leave_note(log_path, key)
-                sys.exit(0)
-            yield running
+            else:
+                yield running
             leave_note(log_path, key)
+            if other:
+                sys.exit(0)  # the body does not run
         except Exception as error:
             line = shown(f"ERROR {running.label}: {_one_line(error, log_path)}")
             print(line, file=sys.stderr, flush=True)
