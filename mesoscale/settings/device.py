@@ -85,8 +85,8 @@ def _value_and_error(stated: Any) -> Any:
     if isinstance(stated, (list, tuple)) and len(stated) == 2:
         return tuple(stated)
     both = _STATED.fullmatch(str(stated).replace(" ", ""))
+    value, error = both.groups() if both else ("", "")
     try:
-        value, error = both.groups() if both else ()
         return float(value), float(error)
     except ValueError:
         raise ValueError("accepted are a value and its standard error, as in 72 +- 2") from None
