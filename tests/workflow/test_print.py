@@ -54,7 +54,7 @@ def printed(page_of, tmp_path_factory):
 
 def test_no_heading_is_left_alone_at_the_end_of_a_sheet(printed):
     headings, texts, _ = printed
-    assert len(texts) <= 4
+    assert len(texts) <= 5  # the budget alone takes more than one
     last = [text.rstrip().rpartition("\n")[2].strip() for text in texts[:-1]]
     plain = {re.sub(r"\W", "", words) for words in headings}
     assert [line for line in last if re.sub(r"\W", "", line) in plain] == []
