@@ -17,6 +17,7 @@ import numpy as np
 
 from mesoscale.answer.points import central_point, on_pad_grid, plan_points
 from mesoscale.answer.release import switch_on_pad
+from mesoscale.answer.reserve import central_reserve
 from mesoscale.answer.switches import PadModel, solve_point, surfaces_of
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
@@ -366,7 +367,8 @@ class FilmContact(Shown):
         if solved.pad is None:
             raise InputError(solved.refused)
         model = PadModel(solved, plan_points(table, self.on_grid, device, 0), ())
-        return Switch(switch_on_pad(model, self.on_grid.length_nm**2))
+        content = switch_on_pad(model, self.on_grid.length_nm**2)
+        return Switch(content | {"reserve": central_reserve(solved)})
 
 
 @dataclass(frozen=True, repr=False)

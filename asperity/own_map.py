@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from asperity.film import Shown
-from mesoscale.checks import check_periodic, checked_array, checked_heights
+from asperity.press import map_on_sides, material_of_map
+from mesoscale.checks import check_periodic, checked_heights
 from mesoscale.contact.compiling import announced
 from mesoscale.contact.cycle import Cycle, run_cycle
 from mesoscale.contact.surface import ContactAt
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
-from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 
@@ -74,14 +74,9 @@ def roughness(
     """
     from SurfaceTopography import Topography  # slow to import
 
-    sides = checked_array("side_nm", side_nm, "nm")
-    if sides.shape not in ((1,), (2,)) or not (sides > 0.0).all():
-        raise InputError(
-            f"side_nm = {side_nm!r:.60}: accepted is one length in nm, or the lengths along x and y"
-        )
-    surface = checked_heights(heights, float(sides.max()), square=False)
-    if sides.size == 1:
-        sides = np.array([sides[0], sides[0] * surface.shape[1] / surface.shape[0]])
+    surface, sides = map_on_sides(heights, side_nm)
+    if not (sides > 0.0).all():
+        raise InputError(f"side_nm = {side_nm!r:.60}: accepted are lengths in nm, above 0")
     topography = Topography(surface, tuple(sides.tolist()), periodic=periodic)
     wave_vector, psd = topography.power_spectrum_from_area()
     known = np.isfinite(psd) & (wave_vector > 0.0)
@@ -131,24 +126,12 @@ def cycle(
     ------
     InputError : no such map, side, load or material; a load beyond full contact; a tilted map.
     """
-    if h_macro is None and h_prime != 0.0:
-        raise InputError(f"h_prime = {h_prime!r:.60} without h_macro: give h_macro, too")
+    model, inputs = material_of_map(e_star, h_macro, h_prime, hamaker)
     surface = checked_heights(heights, side_nm)
     check_periodic(surface)
-    chosen: dict[str, Any] = {"model": "plastic", "pixels": len(surface), "length_nm": side_nm}
-    if h_macro is None:
-        chosen["model"] = "elastic"
+    chosen: dict[str, Any] = {"model": model, "pixels": len(surface), "length_nm": side_nm}
     if gap_cutoff_nm is not None:
         chosen["gap_cutoff_nm"] = gap_cutoff_nm
     settings = ContactSettings(mechanics="coupled").model_copy(update=chosen)
-    inputs = ContactInputs(
-        hamaker=hamaker,
-        e_star=e_star,
-        h_macro=h_macro or 0.0,
-        h_prime=h_prime,
-        q0=1.0,
-        hurst=0.5,
-        rms=0.0,
-    )
     with announced():
         return run_cycle(inputs, settings, 0, load_nN, heights=surface, contact_at=contact_at)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, get_args
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from scipy import ndimage
@@ -218,29 +218,12 @@ def press(
         raise InputError(f"periodic = {periodic!r}: accepted are True and False")
     if attraction is not None and not callable(attraction):
         raise InputError(f"attraction = {attraction!r:.60}: {ATTRACTION}")
-    if h_macro is None and h_prime != 0.0:
-        raise InputError(
-            f"h_prime = {h_prime!s:.60} without h_macro: the size effect of a hardness; give"
-            " h_macro, too"
-        )
+    model, inputs = material_of_map(e_star, h_macro, h_prime)
     by_load = loads_nN is not None
     steps = _steps(loads_nN, approach_nm)
     few = h_macro is None and steps.size <= FEW_LOADS  # no load needs the way there
     surface, spacing = _surface(
         heights, counterface, side_nm, bool(periodic), contact_at, steps.size, few
-    )
-    model = "plastic"
-    if h_macro is None:
-        model = "elastic"
-        h_macro = 0.0
-    inputs = ContactInputs(
-        hamaker=0.0,
-        e_star=e_star,
-        h_macro=h_macro,
-        h_prime=h_prime,
-        q0=1.0,
-        hurst=0.5,
-        rms=0.0,
     )
     settings = ContactSettings(model=model).model_copy(
         update={"pixels": len(surface), "length_nm": spacing * len(surface)}
@@ -281,6 +264,56 @@ def press(
         lengths_nm=sides,
         converged=bool(converged),
     )
+
+
+def material_of_map(
+    e_star: float, h_macro: float | None, h_prime: float, hamaker: float = 0.0
+) -> tuple[Literal["elastic", "plastic"], ContactInputs]:
+    """The model of a material, elastic without a hardness, and its inputs; a map has its own
+    spectrum.
+
+    Raises
+    ------
+    InputError : a size effect without a hardness, or a number out of its range.
+    """
+    if h_macro is None and h_prime != 0.0:
+        raise InputError(
+            f"h_prime = {h_prime!s:.60} without h_macro: the size effect of a hardness; give"
+            " h_macro, too"
+        )
+    model = "plastic"
+    if h_macro is None:
+        model = "elastic"
+        h_macro = 0.0
+    return model, ContactInputs(
+        hamaker=hamaker,
+        e_star=e_star,
+        h_macro=h_macro,
+        h_prime=h_prime,
+        q0=1.0,
+        hurst=0.5,
+        rms=0.0,
+    )
+
+
+def map_on_sides(
+    heights: Any, side_nm: float | tuple[float, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """A map (nx, ny) and its lengths along x and y; one length is that along x.
+
+    Raises
+    ------
+    InputError : no such map or side.
+    """
+    sides = checked_array("side_nm", side_nm, "nm")
+    if sides.shape not in ((1,), (2,)):
+        raise InputError(
+            f"side_nm = {side_nm!r:.60}: accepted is one length in nm, or the lengths along x and y"
+        )
+    surface = checked_heights(heights, float(sides.max()), square=False)
+    if sides.size == 1:
+        sides = np.array([sides[0], sides[0] * surface.shape[1] / surface.shape[0]])
+    return surface, sides
 
 
 class _State(NamedTuple):
@@ -392,15 +425,8 @@ def _surface(
     """Heights of both surfaces together, contact at the lowest, and the spacing of the sites
     (nm).
     """
-    sides = checked_array("side_nm", side_nm, "nm")
-    if sides.shape not in ((1,), (2,)):
-        raise InputError(
-            f"side_nm = {side_nm!r:.60}: accepted is one length in nm, or the lengths along x and y"
-        )
-    surface = checked_heights(heights, float(sides.max()), square=False)
+    surface, sides = map_on_sides(heights, side_nm)
     shape = surface.shape
-    if sides.size == 1:
-        sides = np.array([sides[0], sides[0] * shape[1] / shape[0]])
     spacing = float(sides[0]) / shape[0]
     if not abs(sides[1] / shape[1] / spacing - 1.0) <= 1e-3:
         raise InputError(

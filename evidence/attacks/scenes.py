@@ -17,19 +17,11 @@ from pathlib import Path
 from typing import Any
 
 from snakemake.api import SnakemakeApi
-from snakemake.settings.types import (
-    ConfigSettings,
-    DAGSettings,
-    ExecutionSettings,
-    OutputSettings,
-    Quietness,
-    ResourceSettings,
-)
 
 from asperity.__main__ import targets
-from asperity.guards.bundle import ROOT
 from evidence.attacks.runs import TRACE, Attack, figures, table
 from tests.workflow.mutated_scenes import mutated, varied
+from tests.workflow.planning import plan, read, silent_api
 
 __all__ = ["figures", "rows", "scenes"]
 LONGEST_REFUSAL = 20
@@ -53,7 +45,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
 def scenes(folder: Path, seed: int, count: int) -> Iterator[Attack]:
     """Plan scenes in a folder, which is the working folder."""
     known = list(targets())
-    with SnakemakeApi(OutputSettings(dryrun=True, quiet={Quietness.ALL})) as api:
+    with silent_api() as api:
         for number in range(count):
             rng = random.Random(f"{seed} {number}")
             path = folder / f"random_{number}.yaml"
@@ -70,7 +62,7 @@ def _planned(api: SnakemakeApi, kind: str, path: Path, target: str) -> Attack:
     outcome = "used"
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         try:
-            _plan(api, path, target)
+            plan(read(api, str(path)), set() if target == "all" else {target})
         except SystemExit:
             outcome = "refused"
         except Exception as error:  # of any kind: that is what is looked for
@@ -81,17 +73,6 @@ def _planned(api: SnakemakeApi, kind: str, path: Path, target: str) -> Attack:
         outcome = "fault"
     words = " | ".join(lines) if outcome != "used" else ""
     return Attack(kind, outcome, time.process_time() - started, words)
-
-
-def _plan(api: SnakemakeApi, path: Path, target: str) -> None:
-    workflow = api.workflow(
-        resource_settings=ResourceSettings(cores=2),
-        config_settings=ConfigSettings(config={"scene": str(path)}, config_args=(f"scene={path}",)),
-        snakefile=ROOT / "Snakefile",
-        workdir=path.parent,
-    )
-    dag = workflow.dag(DAGSettings(targets=set() if target == "all" else {target}))
-    dag.execute_workflow(executor="dryrun", execution_settings=ExecutionSettings(lock=False))
 
 
 def _is_clear(lines: list[str], path: Path) -> bool:

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from mesoscale.answer.known import ENDS, fit_additive, known
 from mesoscale.answer.other_devices import release_by_key
-from mesoscale.answer.reserve import reserve_of
 from mesoscale.answer.switches import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.pad.adhesion import adhesion_of
@@ -182,7 +181,9 @@ def _probability(stuck: int, solved: int, refused: int) -> dict[str, float]:
 
 
 def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
-    """Content of answer/pad_switch.json; without points there is no answer."""
+    """Content of answer/pad_switch.json, but for its `reserve`; without points there is no
+    answer.
+    """
     central = model.central
     settings = central.point.device
     content = None
@@ -212,7 +213,6 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         ],
         "adhesion": adhesion,
         "by_key": by_key,
-        "reserve": _reserve(central),
         "gate": {"passed": not reasons, "reasons": reasons},
         "answer": content,
         "answer_status": status,
@@ -240,13 +240,6 @@ def _reasons(central: Solved) -> list[str]:
             " raise pad.cells"
         )
     return reasons
-
-
-def _reserve(central: Solved) -> dict[str, Any] | None:
-    """How much attraction the switch at central inputs bears; None where it has no answer."""
-    if central.states is None or central.pad is None:
-        return None
-    return reserve_of(central.point.device, central.pad.curves, central.states)
 
 
 def _release_V(central: Solved, times: float) -> float | None:

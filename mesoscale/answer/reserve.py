@@ -40,6 +40,16 @@ InputError : the switch then has no answer, for instance since it never closes.
 """
 
 
+def central_reserve(central: Solved) -> dict[str, Any] | None:
+    """The reserve of the switch at central inputs; None where it has no answer.
+
+    One that sticks takes half a minute, so that the page before the end goes without.
+    """
+    if central.states is None or central.pad is None:
+        return None
+    return reserve_of(central.point.device, central.pad.curves, central.states)
+
+
 def reserve_of(device: DeviceSettings, pad: PadCurves, states: States) -> dict[str, Any]:
     """The reserve of a switch; where it sticks also what moves it, and what of its device frees it.
 

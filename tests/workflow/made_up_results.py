@@ -274,6 +274,7 @@ def _pad(root: Path) -> None:
     from mesoscale.answer.budget import budget, effects_of
     from mesoscale.answer.points import Design, Point
     from mesoscale.answer.release import switch_on_pad
+    from mesoscale.answer.reserve import central_reserve
     from mesoscale.answer.switches import PadModel, Solved
     from mesoscale.pad.curves import Flats
     from mesoscale.pad.grid import PadGrid
@@ -305,7 +306,7 @@ def _pad(root: Path) -> None:
         Point({}, 0.165, DeviceSettings()), pad, states, (states.release_V, states.release_V)
     )
     model = PadModel(central, Design((), (), np.empty((0, 0)), np.arange(0), ()), ())
-    switch = switch_on_pad(model, area)
+    switch = switch_on_pad(model, area) | {"reserve": central_reserve(central)}
     write_json(root / "answer/pad_switch.json", switch, PROVENANCE)
     shipped = load_mapping(ROOT / "config" / "effects.yaml", "table of effects")
     _write(

@@ -1,12 +1,14 @@
 """A failing job says why in one line; the traceback is in its log."""
 
 import time
+from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from mesoscale.errors import InputError
+from workflow.files.results import write_csv
 from workflow.run.job import failures, job, package_versions, result_checksum
 
 
@@ -104,3 +106,19 @@ def test_a_checksum_is_of_the_results_and_not_of_the_times_they_took(tmp_path, n
         path.write_text(text.format(result=result, time=seconds))
         checksums.append(result_checksum(path))
     assert checksums[0] == checksums[1] != checksums[2]
+
+
+def test_a_shared_job_is_done_once_for_two_scenes(snakemake, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("workflow.run.job.own_commit", lambda root: "abc")
+    bodies = []
+    for scene in ("first", "second"):
+        snakemake.log = [str(tmp_path / scene / "logs/a.log")]
+        snakemake.output = [str(tmp_path / scene / "topography/a.csv")]
+        with suppress(SystemExit), job(snakemake, shared=True):
+            bodies.append(scene)
+            write_csv(snakemake.output[0], [{"q0": 0.02}])
+    assert bodies == ["first"]
+    assert "taken from" in capsys.readouterr().err
+    assert result_checksum(snakemake.output[0]) == result_checksum(
+        tmp_path / "first/topography/a.csv"
+    )

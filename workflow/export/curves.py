@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 
 from mesoscale.contact.cycle import Branch
 from mesoscale.contact.resistance import stiffness_of
+from mesoscale.units import GPA, NM
 from workflow.report.available import CsvRow, Results
 
 Array = NDArray[np.float64]
-NM = 1e-9  # m
 NM2 = 1e-18  # m^2
 NN = 1e-9  # N
 MPA = 1e6  # Pa
-GPA = 1e9  # Pa
 
 
 @dataclass(frozen=True)

@@ -210,11 +210,10 @@ def job(snakemake: Any, shared: bool = False) -> Iterator[Job]:
             key = key_of({"wildcards": running.wildcards, **running.provenance}, own_commit(ROOT))
             if other := take(log_path, map(str, snakemake.output), key):
                 running.say(f"taken from {other}, which made it from the same inputs")
-            else:
-                yield running
-            leave_note(log_path, key)
-            if other:
+                leave_note(log_path, key)
                 sys.exit(0)  # the body does not run
+            yield running
+            leave_note(log_path, key)
         except Exception as error:
             line = shown(f"ERROR {running.label}: {_one_line(error, log_path)}")
             print(line, file=sys.stderr, flush=True)

@@ -16,7 +16,7 @@ from asperity.guards.foreign_text import shown, wrapped
 from asperity.guards.foreign_yaml import MistakenYaml
 from mesoscale.errors import InputError
 from workflow.files.results import load_json
-from workflow.run.what_if import draw_figure, line_of, numbers_of, write_table
+from workflow.run.what_if import line_of, numbers_of, write_answers
 from workflow.scene import SceneError, load_scene
 from workflow.scene.loading import find_scene
 
@@ -104,12 +104,7 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("\ninterrupted; what is finished is kept: sweep again", file=sys.stderr)
         return 130
-    table = Path(f"{name}_{key.rpartition('.')[2]}.csv")
-    write_table(table, rows)
-    written = [str(table)]
-    if draw_figure(table.with_suffix(".png"), key, rows):
-        written.append(str(table.with_suffix(".png")))
-    print(f"written: {', '.join(written)}")
+    write_answers(name, key, rows)
     return 0
 
 

@@ -174,15 +174,20 @@ def line_of(name: str, row: dict[str, Any]) -> str:
     return words
 
 
-def write_table(path: Path, rows: Sequence[dict[str, Any]]) -> None:
-    """Write the rows as CSV."""
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        table = csv.DictWriter(stream, COLUMNS, restval="")
-        table.writeheader()
-        table.writerows(rows)
+def write_answers(scene: str, key: str, rows: Sequence[dict[str, Any]]) -> None:
+    """Write the rows of a key as a table and a picture in the working folder, and name both."""
+    table = Path(f"{scene}_{key.rpartition('.')[2]}.csv")
+    with table.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.DictWriter(stream, COLUMNS, restval="")
+        writer.writeheader()
+        writer.writerows(rows)
+    written = [str(table)]
+    if _draw(table.with_suffix(".png"), key, rows):
+        written.append(str(table.with_suffix(".png")))
+    print(f"written: {', '.join(written)}")
 
 
-def draw_figure(path: Path, name: str, rows: Sequence[dict[str, Any]]) -> bool:
+def _draw(path: Path, name: str, rows: Sequence[dict[str, Any]]) -> bool:
     """Draw release and pull-in against the values, where these are numbers; says whether."""
     try:
         solved = [
@@ -227,12 +232,7 @@ def main(arguments: list[str] | None = None) -> int:
             for row in what_if(scene, word):
                 rows.append(row)
                 print(wrapped(shown(line_of(name, row))), flush=True)
-            table = Path(f"{scene.name}_{name}.csv")
-            write_table(table, rows)
-            written = [str(table)]
-            if draw_figure(table.with_suffix(".png"), name, rows):
-                written.append(str(table.with_suffix(".png")))
-            print(f"written: {', '.join(written)}")
+            write_answers(scene.name, name, rows)
     except (InputError, SceneError, UnfitTable, OSError) as error:
         print(f"ERROR {shown(str(error))}", file=sys.stderr)
         return 1

@@ -11,7 +11,7 @@ from asperity.guards.foreign_yaml import load_mapping
 from mesoscale.answer.budget import TWIN, budget, effects_of, with_twins
 from mesoscale.answer.other_devices import release_by_hardness
 from mesoscale.answer.release import switch_on_pad
-from mesoscale.answer.reserve import freed_by_surface
+from mesoscale.answer.reserve import central_reserve, freed_by_surface
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.studies.own_errors import of_switch
@@ -26,9 +26,10 @@ with job(snakemake) as run:
     write_text(snakemake.output.verilog, verilog_pad(pad.curves, pad.count))
     write_text(snakemake.output.spice, spice_pad(pad.curves, pad.count))
     switch = switch_on_pad(model, points.contact.length_nm**2)
-    if model.central.sticks:
-        further = freed_by_surface(model.central, points.on_grid, settings.cells)
-        switch["reserve"]["freed_by"] += further
+    reserve = central_reserve(model.central)
+    if reserve and model.central.sticks:
+        reserve["freed_by"] += freed_by_surface(model.central, points.on_grid, settings.cells)
+    switch["reserve"] = reserve
     if points.device.measured:
         from mesoscale.answer.measured import what_remains  # compiles
 
