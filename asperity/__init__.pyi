@@ -4,8 +4,8 @@ from asperity.film import Switch as Switch
 from asperity.own_map import Roughness as Roughness
 from asperity.own_map import cycle as cycle
 from asperity.own_map import roughness as roughness
-from asperity.press import PressedMap as PressedMap
-from asperity.press import press as press
+from asperity.pressed_map import PressedMap as PressedMap
+from asperity.pressed_map import press as press
 from mesoscale import theory as theory
 from mesoscale.contact import Branch as Branch
 from mesoscale.contact import ContactInputs as ContactInputs

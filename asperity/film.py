@@ -170,7 +170,7 @@ class Film(Shown):
 
     @property
     def maps(self) -> list[Scan]:
-        """The maps among the measurements, levelled; `asperity.press` presses one as it is."""
+        """The maps among the measurements, levelled; `asp.press` presses one as it is."""
         return [
             clean(item.data, self.settings)
             for item in self.measurements

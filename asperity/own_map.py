@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from asperity.film import Shown
-from asperity.press import map_on_sides, material_of_map
+from asperity.pressed_map import map_on_sides, material_of_map
 from mesoscale.checks import check_periodic, checked_heights
 from mesoscale.contact.compiling import announced
 from mesoscale.contact.cycle import Cycle, run_cycle

@@ -4,6 +4,7 @@ the schema.
 
 import json
 import os
+import pkgutil
 import re
 import shutil
 import subprocess
@@ -14,6 +15,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+import asperity
 from asperity.__main__ import main
 from workflow.files.results import write_text
 from workflow.scene import SCENES, load_scene
@@ -41,6 +43,14 @@ def wheel(tmp_path_factory):
         names = archive.namelist()
         metadata = archive.read(next(name for name in names if name.endswith("METADATA"))).decode()
     return names, metadata
+
+
+def test_no_module_takes_the_place_of_a_public_name():
+    """Python puts a module into its package when it is imported: `asp.press` was once a module, as
+    soon as `asp.cycle` had imported it.
+    """
+    modules = {module.name for module in pkgutil.iter_modules(asperity.__path__)}
+    assert not modules & set(asperity.__all__)
 
 
 def test_the_wheel_holds_every_file_that_a_run_reads(wheel):

@@ -2,11 +2,11 @@
 
 Three files in `results/<scene>/`:
 
-.lock    held by the run (Snakemake's main process) while it lives .jobs    held, shared, by each
-job and its LAMMPS: as long as the last of them lives, nothing else starts .scene   the file of the
-scene whose results these are
+`.lock` is held by the run (Snakemake's main process) while it lives. `.jobs` is shared by each job
+and its LAMMPS: as long as the last of them lives, nothing else starts. `.scene` names the file of
+the scene whose results these are.
 
-The system frees such locks (flock) with the last process that holds them, even after SIGKILL.  A
+The system frees such locks (flock) with the last process that holds them, even after SIGKILL. A
 job also ends when its run is killed, so that the next run need not wait for it.
 """
 
