@@ -14,7 +14,7 @@ from typing import NoReturn
 
 from asperity.guards.bundle import ROOT
 from asperity.guards.environment import UnsafeFolder, secure
-from asperity.guards.foreign_text import as_word, did_you_mean, shown, wrapped
+from asperity.guards.foreign_text import as_file_name, as_word, did_you_mean, shown, wrapped
 
 # Ctrl-C while Snakemake is still imported ends it without a traceback
 START = (
@@ -139,7 +139,7 @@ def _parser() -> argparse.ArgumentParser:
         "changes",
         nargs="+",
         metavar="KEY=VALUES",
-        help="hold_voltage_V=30, gap_um=1,1.5,2, material=aluminium; each key by itself",
+        help="hold_voltage_V=30, gap_um=1,1.5,2, material=aluminium; several keys change together",
     )
     added["export"].add_argument("scene", help="name or file of a scene that has run")
     added["export"].add_argument("folder", help="folder to write, new or empty")
@@ -241,7 +241,8 @@ def _new(chosen: argparse.Namespace) -> int:
 
 def _film(chosen: argparse.Namespace) -> int:
     """What the files show and what to doubt; then the scene and its run."""
-    scene = Path(chosen.scene or f"{_plain(Path(chosen.files[0]).resolve().stem)}.yaml")
+    name = as_file_name(Path(chosen.files[0]).resolve().stem) or "film"
+    scene = Path(chosen.scene or f"{name}.yaml")
     return _written(chosen, scene, rewrite=True) or _snakemake(
         argparse.Namespace(scene=str(scene), target=[], cores=chosen.cores, hours=chosen.hours)
     )
@@ -291,11 +292,6 @@ def _say(text: str) -> int:
     """Print a line; the exit status of what went well."""
     print(wrapped(shown(text)))
     return 0
-
-
-def _plain(name: str) -> str:
-    """A name that a scene may have, of 100 characters at most."""
-    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("_.-")[:100] or "film"
 
 
 def _write(file: Path, text: str) -> int:
