@@ -245,7 +245,7 @@ def test_where_a_share_sticks_the_next_step_says_with_what_fewer_would():
         {"key": "thickness_um", "unit": "um", "value": 4.0, "other": 5.6, "stuck": 0.12},
         {"key": "gap_um", "unit": "um", "value": 3.0, "other": 4.2, "stuck": 0.2},
     ]
-    words = " With thickness 5.60 µm 12% would stick instead of 40%."
+    words = " With thickness 5.60 µm 12% of the 64 switches would stick instead of 40%."
     assert said(_pad(0.4, sticking_by_key=rows)).next_step.endswith(words)
     assert "would stick" not in said(_pad(0.4, sticking_by_key=[])).next_step
 
@@ -267,8 +267,8 @@ def _with_bands(error_V):
 
 def test_bands_have_their_error_and_fit_on_the_axis():
     answer = _with_bands(0.4)  # the interval is 6.3 V wide
-    assert "3.0\u00a0±\u00a00.4 to 9.0\u00a0±\u00a00.4 V" in _known(answer, _bands(answer))
-    bar = release_bar(said(_pad()), _bands(answer))
+    assert "3.00\u00a0±\u00a00.4 to 9.00\u00a0±\u00a00.4 V" in _known(answer, _bands(answer))
+    bar = release_bar(said(_pad()), _bands(answer), {"0.05": 0.3, "0.95": 0.5})
     assert 'class="unknown error"' in bar
     assert "from device to device" in bar
     right_ends = [float(path) for path in re.findall(r"H(\d+\.\d)", bar)]

@@ -8,6 +8,7 @@ from mesoscale.settings import DeviceSettings
 from workflow.report.available import Results
 from workflow.report.numbers import show
 from workflow.report.stages.humidity import begins_to_stick
+from workflow.report.stages.topography import first_map
 from workflow.report.verdict import (
     DECIDED,
     Verdict,
@@ -40,8 +41,9 @@ class First:
     conditions: str
     humidity: str
     device: str
+    surface: tuple[str, str] | None
     bar: str
-    has_bands: bool
+    has_errors: bool
     causes: list[tuple[str, list[tuple[str, int]]]]
     known: str
     unsolved: str
@@ -72,8 +74,9 @@ def first_screen(results: Results, gates: Any) -> First | None:
         conditions=_conditions(results),
         humidity=begins_to_stick(results.rows("humidity/humidity.csv")),
         device=_device(results),
-        bar=release_bar(said, bands),
-        has_bands=bool(bands),
+        surface=first_map(results),
+        bar=release_bar(said, bands, answer.get("quantile_error_V")),
+        has_errors=bool(answer),
         causes=causes,
         known=_known(answer, bands) if named else "",
         unsolved=_unsolved(answer),
@@ -155,7 +158,9 @@ def _known(answer: dict[str, Any], bands: dict[str, Any]) -> str:
 
 
 def _with_error(end: dict[str, float]) -> str:
-    return f"{show(end['value'], 2)}\u00a0±\u00a0{show(end['error'], 1)}"
+    if end["value"] == 0.0:
+        return "0"
+    return f"{show(end['value'])}\u00a0±\u00a0{show(end['error'], 1)}"
 
 
 def _sticking(answer: dict[str, Any]) -> str:
@@ -189,18 +194,25 @@ def _rate(share: float) -> str:
     return f"{share:.0%}" if share > 0.095 else f"{share:.1%}"
 
 
-def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
+def release_bar(
+    said: Verdict,
+    bands: dict[str, Any] | None = None,
+    errors_V: dict[str, float] | None = None,
+) -> str:
     """The release on an axis of volts: 5 to 95 % as a bar, the zone of sticking at its left end.
 
     Parameters
     ----------
     bands : 5 to 95 % of what is not known, and of what differs between devices.
+    errors_V : of the 5 and 95 % of the release, by the number of switches.
     """
     if said.release_V is None:
         return ""
     others = said.other_law_V or ()
     bands = bands or {}
     ends = [band["0.95"]["value"] + band["0.95"]["error"] for band in bands.values()]
+    if errors_V:
+        ends.append(said.release_V[-1] + errors_V["0.95"])
     top = 1.15 * max(*said.release_V, *others, *ends, 1.0)
     floor = FLOOR + len(bands) * ROW
 
@@ -220,9 +232,12 @@ def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
         ),
     ]
     if len(said.release_V) == 3 and said.release_V[2] > 0:
-        low = x(said.release_V[0])
-        high = x(said.release_V[2])
-        parts.append(f'<path class="interval" d="M{low} 36H{high}"/>')
+        low, _, high = said.release_V
+        parts.append(f'<path class="interval" d="M{x(low)} 36H{x(high)}"/>')
+        if errors_V:
+            from_V = max(low - errors_V["0.05"], 0.0)
+            to_V = high + errors_V["0.95"]
+            parts.append(f'<path class="interval error" d="M{x(from_V)} 36H{x(to_V)}"/>')
     if middle > 0:
         parts += [
             f'<path class="median" d="M{x(middle)} 24v24"/>',

@@ -222,7 +222,8 @@ def _fewer_stick(pad: dict[str, Any]) -> str:
     row = rows[0]
     changed = f"{in_words(row['key'])} {with_unit(row['other'], row['unit'])}"
     now = f"{pad['answer']['stuck']['value']:.0%}"
-    return f" With {changed} {row['stuck']:.0%} would stick instead of {now}."
+    switches = f"the {pad['answer']['points']} switches"
+    return f" With {changed} {row['stuck']:.0%} of {switches} would stick instead of {now}."
 
 
 def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: bool) -> str:
@@ -239,7 +240,10 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
         return f"Measure a pull-off force next (target calibration). {_freedom(pad)}"
     if sticks:
         return f"No better measurement would free it. {_freedom(pad)}"
-    return f"{_narrows(answer, no_cause)}{_fewer_stick(pad)}".strip()
+    freed = ""
+    if pad["central"] and pad["central"]["release_V"] == 0.0 and pad.get("reserve"):
+        freed = f"{_freedom(pad)} "
+    return f"{freed}{_narrows(answer, no_cause)}{_fewer_stick(pad)}".strip()
 
 
 def _narrows(answer: dict[str, Any], no_cause: str) -> str:
