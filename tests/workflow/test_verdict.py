@@ -208,7 +208,7 @@ def test_the_bar_has_the_zone_of_sticking_apart_from_the_axis_of_volts():
 def test_switches_without_answer_are_named_with_the_reason_of_the_first():
     assert _unsolved({"points": 126, "refused": []}) == ""
     words = _unsolved({"points": 126, "refused": ["asperities merge", "another"]})
-    assert words.startswith("2 of 128 switches have no answer.")
+    assert words.startswith("Of 128 switches, 2 without an answer are left out.")
     assert words.endswith("The reason of the first: asperities merge.")
 
 
@@ -245,7 +245,7 @@ def test_where_a_share_sticks_the_next_step_says_with_what_fewer_would():
         {"key": "thickness_um", "unit": "um", "value": 4.0, "other": 5.6, "stuck": 0.12},
         {"key": "gap_um", "unit": "um", "value": 3.0, "other": 4.2, "stuck": 0.2},
     ]
-    words = " With thickness 5.60 µm 12% of the 64 switches would stick instead of 40%."
+    words = " With thickness 5.60 µm, 12% of the 64 switches would stick instead of 40%."
     assert said(_pad(0.4, sticking_by_key=rows)).next_step.endswith(words)
     assert "would stick" not in said(_pad(0.4, sticking_by_key=[])).next_step
 
@@ -280,3 +280,9 @@ def test_bands_that_few_switches_cannot_tell_apart_are_not_drawn():
     assert _bands(answer) == {}
     assert "cannot be told apart by a fit to 64 switches" in _known(answer, {})
     assert "between" not in release_bar(said(_pad()), {})
+
+
+def test_where_most_stick_it_is_told_what_frees_the_one_at_central_inputs():
+    rows = [{"key": "rms", "unit": "nm", "value": 4.0, "frees": 9.0}]
+    pad = _pad(0.9, central={"release_V": 0.0}, reserve={"freed_by": rows})
+    assert said(pad).next_step.startswith("At central inputs it is freed by: RMS roughness 9.00 nm")

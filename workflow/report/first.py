@@ -184,8 +184,8 @@ def _unsolved(answer: dict[str, Any]) -> str:
     if not (refused := answer.get("refused")):
         return ""
     return (
-        f"{len(refused)} of {answer['points'] + len(refused)} switches have no answer. They are"
-        f" left out, and may be those that stick. The reason of the first: {refused[0]}."
+        f"Of {answer['points'] + len(refused)} switches, {len(refused)} without an answer are left"
+        f" out. They may be those that stick. The reason of the first: {refused[0]}."
     )
 
 

@@ -223,7 +223,7 @@ def _fewer_stick(pad: dict[str, Any]) -> str:
     changed = f"{in_words(row['key'])} {with_unit(row['other'], row['unit'])}"
     now = f"{pad['answer']['stuck']['value']:.0%}"
     switches = f"the {pad['answer']['points']} switches"
-    return f" With {changed} {row['stuck']:.0%} of {switches} would stick instead of {now}."
+    return f" With {changed}, {row['stuck']:.0%} of {switches} would stick instead of {now}."
 
 
 def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: bool) -> str:
@@ -249,10 +249,10 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
 def _narrows(answer: dict[str, Any], no_cause: str) -> str:
     """What narrows the interval, in a sentence; empty where nothing is known."""
     rows = answer["sensitivity"]
-    if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
-        return "Compute more cells next (pad.point_cells)."
     if no_cause and answer["explained"] <= 0:
         return "Compute more switches next (pad.points)."
+    if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
+        return "Compute more cells next (pad.point_cells)."
     if no_cause:
         return ""
     name = rows[0]["name"]

@@ -61,17 +61,17 @@ def _figure(rows: list[CsvRow]) -> Figure:
 
 def begins_to_stick(rows: list[CsvRow]) -> str:
     """From which humidity on the switch sticks, for each limit of opening."""
-    found = {}
+    outcome_by_label = {}
     for opening, (_, label) in OPENINGS.items():
         known = [row for row in rows if row["opening"] == opening and row["release_V"]]
         if known:
-            found[label] = _sticks_from(known)
-    if not found:
+            outcome_by_label[label] = _sticks_from(known)
+    different = set(outcome_by_label.values())
+    if not different:
         return ""
-    if len(set(found.values())) == 1:
-        (outcome,) = set(found.values())
-        return f"At central inputs the switch {outcome}."
-    outcomes = (f"{outcome} ({label})" for label, outcome in found.items())
+    if len(different) == 1:
+        return f"At central inputs the switch {different.pop()}."
+    outcomes = (f"{outcome} ({label})" for label, outcome in outcome_by_label.items())
     return f"At central inputs the switch {'; '.join(outcomes)}."
 
 
