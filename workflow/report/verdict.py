@@ -254,7 +254,7 @@ def _narrows(answer: dict[str, Any], no_cause: str) -> str:
     if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."
     if no_cause:
-        return ""
+        return "More switches might tell what decides it (pad.points)."
     name = rows[0]["name"]
     shrinks = f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}"
     _, measured_name = NAMES.get(name, ("", f"the {in_words(name)}"))
