@@ -6,9 +6,9 @@ doi:10.1115/1.3451608; Jacobs, Junge and Pastewka 2017, doi:10.1088/2051-672X/aa
     C1(k) = integral of C(sqrt(k^2 + p^2)) over all p
           = 2 integral_k^inf C(q) q dq / sqrt(q^2 - k^2),
 
-in nm^3 at k in 1/nm. Its inverse takes a derivative of noisy data. For a power law it is a factor, which is wrong on a
-plateau. So that C is sought whose C1 fits: straight between nodes in ln q and ln C, by Whittle's
-(Gamma) likelihood. A prior holds small what the slope changes from node to node.
+in nm^3 at k in 1/nm. Its inverse takes a derivative of noisy data. For a power law it is a factor,
+which is wrong on a plateau. So that C is sought whose C1 fits: straight between nodes in ln q and
+ln C, by Whittle's (Gamma) likelihood. A prior holds small what the slope changes from node to node.
 """
 
 from dataclasses import dataclass
