@@ -70,8 +70,10 @@ class FailureNumerics:
     """Numbers of surfaces."""
 
     least_times: float = LEAST_TIMES
+    """Least factor on the attraction that is tried."""
+
     most_times: float = MOST_TIMES
-    """Factors on the attraction that are tried."""
+    """Largest factor on the attraction that is tried."""
 
     step: float = STEP
     """Difference of their logarithms to which the reserve is known."""
