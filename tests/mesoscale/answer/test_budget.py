@@ -13,9 +13,8 @@ from mesoscale.answer.budget import NUMERICAL, TWIN, budget, effects_of, with_tw
 from mesoscale.answer.points import Point
 from mesoscale.answer.switches import Solved
 from mesoscale.errors import InputError
-from mesoscale.settings import DeviceSettings
 from mesoscale.settings.definitions import BY_NAME
-from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.studies.answer_stability import made_up_pad, published_beam
 from mesoscale.switch import switch_of
 
 SHIPPED = load_mapping(Path(__file__).parents[3] / "config" / "effects.yaml", "table of effects")
@@ -64,7 +63,7 @@ def test_what_the_literature_names_stands_in_the_budget_or_is_small_for_a_reason
     named = load_mapping(path, "effects")["effects"]
     known = {
         *effects_of(SHIPPED),
-        *DeviceSettings().varied,
+        *published_beam().varied,
         *BY_NAME,
         "gap_cutoff_nm",
         "law of attraction",
@@ -78,7 +77,7 @@ def test_what_the_literature_names_stands_in_the_budget_or_is_small_for_a_reason
 
 
 def test_every_number_is_that_of_its_own_calculation():
-    device = DeviceSettings(hold_voltage_V=80.0)
+    device = published_beam(hold_voltage_V=80.0)
     switch = central(device)
     rows = {row["effect"]: row for row in budget(effects_of(SHIPPED), SWITCH_CONTENT, switch)}
     release = switch.states.release_V
@@ -102,7 +101,7 @@ def test_every_number_is_that_of_its_own_calculation():
 
 
 def test_a_plate_has_no_stress_and_a_switch_that_sticks_has_no_budget():
-    plate = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)
+    plate = published_beam(spring_N_per_m=1e3, hold_voltage_V=160.0)
     names = {row["effect"] for row in budget(effects_of(SHIPPED), SWITCH_CONTENT, central(plate))}
     assert "hold voltage" in names
     assert not {"temperature", "stress by the package", "curl of the beam"} & names
@@ -124,7 +123,7 @@ def test_the_factor_of_half_the_energies_is_that_of_the_scenes_twins():
     assert told[TWIN].hardness == 0.52
     assert told[TWIN].about == "0.52 [0.46, 0.58] of the hardness, by twins of this scene"
     assert with_twins(effects, []) == effects
-    switch = central(DeviceSettings(hold_voltage_V=80.0))
+    switch = central(published_beam(hold_voltage_V=80.0))
     rows = {
         row["effect"]: row
         for row in budget(told, SWITCH_CONTENT, switch, {1.0: 7.0, 0.52: 0.0, 1.37: 7.5})
@@ -137,7 +136,7 @@ def test_the_factor_of_half_the_energies_is_that_of_the_scenes_twins():
 
 
 def test_numerical_errors_of_the_scene_stand_in_quadrature():
-    switch = central(DeviceSettings(hold_voltage_V=80.0))
+    switch = central(published_beam(hold_voltage_V=80.0))
     rows = budget(
         {},
         SWITCH_CONTENT,
@@ -150,7 +149,7 @@ def test_numerical_errors_of_the_scene_stand_in_quadrature():
 
 
 def test_an_input_of_the_scene_takes_the_place_of_its_row():
-    switch = central(DeviceSettings(hold_voltage_V=80.0))
+    switch = central(published_beam(hold_voltage_V=80.0))
     humid = Solved(
         Point({"humidity": 0.4}, 0.2, switch.point.device), KnownPad, switch.states, (0.0, 0.0)
     )
@@ -164,7 +163,7 @@ def test_an_input_of_the_scene_takes_the_place_of_its_row():
 def test_anchors_give_way_by_a_tenth_of_the_default_beam():
     """The row said a tenth and changed a ten-thousandth: 0.00004 V stood for 0.14 V."""
     row = SHIPPED["anchors that give way"]
-    beam = DeviceSettings()
+    beam = published_beam()
     section_um2 = beam.width_um * beam.thickness_um
     own_um_per_N = 1e3 * beam.length_um / (beam.youngs_modulus_GPa * section_um2)
     assert row["step"] == pytest.approx(0.1 * own_um_per_N, rel=0.01)
