@@ -26,6 +26,8 @@ MARGIN = 1.25
 """Over what a switch presses with: the mean of the few pilot cells of a pad is off by 15 %."""
 PULL_IN_ERROR = 1e-3
 """Relative error of a pull-in by the number of elements."""
+NEVER_CLOSES = "never closes this switch"
+"""In the reason of a switch that its hold voltage never closes."""
 
 
 @dataclass(frozen=True)
@@ -197,7 +199,7 @@ def never_closes(settings: DeviceSettings, pull_in_V: float, touches: bool = Fal
         return ""
     closes = "touches" if touches else "pulls in"
     return (
-        f"device.hold_voltage_V = {hold_V:.4g}: never closes this switch, which {closes} at"
+        f"device.hold_voltage_V = {hold_V:.4g}: {NEVER_CLOSES}, which {closes} at"
         f" {pull_in_V:.4g} V; give the largest voltage that it is closed with, or null for pull-in"
         " itself"
     )

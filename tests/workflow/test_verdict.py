@@ -211,6 +211,27 @@ def test_switches_without_answer_are_named_with_the_reason_of_the_first():
     assert words.endswith("The reason of the first: asperities merge.")
 
 
+def test_devices_that_never_close_stand_on_the_first_screen():
+    never = {"value": 0.25, "low": 0.15, "high": 0.4}
+    words = _unsolved({"points": 96, "refused": [], "never_close": never})
+    assert words.startswith("25% of the devices never close at the stated hold voltage")
+    assert "15% to 40%" in words
+    none = {"value": 0.0, "low": 0.0, "high": 0.04}
+    assert _unsolved({"points": 96, "refused": [], "never_close": none}) == ""
+
+
+def test_the_next_step_is_to_measure_pull_in_where_that_tells_most():
+    pad = _pad()
+    pad["answer"]["pull_in_shrinks_by"] = 0.45
+    assert "Measure next the pull-in of the device" in said(pad).next_step
+    assert "shrinks the interval by 45%" in said(pad).next_step
+    pad["measured"] = {"measured": {"pull_in_V": {}}}
+    assert said(pad).next_step.startswith("Control next the bow")
+    pad = _pad(electrode="flat")
+    pad["answer"]["pull_in_shrinks_by"] = 0.45
+    assert said(pad).next_step.startswith("Control next the bow")
+
+
 @pytest.mark.parametrize(
     ("span", "air", "words"),
     [

@@ -1,5 +1,6 @@
 """The first screen: the device, its release with the zone where it sticks, causes and next step."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,10 +9,12 @@ from workflow.report.available import Results
 from workflow.report.numbers import show
 from workflow.report.verdict import (
     DECIDED,
+    LITTLE,
     Verdict,
     does,
     in_words,
     interval_of,
+    pull_in_shrinks_by,
     verdict,
     volts,
 )
@@ -81,8 +84,19 @@ def _pull_in(pad: dict[str, Any]) -> str:
     if pad.get("answer"):
         quantiles = pad["answer"]["pull_in_V"]["quantiles"]
         low, middle, high = (f"{show(quantiles[q])} V" for q in ("0.05", "0.5", "0.95"))
-        return f"It {does} at {middle} {interval_of(low, high)}.{pressed}"
+        return f"It {does} at {middle} {interval_of(low, high)}.{pressed}{_narrowed(pad)}"
     return f"It {does} at {show(pad['central']['pull_in_V'])} V, at central inputs.{pressed}"
+
+
+def _narrowed(pad: dict[str, Any]) -> str:
+    """By how much a measured pull-in narrows the release, in words; empty where it is measured."""
+    shrinks = pull_in_shrinks_by(pad)
+    if shrinks < LITTLE:
+        return ""
+    return (
+        f" Measured of a device (device.measured), it shrinks the interval of its release by"
+        f" {shrinks:.0%}."
+    )
 
 
 def _conditions(results: Results) -> str:
@@ -141,13 +155,24 @@ def _sticking(answer: dict[str, Any]) -> str:
 
 
 def _unsolved(answer: dict[str, Any]) -> str:
-    """That some switches have no answer, which are no random part of them; the reason of the
-    first.
+    """That some switches never close, or have no answer, which are no random part of them; the
+    reason of the first.
     """
-    if not (refused := answer.get("refused")):
-        return ""
+    words = []
+    never = answer.get("never_close")
+    if never and never["value"] > 0.0:
+        words.append(
+            f"{_rate(never['value'])} of the devices never close at the stated hold voltage (95 %"
+            f" interval {_rate(never['low'])} to {_rate(never['high'])}). They are left out."
+        )
+    if refused := answer.get("refused"):
+        words.append(_without_answer(refused, answer["points"]))
+    return " ".join(words)
+
+
+def _without_answer(refused: Sequence[str], solved: int) -> str:
     return (
-        f"{len(refused)} of {answer['points'] + len(refused)} switches have no answer. They are"
+        f"{len(refused)} of {solved + len(refused)} switches have no answer. They are"
         f" left out, and may be those that stick. The reason of the first: {refused[0]}."
     )
 

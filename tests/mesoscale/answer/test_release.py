@@ -12,7 +12,7 @@ from evidence.pad.closed_form import ClosedForm
 from mesoscale.answer import points, switches
 from mesoscale.answer.other_devices import release_by_key
 from mesoscale.answer.points import central_point, plan_points
-from mesoscale.answer.release import _probability, answer, switch_on_pad
+from mesoscale.answer.release import _probability, answer, shrinks_by, switch_on_pad
 from mesoscale.answer.switches import PadModel, solve_point, solve_points
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.table import input_table
@@ -181,6 +181,37 @@ def test_two_points_have_an_answer_that_explains_nothing(known):
     assert said.explained == 0.0
     assert said.stuck["low"] < 0.2
     assert said.stuck["high"] > 0.5
+
+
+def test_devices_that_the_hold_never_closes_are_counted_and_left_out(known):
+    """Their share is that of devices whose pull-in on their own pads exceeds the hold."""
+    free = model_of(PLATE.model_copy(update={"hold_voltage_V": None}), 32)
+    pull_in_V = free.states("pull_in_V")
+    hold_V = float(np.quantile(pull_in_V, 0.6))
+    said = answer(model_of(PLATE.model_copy(update={"hold_voltage_V": hold_V}), 32))
+    never = int((pull_in_V > 1.001 * hold_V).sum())
+    assert never > 8
+    assert said.never_close["value"] == never / 32
+    assert said.points == 32 - never
+    assert said.refused == ()
+    assert said.pull_in_V["quantiles"]["0.95"] <= 1.001 * hold_V
+
+
+def test_devices_of_which_hardly_one_closes_have_no_answer(known):
+    with pytest.raises(InputError, match="32 of 32 switches never close: .*largest voltage"):
+        answer(model_of(PLATE.model_copy(update={"hold_voltage_V": 20.0}), 32))
+
+
+@pytest.mark.parametrize(("noise", "expected"), [(0.0, 1.0), (0.5, 0.5), (100.0, 0.0)])
+def test_a_known_number_takes_off_what_it_explains(noise, expected):
+    """Of the variance of x + noise, with x of variance 1: 1 - noise / hypot(1, noise)."""
+    rng = np.random.default_rng(0)
+    pull_in = rng.normal(size=2000)
+    release = pull_in + noise * rng.normal(size=2000)
+    exact = 1.0 - noise / np.hypot(1.0, noise)
+    assert exact == pytest.approx(expected, abs=0.06)
+    assert shrinks_by(pull_in, release) == pytest.approx(exact, abs=0.02)
+    assert shrinks_by(np.full(20, 3.0), release[:20]) == 0.0
 
 
 def test_a_pad_that_one_cell_in_a_hundred_carries_is_undecided(monkeypatch):
