@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.answer.known import ENDS, fit_additive, known
-from mesoscale.answer.other_devices import release_by_key
+from mesoscale.answer.other_devices import by_capacitance, release_by_key
 from mesoscale.answer.switches import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.pad.adhesion import adhesion_of
@@ -230,11 +230,13 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
     cells_computed = 0
     adhesion = []
     by_key = []
+    falls = []
     if central.pad:
         cells_computed = central.pad.count
         adhesion = [asdict(opened) for opened in adhesion_of(central.pad.curves)]
     if central.pad and central.states:
         by_key = release_by_key(settings, central.pad.curves)
+        falls = by_capacitance(settings, central.pad.curves)
     reasons = _reasons(central)
     return {
         "electrode": ELECTRODES[settings.kind],
@@ -246,6 +248,7 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         ],
         "adhesion": adhesion,
         "by_key": by_key,
+        "by_capacitance": falls,
         "gate": {"passed": not reasons, "reasons": reasons},
         "answer": content,
         "answer_status": status,

@@ -21,8 +21,9 @@ if TYPE_CHECKING:  # rules read settings, and are linted where Snakemake is alon
 REFERENCE_C = 20.0
 """Temperature at which stress and shape at rest are stated."""
 PartOfBeam = tuple[float, float]
-NOTHING = ("measured", None)
-"""A device of which nothing was measured."""
+NOTHING = (("measured", None), ("release_at", "jump"))
+"""Of a device of which nothing was measured, and whose release is its jump."""
+Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 
 
 class SpreadRow(DistributionRow):
@@ -238,14 +239,19 @@ class DeviceSettings(Settings):
     hold_voltage_V: float | None = key(
         None, "voltage of the closed switch; null: its pull-in voltage", "[0.001, 1e4] V"
     )
+    release_at: Literal["jump"] | Share = key(
+        "jump",
+        "which voltage is the release: at the jump open (jump), or where the capacitance has fallen"
+        " to this share of that while held, as in 0.5",
+    )
     measured: MeasuredSettings | None = key(
         None, "what was measured of this device; null: its properties are known by `spread` alone"
     )
 
     @model_serializer(mode="wrap")
     def _without_nothing_measured(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Nothing measured is left out, so that results without it stay as they were."""
-        return {name: value for name, value in dump(self).items() if (name, value) != NOTHING}
+        """What says nothing is left out, so that results without it stay as they were."""
+        return {name: value for name, value in dump(self).items() if (name, value) not in NOTHING}
 
     @model_validator(mode="before")
     @classmethod

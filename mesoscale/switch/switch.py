@@ -37,7 +37,8 @@ class States:
     Attributes
     ----------
     pull_in_V : voltage at which the open switch snaps shut, or touches where that comes first.
-    release_V : voltage at which the closed switch lets go; 0 where it sticks.
+    release_V : voltage at which the closed switch lets go, or has lost the share of its capacitance
+        that `device.release_at` states; 0 where it does not.
     capacitance_fF : while held closed.
     deepened : whether the pad was pressed harder than it was computed, so that its curves were
         continued.
@@ -163,6 +164,12 @@ class Switch(ABC):
         InputError : see `pull_in_V`.
         """
         return self.settings.hold_voltage_V or self.pull_in_V
+
+    @property
+    def held_share(self) -> float:
+        """Share of the held capacitance below which the switch counts as released."""
+        share = self.settings.release_at
+        return 0.0 if share == "jump" else share
 
     def least_GPa(self, separation_nm: Array | float) -> Array:
         """Pressure to which its pad is computed at least, at separations of any shape.

@@ -33,6 +33,7 @@ class First:
     """Pictures and words of the first screen."""
 
     said: Verdict
+    release: str
     pull_in: str
     conditions: str
     device: str
@@ -63,6 +64,7 @@ def first_screen(results: Results, gates: Any) -> First | None:
     bands = {kind: answer["known"][f"{kind}_V"] for kind in BANDS} if named else {}
     return First(
         said,
+        release=_release(results),
         pull_in=_pull_in(results.json("answer/pad_switch.json")),
         conditions=_conditions(results),
         device=_device(results),
@@ -72,6 +74,38 @@ def first_screen(results: Results, gates: Any) -> First | None:
         unsolved=_unsolved(answer),
         other_law=other,
     )
+
+
+def _release(results: Results) -> str:
+    """Which voltage is called release, and what a C-V curve shows beside it."""
+    pad = results.json("answer/pad_switch.json")
+    fallen = {row["release_at"]: row["release_V"] for row in pad.get("by_capacitance", ())}
+    share = _release_at(results)
+    if share != "jump":
+        words = (
+            f"Release: where the capacitance has fallen to {share:.0%} of that while held, as the"
+            " voltage falls. It sticks if it never does."
+        )
+        if not fallen.get("jump"):
+            return words
+        return f"{words} The switch jumps open at {show(fallen['jump'])} V, at central inputs."
+    words = (
+        "Release: where the closed switch jumps open as its voltage falls; it sticks if it never"
+        " does."
+    )
+    if not fallen.get(0.5):
+        return words
+    return (
+        f"{words} Its capacitance has fallen to half before, at {show(fallen[0.5])} V at central"
+        " inputs (device.release_at)."
+    )
+
+
+def _release_at(results: Results) -> Any:
+    """What the scene calls release."""
+    if not results.has("scene.yaml"):
+        return "jump"
+    return results.record["scene"]["device"].get("release_at", "jump")
 
 
 def _pull_in(pad: dict[str, Any]) -> str:

@@ -20,6 +20,7 @@ from mesoscale.answer.switches import PadModel
 from mesoscale.answer.what_if import with_device
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
+from mesoscale.settings.device import PLATED_NICKEL
 from workflow.report.available import Results, results_in
 from workflow.report.numbers import show
 from workflow.report.verdict import does, interval_of, volts
@@ -119,14 +120,18 @@ def what_if(scene: PressedScene, word: str) -> Iterator[dict[str, Any]]:
         raise InputError(
             f"{word}: changes what pads are pressed from; copy the scene, change it and run it"
         )
-    if scene.device.measured and name != "hold_voltage_V":
+    if scene.device.measured and name not in ("hold_voltage_V", "release_at"):
         raise InputError(
             f"{word}: device.measured tells of the device as it is; another one was not measured"
         )
     devices = {AS_RUN: scene.device}
+    departs = scene.device.spread.youngs_modulus_GPa
     for value in values.split(","):
         changes = device_of([f"{name}={value}"])
-        device = DeviceSettings(**scene.device.model_dump() | changes)
+        stated = scene.device.model_dump() | changes
+        if "youngs_modulus_GPa" in changes and departs == PLATED_NICKEL:
+            stated["spread"].pop("youngs_modulus_GPa")  # another metal is no plated nickel
+        device = DeviceSettings(**stated)
         if device.kind != scene.device.kind:
             raise InputError(
                 f"{word}: another kind of switch; copy the scene, change it and run it"

@@ -198,7 +198,7 @@ def test_devices_that_the_hold_never_closes_are_counted_and_left_out(known):
 
 
 def test_devices_of_which_hardly_one_closes_have_no_answer(known):
-    with pytest.raises(InputError, match="32 of 32 switches never close: .*largest voltage"):
+    with pytest.raises(InputError, match=r"32 of 32 switches never close: .*largest voltage"):
         answer(model_of(PLATE.model_copy(update={"hold_voltage_V": 20.0}), 32))
 
 
