@@ -187,20 +187,20 @@ class CachedGrid(MultiGridNumInt2):
         δ Q is added to it: half the work or less.  The gradient of the orbitals is exact, so the
         SCF ends at the same solution.
         """
-        if (
-            self.basis_overlap is not None
-            and getattr(density_matrix, "mo_coeff", None) is not None
-            and self._full
-        ):
-            matrix, old_rho, old_potential = self._full
-            if self.weight * float(abs(rho - old_rho).sum()) < LAG * self.cell.nelectron:
-                c = self.occupied_orbitals(density_matrix)[0] * np.sqrt(0.5)
+        has_orbitals = getattr(density_matrix, "mo_coeff", None) is not None
+        if self.basis_overlap is not None and has_orbitals and self._full:
+            full_matrix, old_rho, old_potential = self._full
+            moved_electrons = self.weight * float(abs(rho - old_rho).sum())
+            if moved_electrons < LAG * self.cell.nelectron:
+                orbitals, _ = self.occupied_orbitals(density_matrix)
+                c = orbitals * np.sqrt(0.5)
                 change = np.sqrt(0.5) * self._onto_waves(potential - old_potential)
                 s_c = self.basis_overlap @ c
                 update = (change - 0.5 * s_c @ (c.T @ change)) @ s_c.T
-                return matrix + update + update.T
-        self._full = self.matrix(potential), rho, potential
-        return self._full[0]
+                return full_matrix + update + update.T
+        matrix = self.matrix(potential)
+        self._full = (matrix, rho, potential)
+        return matrix
 
     def _onto_waves(self, potential: np.ndarray) -> np.ndarray:
         """Σ_r w φ_µ v ψ_i with orbitals ψ of the last density, (basis functions, orbitals)."""
@@ -231,28 +231,34 @@ class CachedGrid(MultiGridNumInt2):
         factor, _ = self.occupied_orbitals(mf.make_rdm1())
         rho = self.density(mf.make_rdm1())
         v, _, _ = self.potential(mf.xc, rho)
-        waves = self.waves * (self.weight * v).astype(self.precision)
+        weighted_waves = self.waves * (self.weight * v).astype(self.precision)
         spectrum = self._spectrum(rho)
+        mesh = tuple(self.mesh)
         slices = cell.aoslice_by_atom()
+        for atom in range(cell.natm):
+            first, end = slices[atom, 2:]  # its orbitals
+            kinetic_slope = np.real(kinetic[:, first:end])
+            overlap_slope = np.real(overlap[:, first:end])
+            on_grid = factor[first:end].astype(self.precision) @ weighted_waves
+            energy_of_atom = energy_weighted[first:end]
+            gradient[atom] += 2 * np.einsum("xuv,uv->x", kinetic_slope, dm[first:end])
+            gradient[atom] -= 2 * np.einsum("xuv,uv->x", overlap_slope, energy_of_atom)
+            gradient[atom] -= 2 * pulay_term(self.atoms[atom], self.lattice, mesh, on_grid)
+            gradient[atom] += self._local_slope(atom, spectrum)
+        return -(gradient - gradient.mean(axis=0))
+
+    def _local_slope(self, atom: int, spectrum: np.ndarray) -> np.ndarray:
+        """dE/dR of an atom's local pseudopotential in a density of that spectrum, (3,)."""
         # half spectrum: every wave vector but those in the planes k_z = 0 and Nyquist stands for
         # two
         twice = np.full(spectrum.shape[-1], 2.0)
         twice[0] = 1.0
         if self.mesh[2] % 2 == 0:
             twice[-1] = 1.0
-        for atom in range(cell.natm):
-            a, b = slices[atom, 2:]
-            kinetic_slope = np.real(kinetic[:, a:b])
-            overlap_slope = np.real(overlap[:, a:b])
-            on_grid = factor[a:b].astype(self.precision) @ waves
-            mesh = tuple(self.mesh)
-            gradient[atom] += 2 * np.einsum("xuv,uv->x", kinetic_slope, dm[a:b])
-            gradient[atom] -= 2 * np.einsum("xuv,uv->x", overlap_slope, energy_weighted[a:b])
-            gradient[atom] -= 2 * pulay_term(self.atoms[atom], self.lattice, mesh, on_grid)
-            form = self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
-            product = np.imag(form * spectrum.conj()) * twice
-            gradient[atom] += np.einsum("xijk,ijk->x", self.wave_vectors[1], product) / self.points
-        return -(gradient - gradient.mean(axis=0))
+        form = self.local_form[self.cell.atom_symbol(atom)]
+        shifted = form * self._phase(self.cell.atom_coords()[atom])
+        product = np.imag(shifted * spectrum.conj()) * twice
+        return np.einsum("xijk,ijk->x", self.wave_vectors[1], product) / self.points
 
 
 def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:

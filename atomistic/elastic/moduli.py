@@ -132,17 +132,11 @@ def effective_modulus(
     structures.
     """
     used = [m for m in moduli if m.xc == "GGA" and m.trusted]
-    values = [(modulus.B_GPa, modulus.error_GPa) for modulus in used]
-    B, B_error = np.array(values).reshape(-1, 2).T
     shift = functional_shift(moduli)
     other: Polycrystal = counter_body.part("polycrystal")
     low, high = settings.poisson_ratio
     glass: NetworkGlass = material.part("network_glass")
-    films = {}
-    for name, film in material.films.items():
-        B_film = np.array(film.young_GPa) / (3 - 6 * np.array(film.poisson_ratio))
-        bodies = (film.poisson_ratio, other.young_GPa, other.poisson_ratio)
-        films[name] = plane_strain_modulus(B_film, *bodies).tolist()
+    films = _moduli_of_films(material, other)
     summary: dict[str, Any] = {
         "ions": "follow, by a stated factor" if glass.ions_follow else "clamped",
         "films_GPa": films,
@@ -165,29 +159,56 @@ def effective_modulus(
     }
     if not used:
         return summary, {}
-    delta = shift["mean_GPa"] if shift["structures"] else 0.0
+    shift_GPa = shift["mean_GPa"] if shift["structures"] else 0.0
     follow = glass.ions_follow or (1.0, 0.0)
+    B = [modulus.B_GPa for modulus in used]
+    B_error = [modulus.error_GPa for modulus in used]
     ranges = (settings.poisson_ratio, (other.young_GPa, other.young_std_GPa), other.poisson_ratio)
-    summary["clamped_GPa"], _ = mean_and_deviation(B, B_error, delta, *ranges)
-    ranges = (*ranges, follow)
-    summary["mean_GPa"], summary["std_GPa"] = mean_and_deviation(B, B_error, delta, *ranges)
-    rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 51]))
-    n = SAMPLES
-    lda = rng.integers(0, 2, n)
-    drawn = rng.integers(0, len(B), n)
-    B_samples = B[drawn] + delta * lda
-    nu = rng.uniform(low, high, n)
-    E = rng.normal(other.young_GPa, other.young_std_GPa, n)
-    B_samples = B_samples + B_error[drawn] * rng.standard_normal(n)
-    B_samples *= follow[0] + follow[1] * rng.standard_normal(n)
-    e_star = plane_strain_modulus(B_samples, nu, E, other.poisson_ratio)
+    summary["clamped_GPa"], _ = mean_and_deviation(B, B_error, shift_GPa, *ranges)
+    mean, deviation = mean_and_deviation(B, B_error, shift_GPa, *ranges, follow)
+    summary["mean_GPa"] = mean
+    summary["std_GPa"] = deviation
+    samples = _samples(used, shift_GPa, follow, other, settings)
     quantiles = (0.025, 0.16, 0.5, 0.84, 0.975)
-    values = np.quantile(e_star, quantiles).tolist()
+    values = np.quantile(samples["e_star_GPa"], quantiles).tolist()
     summary["quantiles_GPa"] = dict(zip(map(str, quantiles), values, strict=True))
-    normal = {"distribution": "normal", "a": summary["mean_GPa"], "b": summary["std_GPa"]}
-    summary["inputs"] = {"e_star": normal}
-    return summary, {
-        "e_star_GPa": e_star,
+    summary["inputs"] = {"e_star": {"distribution": "normal", "a": mean, "b": deviation}}
+    return summary, samples
+
+
+def _moduli_of_films(material: Material, other: Polycrystal) -> dict[str, list[float]]:
+    """E* (GPa, lowest and highest) of the material's measured films on the other body."""
+    moduli: dict[str, list[float]] = {}
+    for name, film in material.films.items():
+        B_film = np.array(film.young_GPa) / (3 - 6 * np.array(film.poisson_ratio))
+        e_star = plane_strain_modulus(
+            B_film, film.poisson_ratio, other.young_GPa, other.poisson_ratio
+        )
+        moduli[name] = e_star.tolist()
+    return moduli
+
+
+def _samples(
+    used: Sequence[Modulus],
+    shift_GPa: float,
+    follow: tuple[float, float],
+    other: Polycrystal,
+    settings: ElasticSettings,
+) -> dict[str, np.ndarray]:
+    """The arrays of SAMPLE_COLUMNS, drawn as `mean_and_deviation` weighs them."""
+    B = np.array([modulus.B_GPa for modulus in used])
+    B_error = np.array([modulus.error_GPa for modulus in used])
+    low, high = settings.poisson_ratio
+    rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 51]))
+    lda = rng.integers(0, 2, SAMPLES)
+    structure = rng.integers(0, len(B), SAMPLES)
+    nu = rng.uniform(low, high, SAMPLES)
+    E = rng.normal(other.young_GPa, other.young_std_GPa, SAMPLES)
+    B_samples = B[structure] + shift_GPa * lda
+    B_samples = B_samples + B_error[structure] * rng.standard_normal(SAMPLES)
+    B_samples *= follow[0] + follow[1] * rng.standard_normal(SAMPLES)
+    return {
+        "e_star_GPa": plane_strain_modulus(B_samples, nu, E, other.poisson_ratio),
         "B_GPa": B_samples,
         "nu": nu,
         "counter_E_GPa": E,

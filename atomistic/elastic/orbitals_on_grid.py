@@ -63,43 +63,50 @@ def atom_orbitals(cell: "Cell", precision: float | None = None) -> list[AtomOrbi
     """
     if cell.cart:
         raise NotImplementedError("Cartesian orbitals; use spherical ones")
-    precision = precision or cell.precision
-    ao_loc = cell.ao_loc_nr()
-    coordinates = cell.atom_coords()
-    atoms: list[AtomOrbitals] = []
-    for atom in range(cell.natm):
-        shells = [shell for shell in range(cell.nbas) if cell.bas_atom(shell) == atom]
-        exponents = np.unique(np.concatenate([cell.bas_exp(shell) for shell in shells]))
-        angular = []
-        first = []
-        rows = []
-        for shell in shells:
-            degree = cell.bas_angular(shell)
-            if degree > 2:
-                raise NotImplementedError(
-                    f"angular momentum {degree} of {cell.atom_symbol(atom)}; s, p and d are"
-                    " supported"
-                )
-            where = np.searchsorted(exponents, cell.bas_exp(shell))
-            for k, column in enumerate(cell._libcint_ctr_coeff(shell).T):
-                row = np.zeros(len(exponents))
-                np.add.at(row, where, column)
-                rows.append(row)
-                angular.append(degree)
-                first.append(int(ao_loc[shell]) + k * (2 * degree + 1))
-        contraction = np.array(rows)
-        radii = np.linspace(0.5, 40.0, 1581)
-        gaussians = np.exp(-np.outer(radii**2, exponents))
-        radial = np.abs(gaussians @ contraction.T)
-        size = np.max(radial * radii[:, None] ** np.array(angular), axis=1)
-        large = np.nonzero(size > precision)[0]
-        radius = 0.5
-        if len(large):
-            radius = float(radii[min(large[-1] + 1, len(radii) - 1)])
-        angles = np.array(angular)
-        orbitals = (exponents, angles, contraction, np.array(first), radius)
-        atoms.append(AtomOrbitals(coordinates[atom], *orbitals))
-    return atoms
+    smallest = float(precision or cell.precision)
+    return [_orbitals_of(cell, atom, smallest) for atom in range(cell.natm)]
+
+
+def _orbitals_of(cell: "Cell", atom: int, precision: float) -> AtomOrbitals:
+    """Orbitals of one atom of a PySCF cell."""
+    first_orbital_of_shell = cell.ao_loc_nr()
+    shells = [shell for shell in range(cell.nbas) if cell.bas_atom(shell) == atom]
+    exponents = np.unique(np.concatenate([cell.bas_exp(shell) for shell in shells]))
+    angular: list[int] = []
+    first: list[int] = []
+    rows: list[np.ndarray] = []
+    for shell in shells:
+        degree = cell.bas_angular(shell)
+        if degree > 2:
+            raise NotImplementedError(
+                f"angular momentum {degree} of {cell.atom_symbol(atom)}; s, p and d are supported"
+            )
+        places = np.searchsorted(exponents, cell.bas_exp(shell))
+        for k, coefficients in enumerate(cell._libcint_ctr_coeff(shell).T):
+            row = np.zeros(len(exponents))
+            np.add.at(row, places, coefficients)
+            rows.append(row)
+            angular.append(degree)
+            first.append(int(first_orbital_of_shell[shell]) + k * (2 * degree + 1))
+    contraction = np.array(rows)
+    radius = _radius(exponents, np.array(angular), contraction, precision)
+    return AtomOrbitals(
+        cell.atom_coords()[atom], exponents, np.array(angular), contraction, np.array(first), radius
+    )
+
+
+def _radius(
+    exponents: np.ndarray, angular: np.ndarray, contraction: np.ndarray, precision: float
+) -> float:
+    """Distance (bohr) beyond which r^l R(r) of every radial function is below `precision`."""
+    radii = np.linspace(0.5, 40.0, 1581)
+    gaussians = np.exp(-np.outer(radii**2, exponents))
+    radial = np.abs(gaussians @ contraction.T)
+    largest = np.max(radial * radii[:, None] ** angular, axis=1)
+    large = np.nonzero(largest > precision)[0]
+    if not len(large):
+        return float(radii[0])
+    return float(radii[min(large[-1] + 1, len(radii) - 1)])
 
 
 def collocate(
@@ -239,6 +246,10 @@ def _take_line(line, row, begin, count):
 def _collocate_atom(
     values, lattice, mesh, centre, exponents, angular, contraction, first, radius, low, high
 ):
+    """Add the orbitals of one atom to their rows of `values`, line by line of the grid.
+
+    x, y, z: points of a line from the atom's centre; f: a radial function on them.
+    """
     n_radial, n_primitives = contraction.shape
     longest = high[2] - low[2] + 2
     gaussians = np.empty((n_primitives, longest))
@@ -256,12 +267,14 @@ def _collocate_atom(
                 y[k] = origin[1] + (begin + k) * step[1]
                 z[k] = origin[2] + (begin + k) * step[2]
             for s in range(n_radial):
+                # R(r), the contracted Gaussians
                 f[:n] = 0.0
                 for p in range(n_primitives):
                     c = contraction[s, p]
                     if c != 0.0:
                         for k in range(n):
                             f[k] += c * gaussians[p, k]
+                # times the harmonics of its 2l + 1 orbitals
                 for m in range(2 * angular[s] + 1):
                     _harmonic_times(line, angular[s], m, x, y, z, f, n)
                     _add_line(values[first[s] + m, row : row + mesh[2]], line, begin, n)
@@ -298,6 +311,12 @@ def _harmonic_times(out, degree, m, x, y, z, f, n):
 def _contract_gradient(
     field, lattice, mesh, centre, exponents, angular, contraction, first, radius, low, high
 ):
+    """Sum over orbitals and grid points of `field` times ∇φ, with φ = R(r) S_lm(x, y, z).
+
+    ∇φ = (R'/r) S_lm (x, y, z) + R ∇S_lm.  On a line of the grid `radial` gathers the factor of
+    (x, y, z) in the first term, and gx, gy, gz the second; f is R, slope is R'/r, and a0 to a4 are
+    the field of the 2l + 1 orbitals.
+    """
     n_radial, n_primitives = contraction.shape
     longest = high[2] - low[2] + 2
     gaussians = np.empty((n_primitives, longest))
@@ -316,11 +335,12 @@ def _contract_gradient(
                 x[k] = origin[0] + (begin + k) * step[0]
                 y[k] = origin[1] + (begin + k) * step[1]
                 z[k] = origin[2] + (begin + k) * step[2]
-            radial[:n] = 0.0  # Σ R'/r S_lm field: the part of the gradient that points along r
+            radial[:n] = 0.0
             gx[:n] = 0.0
             gy[:n] = 0.0
             gz[:n] = 0.0
             for s in range(n_radial):
+                # R and R'/r; of a Gaussian exp(-α r²) the latter is -2 α times itself
                 f[:n] = 0.0
                 slope[:n] = 0.0
                 for p in range(n_primitives):
@@ -331,10 +351,12 @@ def _contract_gradient(
                             f[k] += c * gaussians[p, k]
                             slope[k] += d * gaussians[p, k]
                 a = first[s]
+                # s: S = S0, which has no gradient of its own
                 if angular[s] == 0:
                     _take_line(a0, field[a, start:stop], begin, n)
                     for k in range(n):
                         radial[k] += slope[k] * S0 * a0[k]
+                # p: S = P0 x, P0 y, P0 z
                 elif angular[s] == 1:
                     _take_line(a0, field[a, start:stop], begin, n)
                     _take_line(a1, field[a + 1, start:stop], begin, n)
@@ -344,6 +366,7 @@ def _contract_gradient(
                         gx[k] += f[k] * P0 * a0[k]
                         gy[k] += f[k] * P0 * a1[k]
                         gz[k] += f[k] * P0 * a2[k]
+                # d: S = D0 xy, D0 yz, D1 (2z² - x² - y²), D0 xz, D2 (x² - y²)
                 else:
                     _take_line(a0, field[a, start:stop], begin, n)
                     _take_line(a1, field[a + 1, start:stop], begin, n)
@@ -367,6 +390,7 @@ def _contract_gradient(
                         gz[k] += f[k] * (
                             D0 * (y[k] * a1[k] + x[k] * a3[k]) + 4.0 * D1 * z[k] * a2[k]
                         )
+            # the first term along (x, y, z)
             for k in range(n):
                 gx[k] += radial[k] * x[k]
                 gy[k] += radial[k] * y[k]

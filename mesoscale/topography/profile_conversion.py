@@ -12,6 +12,8 @@ and log C, by Whittle's (Gamma) likelihood, with changes of the logarithmic slop
 held small.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from mesoscale.errors import InputError
@@ -128,65 +130,108 @@ def _binned(k: np.ndarray, c1: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
     return centre, np.maximum(count * COVER, 0.5), np.bincount(index, c1) / count
 
 
-def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarray, bool]:
-    """ln C at the nodes (ln q), its covariance, and whether it settled; damped Fisher scoring."""
-    k, c1, modes = measured.q, measured.psd, measured.modes
+@dataclass(frozen=True)
+class _LineModel:
+    """C1 on the bins of a measured line as it follows from ln C at nodes, and how well it fits.
+
+    Attributes
+    ----------
+    measured : the line's spectrum on k bins
+    weight, left, right_share : (k, m) of the points q at which each C1 reads C: their weight, the
+        node to their left, and how far they are on the way to the next one
+    prior, pull : (n, n) and (n,): ln of the prior density of y, ln C at n nodes, is
+        -y prior y/2 + pull y
+    """
+
+    measured: Spectrum
+    weight: np.ndarray
+    left: np.ndarray
+    right_share: np.ndarray
+    prior: np.ndarray
+    pull: np.ndarray
+
+    def mean_and_slope(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """C1 (k,) and the derivative of its logarithm with respect to y, (k, n)."""
+        log_c = y[self.left] * (1 - self.right_share) + y[self.left + 1] * self.right_share
+        c = self.weight * np.exp(log_c)
+        mean = c.sum(axis=1)
+        slope = np.zeros((len(mean), len(y)))
+        rows = np.repeat(np.arange(len(mean)), c.shape[1])
+        left = self.left.ravel()
+        on_left = c * (1 - self.right_share)
+        on_right = c * self.right_share
+        np.add.at(slope, (rows, left), on_left.ravel())
+        np.add.at(slope, (rows, left + 1), on_right.ravel())
+        return mean, slope / mean[:, None]
+
+    def cost(self, y: np.ndarray, mean: np.ndarray) -> float:
+        """Minus ln of likelihood and prior."""
+        misfit = np.sum(self.measured.modes * (self.measured.psd / mean + np.log(mean)))
+        return float(misfit + 0.5 * y @ self.prior @ y - self.pull @ y)
+
+    def gradient(self, y: np.ndarray, mean: np.ndarray, slope: np.ndarray) -> np.ndarray:
+        """Where the cost falls fastest, (n,)."""
+        excess = self.measured.modes * (self.measured.psd / mean - 1)
+        return slope.T @ excess - self.prior @ y + self.pull
+
+    def information(self, slope: np.ndarray) -> np.ndarray:
+        """Expected curvature of the cost, (n, n), a little above singular."""
+        fisher = slope.T @ (self.measured.modes[:, None] * slope) + self.prior
+        return fisher + 1e-9 * np.eye(len(fisher))
+
+
+def _model_of(nodes: np.ndarray, measured: Spectrum) -> _LineModel:
+    """The model of a line whose C is straight between nodes in ln q and ln C."""
     last = float(np.exp(nodes[-1]))
-    tables = [_points(waves, last) for waves in spread(k, measured.spacing)]
+    tables = [_points(waves, last) for waves in spread(measured.q, measured.spacing)]
     points = np.concatenate([points for points, _ in tables], axis=1)
     weight = np.concatenate([weight for _, weight in tables], axis=1)
     weight /= len(tables)
     place = (np.log(points) - nodes[0]) / (nodes[1] - nodes[0])
     left = np.clip(place.astype(int), 0, len(nodes) - 2)
     right_share = np.clip(place - left, 0.0, 1.0)
-    # standard deviation of the change of slope times the node distance, from node to node
+    return _LineModel(measured, weight, left, right_share, *_prior(nodes))
+
+
+def _prior(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What is believed of ln C at nodes without the line: `prior` and `pull` of the model."""
     unit = np.eye(len(nodes))
+    # standard deviation of the change of slope times the node distance, from node to node
     bends = np.diff(unit, 2, axis=0) / 0.35
     rise = np.diff(unit, axis=0) / (nodes[1] - nodes[0])
     # the logarithmic slope is -0.75 +- 1.5 where a line hardly determines it (its plateau); five
     # nodes share one
     prior = bends.T @ bends + rise.T @ rise / (1.5**2 * 5)
     pull = rise.sum(axis=0) * -0.75 / (1.5**2 * 5)
-    rows = np.repeat(np.arange(len(k)), points.shape[1])
+    return prior, pull
 
-    def model(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        c = weight * np.exp(y[left] * (1 - right_share) + y[left + 1] * right_share)
-        mean = c.sum(axis=1)
-        slope = np.zeros((len(k), len(y)))
-        on_left = c * (1 - right_share)
-        on_right = c * right_share
-        np.add.at(slope, (rows, left.ravel()), on_left.ravel())
-        np.add.at(slope, (rows, left.ravel() + 1), on_right.ravel())
-        return mean, slope / mean[:, None]
 
-    def cost(y: np.ndarray, mean: np.ndarray) -> float:
-        misfit = np.sum(modes * (c1 / mean + np.log(mean)))
-        return float(misfit + 0.5 * y @ prior @ y - pull @ y)
-
+def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarray, bool]:
+    """ln C at the nodes (ln q), its covariance, and whether it settled; damped Fisher scoring."""
+    model = _model_of(nodes, measured)
     # start from a power law: C = C1 / (2 k) to a factor of order one
-    fall = np.polyfit(np.log(k), np.log(c1), 1)
+    fall = np.polyfit(np.log(measured.q), np.log(measured.psd), 1)
     y = np.polyval(fall, nodes) - nodes - np.log(2)
-    mean, slope = model(y)
+    mean, slope = model.mean_and_slope(y)
     gain = np.inf
     for _ in range(MOST_STEPS):
-        gradient = slope.T @ (modes * (c1 / mean - 1)) - prior @ y + pull
-        information = slope.T @ (modes[:, None] * slope) + prior
-        move = np.linalg.solve(information + 1e-9 * np.eye(len(y)), gradient)
+        gradient = model.gradient(y, mean, slope)
+        move = np.linalg.solve(model.information(slope), gradient)
         gain = float(gradient @ move)
-        before = cost(y, mean)
+        before = model.cost(y, mean)
         for size in 0.5 ** np.arange(14):
             trial = y + size * move
-            trial_mean, trial_slope = model(trial)
-            if cost(trial, trial_mean) <= before:
+            trial_mean, trial_slope = model.mean_and_slope(trial)
+            if model.cost(trial, trial_mean) <= before:
                 y, mean, slope = trial, trial_mean, trial_slope
                 break
         else:
             break  # no step lowers the cost
         if float(np.abs(size * move).max()) < 1e-6:
             break
-    information = slope.T @ (modes[:, None] * slope) + prior
-    covariance = np.linalg.inv(information + 1e-9 * np.eye(len(y)))
+    covariance = np.linalg.inv(model.information(slope))
     # what few modes allow is skewed: its mean is above the most likely value by 1 / 2n for n of
     # them
-    skewed = slope.T @ (modes * np.einsum("ki,ij,kj->k", slope, covariance, slope))
+    variance = np.einsum("ki,ij,kj->k", slope, covariance, slope)
+    skewed = slope.T @ (measured.modes * variance)
     return y + 0.5 * covariance @ skewed, covariance, gain <= SETTLED
