@@ -253,21 +253,14 @@ class DeviceSettings(Settings):
         """What says nothing is left out, so that results without it stay as they were."""
         return {name: value for name, value in dump(self).items() if (name, value) not in NOTHING}
 
-    @model_validator(mode="before")
-    @classmethod
-    def _stated_modulus(cls, stated: Any) -> Any:
+    @model_validator(mode="after")
+    def _stated_modulus(self) -> "DeviceSettings":
         """A modulus that is stated departs by less than that of any plated nickel."""
-        if not isinstance(stated, dict) or "youngs_modulus_GPa" not in stated:
-            return stated
-        spread = stated.get("spread", {})
-        if isinstance(spread, SpreadSettings):
-            if "youngs_modulus_GPa" in spread.model_fields_set:
-                return stated
-            narrower = spread.model_copy(update={"youngs_modulus_GPa": STATED_MODULUS})
-            return {**stated, "spread": narrower}
-        if not isinstance(spread, dict) or "youngs_modulus_GPa" in spread:
-            return stated
-        return {**stated, "spread": {**spread, "youngs_modulus_GPa": STATED_MODULUS}}
+        name = "youngs_modulus_GPa"
+        if name in self.model_fields_set and name not in self.spread.model_fields_set:
+            narrower = self.spread.model_copy(update={name: STATED_MODULUS})
+            object.__setattr__(self, "spread", narrower)  # frozen from here on
+        return self
 
     @model_validator(mode="after")
     def _measured_of_a_beam(self) -> "DeviceSettings":
