@@ -21,8 +21,8 @@ if TYPE_CHECKING:  # rules read settings, and are linted where Snakemake is alon
 REFERENCE_C = 20.0
 """Temperature at which stress and shape at rest are stated."""
 PartOfBeam = tuple[float, float]
-NOTHING = (("measured", None), ("release_at", "jump"))
-"""Of a device of which nothing was measured, and whose release is its jump."""
+NOTHING = (("measured", None), ("release_at", "jump"), ("anchor_rad_per_uN_m", 0.0))
+"""Keys that say nothing, and are left out of results."""
 Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 
 
@@ -199,6 +199,9 @@ class DeviceSettings(Settings):
     )
     anchor_um_per_N: float = key(
         0.0, "how far both anchors together give way to the axial force", "[0, 1e9] um/N"
+    )
+    anchor_rad_per_uN_m: float = key(
+        0.0, "how far each anchor turns under the moment of the beam", "[0, 1e9] rad/(uN m)"
     )
     spring_N_per_m: float | None = key(
         None, "stiffness of a plate of length times width; null: a beam", "[0.001, 1e6] N/m"

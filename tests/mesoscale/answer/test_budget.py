@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 
 from asperity.guards.foreign_yaml import load_mapping
-from mesoscale.answer.budget import NUMERICAL, TWIN, budget, effects_of, with_twins
+from mesoscale.answer.budget import (
+    NUMERICAL,
+    TWIN,
+    _moved_V,
+    _Pressed,
+    budget,
+    effects_of,
+    with_twins,
+)
 from mesoscale.answer.points import Point
 from mesoscale.answer.switches import Solved
 from mesoscale.errors import InputError
@@ -160,10 +168,51 @@ def test_an_input_of_the_scene_takes_the_place_of_its_row():
     assert names[0] - names[1] == {"humid air"}
 
 
-def test_anchors_give_way_by_a_tenth_of_the_default_beam():
-    """The row said a tenth and changed a ten-thousandth: 0.00004 V stood for 0.14 V."""
-    row = SHIPPED["anchors that give way"]
-    beam = published_beam()
-    section_um2 = beam.width_um * beam.thickness_um
-    own_um_per_N = 1e3 * beam.length_um / (beam.youngs_modulus_GPa * section_um2)
-    assert row["step"] == pytest.approx(0.1 * own_um_per_N, rel=0.01)
+def volts_of(effect, switch):
+    """Volts of one shipped effect on a switch."""
+    pressed = _Pressed(switch.point.device, KnownPad.curves, switch.states)
+    return _moved_V(effects_of(SHIPPED)[effect], pressed, {})[0]
+
+
+OTHER = published_beam(length_um=400.0, thickness_um=3.0, gap_um=2.5, hold_voltage_V=110.0)
+
+
+@pytest.mark.parametrize(
+    ("effect", "changes"),
+    [
+        # each change stated in words by `about`, here by hand of another beam than the default
+        ("anchors that give way", {"anchor_um_per_N": 0.1 * 400e3 / (89.3 * 123.0 * 3.0)}),
+        (
+            "anchors that turn",
+            {"anchor_rad_per_uN_m": 0.01 * 400e3 / (89.3 / 0.91 * 123.0 * 3.0**3 / 12.0)},
+        ),
+        ("stress by the package", {"residual_stress_MPa": 5.0 / 0.7}),
+        ("mean stress of the film", {"residual_stress_MPa": 75.0}),
+        # stiffness and the load of its own weight scale by 0.75, area by 1 - pi/4 (10/40)^2
+        ("etch holes", {"youngs_modulus_GPa": 89.3 * 0.75 / (1.0 - np.pi / 64.0)}),
+    ],
+)
+def test_what_a_row_is_about_is_what_its_change_does(effect, changes):
+    """The row of the anchors said a tenth and changed a ten-thousandth."""
+    switch = central(OTHER)
+    changed_V = central(OTHER.model_copy(update=changes)).states.release_V
+    moved_V = abs(changed_V - switch.states.release_V)
+    assert volts_of(effect, switch) == pytest.approx(moved_V, rel=0.03, abs=0.01)
+    assert moved_V > 0.02
+
+
+def test_a_length_may_be_longer_or_shorter():
+    releases = [
+        central(OTHER.model_copy(update={"length_um": length})).states.release_V
+        for length in (395.0, 400.0, 405.0)
+    ]
+    assert volts_of("length and undercut of the beam", central(OTHER)) == pytest.approx(
+        releases[0] - releases[2], rel=1e-6
+    )
+
+
+def test_the_contact_potential_is_the_difference_of_two_work_functions():
+    """Michaelson (1977): aluminium 4.28 eV, gold 5.1 eV. It adds to the voltage as it is."""
+    assert SHIPPED["contact potential of the two metals"]["volts"] == pytest.approx(
+        5.1 - 4.28, 0.05
+    )

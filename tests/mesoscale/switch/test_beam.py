@@ -392,3 +392,40 @@ def test_a_free_beam_that_does_not_settle_is_refused_with_its_voltage():
     moving.relax(0.5 * switch.pull_in_V)
     with pytest.raises(NotComputed, match="the free beam does not settle at"):
         moving.relax(1.05 * switch.pull_in_V)
+
+
+@pytest.mark.parametrize("share", [0.01, 0.1, 1.0, 1e6])
+@pytest.mark.parametrize("ends", ["clamped", "cantilever"])
+def test_a_beam_with_anchors_that_turn_comes_down_as_far_as_a_sprung_one(share, ends):
+    """Uniform load q, springs of EI / (beta L): clamped M = q L^2 / 12 / (1 + 2 beta) at the ends;
+    a cantilever turns by beta L / EI times q L^2 / 2.
+    """
+    rigid = published_beam(ends=ends, fringe=0.0, gap_um=1000.0, anchor_um_per_N=1e9)
+    length_m = 1e-6 * rigid.length_um
+    stiffness = 1e9 * rigid.bending_GPa * 1e-24 * rigid.width_um * rigid.thickness_um**3 / 12.0
+    turning = share * length_m / stiffness
+    beam = beam_of(rigid.model_copy(update={"anchor_rad_per_uN_m": 1e-6 * turning}), 16)
+    q = 1e-3 / share if ends == "cantilever" else 1e-3
+    nodal = np.zeros((17, 2))
+    for _ in range(5):
+        down = beam.step(nodal, lambda s: (np.full_like(s, -q / beam.width_m), 0.0 * s))[0]
+        nodal = nodal + down
+    if ends == "clamped":
+        moment = q * length_m**2 / 12.0 / (1.0 + 2.0 * share)
+        exact = 5.0 * q * length_m**4 / 384.0 - moment * length_m**2 / 8.0
+        node = 8
+    else:
+        exact = q * length_m**4 * (1.0 / 8.0 + 0.5 * share)
+        node = 16
+    assert -nodal[node, 0] == pytest.approx(exact / stiffness, rel=1e-4)
+
+
+def test_turning_anchors_at_rest_keep_the_shape_of_a_bowed_and_tilted_beam():
+    """Nothing turns while nothing pulls, and pull-in falls smoothly with the turning."""
+    shaped = published_beam(bow_nm=300.0, tilt_nm=200.0)
+    pull_in_V = [
+        switch_of(shaped.model_copy(update={"anchor_rad_per_uN_m": give})).pull_in_V
+        for give in (0.0, 1e-6, 1e-3)
+    ]
+    assert pull_in_V[1] == pytest.approx(pull_in_V[0], rel=1e-5)
+    assert 0.99 * pull_in_V[0] < pull_in_V[2] < pull_in_V[0]
