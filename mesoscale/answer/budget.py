@@ -276,7 +276,7 @@ def _moved_V(
             return None, "; no answer"
         return abs(other - usual), "; it may stick" * (other == 0.0)
     if effect.changes:
-        return pressed.reach_V(*_changed(effect, pressed))
+        return pressed.reach_V(*changed_devices(effect, device, pressed.states.pull_in_V))
     if effect.charge_e_cm2 is not None:
         density = effect.charge_e_cm2 * elementary_charge * 1e4
         return float(charge_shift(density, device.dielectric_nm, device.permittivity)), ""
@@ -286,13 +286,14 @@ def _moved_V(
     return effect.volts if effect.share is None else effect.share * release, ""
 
 
-def _changed(effect: Effect, pressed: _Pressed) -> Iterator[DeviceSettings]:
+def changed_devices(
+    effect: Effect, device: DeviceSettings, pull_in_V: float
+) -> Iterator[DeviceSettings]:
     """The device with the property that an effect changes, and with the opposite change."""
-    device = pressed.device
     if effect.to:
         yield device.model_copy(update={effect.changes: effect.to})
         return
-    value = value_of(device, effect.changes, pressed.states.pull_in_V)
+    value = value_of(device, effect.changes, pull_in_V)
     changed = value * effect.factor + effect.step
     if effect.of_own:
         changed += effect.of_own * gives_way(device)[effect.changes]

@@ -429,3 +429,19 @@ def test_turning_anchors_at_rest_keep_the_shape_of_a_bowed_and_tilted_beam():
     ]
     assert pull_in_V[1] == pytest.approx(pull_in_V[0], rel=1e-5)
     assert 0.99 * pull_in_V[0] < pull_in_V[2] < pull_in_V[0]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"anchor_rad_per_uN_m": 0.08}, {"anchor_um_per_N": 1.16}, {"length_um": 505.0}],
+)
+def test_rows_of_the_budget_move_pull_in_as_finite_differences_say(changes):
+    """Releases of six rows: `python -m evidence switch.budget`."""
+    moved = []
+    for settings in (published_beam(), published_beam(**changes)):
+        moved.append(
+            (switch_of(settings).pull_in_V, finite_differences.Beam(settings).pull_in()[0])
+        )
+    (before_V, twin_before_V), (after_V, twin_after_V) = moved
+    assert after_V - before_V == pytest.approx(twin_after_V - twin_before_V, rel=0.005)
+    assert abs(after_V - before_V) > 0.2
