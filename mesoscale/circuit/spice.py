@@ -1,75 +1,63 @@
-"""The switch as a SPICE netlist, which ngspice runs as it is: its electrode, lumps
-(`mesoscale.circuit.lumps`) and pad.
+"""The switch as a SPICE netlist, which ngspice runs as it is.
 
-A netlist holds the stiffness of the electrode, and one instance of `rough_lump` for each pair of
-lumps, which has the subcircuit `rough_pad`. `mesoscale.circuit.verilog` has the same lump as a
-module, which is compiled once.
+A netlist has three subcircuits. `rough_switch` is the electrode. It has an instance of `rough_lump`
+for each pair of lumps, and this one of `rough_pad`. They integrate the equations of
+`mesoscale.circuit.lumps`. `mesoscale.circuit.verilog` has the same lump as a module, which is
+compiled once.
 
-Terminals are `top` and `bottom` of the two electrodes, and `middle`: by how much mid-span has come
-down (1 V = 1 nm). Inside, voltages are nm, nm/us, Pa and fC. All are zero for the open switch at
-rest, where simulators begin. What follows from others is a current into 1 Ohm: voltage sources
-would double the equations.
+Terminals are `top` and `bottom` of the two electrodes, and `middle`, by how much mid-span has come
+down (1 V = 1 nm). All nodes are zero for the open switch at rest, where simulators begin. A state
+is the voltage of a capacitor. What follows from other nodes is a current into 1 Ohm: voltage
+sources would double the equations.
+
+Nodes of `rough_switch`, for lump k:
+
+    moved{k}   m, nm         way down from rest                 dm/dt = v
+    speed{k}   v, nm/us      its speed                          rho t dv/dt = sum of pressures (Pa)
+    bent{k}    b, nm         m + loss v                         the stiffness acts on it, which damps
+    slope{k}   D (b - z0)    minus the slope of the elongation  in units of `CIRCUIT.slope_per_V`
+    longer     nm            elongation since rest              ((b - z0) D (b - z0) - z0 D z0) / 2
+    drawn{k}   Pa            pressure that draws the lump down  from `rough_lump`
+    charge     fC            of all lumps
+
+The pressures on a lump of area A are drawn, -K b / A, -S longer slope / A, and -drag v.
+
+Nodes of `rough_lump`:
+
+    up         nm            separation less that at rest, -m, which the pad reads
+    push       Pa            pressure of the pad
+    lost       nm            film of gas that has flowed out, rest - n
+    excess     1             pressure of the gas over that around it, less one
 """
 
 import numpy as np
 
 from mesoscale.circuit.lumps import LumpErrors, Lumps
 from mesoscale.circuit.numerics import CIRCUIT
-from mesoscale.circuit.tables import Piece, note, tables_of
+from mesoscale.circuit.tables import Piece, Tables, note, tables_of
 from mesoscale.pad.curves import PadCurves
 from mesoscale.switch.beam_kernels import least_gap_nm
 from mesoscale.units import NM, VACUUM_PERMITTIVITY
 
 LUMP = "top bottom moved drawn charge"
-"""Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge
-(fC), a current into 1 Ohm."""
+"""Terminals of `rough_lump`."""
+SPEED_F = 1e-3
+"""Capacitance of a speed (nm/us) per mass (kg/m2): 1 Pa on 1 kg/m2 gives 1 m/s2, 1e3 nm/us in a
+second."""
+FLOW = 1e-24
+"""nm3 Pa / (Pa s m2) is 1e-18 nm/s, on a capacitor of 1 uF."""
 
 
 def spice_switch(
     lumps: Lumps, errors: LumpErrors, pad: PadCurves, cells: int, pull_in_V: float
 ) -> str:
     """SPICE netlist (ngspice) of the subcircuits `rough_switch`, `rough_lump` and `rough_pad`."""
-    force, slope = CIRCUIT.force_A, CIRCUIT.slope_per_V
-    springs = force * lumps.stiffness_N_m * NM / lumps.area_m2[:, None]
-    drawn = lumps.drawn_m * NM / slope
-    heights = lumps.height_nm
-    sloped = force * lumps.stretching_N_m * NM * slope / lumps.area_m2
-    body = []
-    for k in range(lumps.count):
-        held = [
-            f"G{k}_{j} speed{k} 0 bent{j} 0 {spring:.12g}" for j, spring in enumerate(springs[k])
-        ]
-        held += [f"Gslope{k}_{j} 0 slope{k} bent{j} 0 {of:.12g}" for j, of in enumerate(drawn[k])]
-        body.append(f"""Xlump{k} top bottom moved{k} drawn{k} charge rough_lump
-+   rest={lumps.rest_nm[k]:.9g} area={lumps.area_m2[k]:.9g}
-+   gas={{gas}} viscosity={{viscosity}} fringe={{fringe}} follow={{follow}}
-Cmoved{k} moved{k} 0 1u
-Gmoved{k} 0 moved{k} speed{k} 0 1
-Gbent{k} 0 bent{k} moved{k} 0 1
-Gmore{k} 0 bent{k} speed{k} 0 {{loss}}
-Rbent{k} bent{k} 0 1
-Cspeed{k} speed{k} 0 {{{1e-3 * force:g}*mass}}
-Gdrag{k} speed{k} 0 speed{k} 0 {{{force:g}*drag}}
-Gdrawn{k} 0 speed{k} drawn{k} 0 {force:g}
-{chr(10).join(held)}
-Islope{k} 0 slope{k} {-(drawn[k] @ heights):.12g}
-Rslope{k} slope{k} 0 1
-Bstretch{k} speed{k} 0 I = {sloped[k]:.12g} * V(longer) * V(slope{k})
-Blonger{k} 0 longer I = {0.5 * slope:g} * (V(bent{k}) + {-heights[k]:.9g}) * V(slope{k})""")
-    # longer: by how much (nm) the beam is longer than at rest; slopes are those of its elongation
-    longer = [
-        "Rlonger longer 0 1",
-        f"Ilonger longer 0 {0.5 * slope * heights @ drawn @ heights:.12g}",
-    ]
-    width, dielectric = lumps.width_m, lumps.dielectric_nm
-    electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
-    film = f"max({{rest}} - V(moved), {CIRCUIT.least_film_nm:g})"
-    dense = f"max(1 + V(excess), {CIRCUIT.least_density:g})"
+    pairs = "\n".join(_pair(lumps, k) for k in range(lumps.count))
     return f"""* An electrostatic switch on a rough contact (Asperity, docs/circuit.md).
 * the electrode: {lumps.count} pairs of lumps; beside finite elements pull-in differs by {errors.pull_in:.2%},
 * release by {errors.release:.2%}, capacitance by {errors.capacitance:.2%}; these err by {errors.reference:.2%}
 * top, bottom: the electrodes; middle: by how much (nm) mid-span has come down, 1 V = 1 nm.
-* Inside: nm, nm/us, Pa, fC. What moves a lump: 1 A for {1.0 / force:g} Pa.
+* Inside: nm, nm/us, Pa, fC. What moves a lump: 1 A for {1.0 / CIRCUIT.force_A:g} Pa.
 * mass per area in kg/m2, loss in us, viscosity in Pa s, gas in Pa.
 * drag: 0; a large one (3e4 Pa us/nm) lands the electrode softly, for loops so slow that nothing else matters.
 * follow: s, until the pad remembers; 1e-6 for such loops.
@@ -79,7 +67,8 @@ Blonger{k} 0 longer I = {0.5 * slope:g} * (V(bent{k}) + {-heights[k]:.9g}) * V(s
 .subckt rough_switch top bottom middle params: fringe={lumps.fringe:.9g} gas={lumps.gas_Pa:.9g}
 +   viscosity={CIRCUIT.viscosity_Pa_s:g} mass={lumps.mass_kg_m2:.9g} loss={lumps.loss_us:.9g} drag=0
 +   follow={CIRCUIT.follow_s:g}
-{chr(10).join([*body, *longer])}
+{pairs}
+{_elongation(lumps)}
 Emiddle middle 0 moved{lumps.count - 1} 0 1
 Rcharge charge 0 1
 Ccharge charge sense 1f
@@ -87,7 +76,64 @@ Vcharge sense 0 0
 Fcharge top bottom Vcharge 1
 .ends rough_switch
 
-* A pair of lumps; Verilog-A has the same.
+{_lump(lumps)}
+
+{spice_pad(pad, cells)}"""
+
+
+def _pair(lumps: Lumps, k: int) -> str:
+    """Elements of a pair of lumps in `rough_switch`: its lump, states, and what acts on its speed."""
+    force = CIRCUIT.force_A
+    area_m2 = lumps.area_m2[k]
+    springs = force * lumps.stiffness_N_m[k] * NM / area_m2
+    slopes = _slopes(lumps)[k]
+    slope_at_rest = -(slopes @ lumps.height_nm)
+    stretch = force * lumps.stretching_N_m * NM * CIRCUIT.slope_per_V / area_m2
+    lines = [
+        f"Xlump{k} top bottom moved{k} drawn{k} charge rough_lump",
+        f"+   rest={lumps.rest_nm[k]:.9g} area={area_m2:.9g}",
+        "+   gas={gas} viscosity={viscosity} fringe={fringe} follow={follow}",
+        f"Cmoved{k} moved{k} 0 1u",
+        f"Gmoved{k} 0 moved{k} speed{k} 0 1",
+        f"Gbent{k} 0 bent{k} moved{k} 0 1",
+        f"Gmore{k} 0 bent{k} speed{k} 0 {{loss}}",
+        f"Rbent{k} bent{k} 0 1",
+        f"Cspeed{k} speed{k} 0 {{{SPEED_F * force:g}*mass}}",
+        f"Gdrag{k} speed{k} 0 speed{k} 0 {{{force:g}*drag}}",
+        f"Gdrawn{k} 0 speed{k} drawn{k} 0 {force:g}",
+        *(f"G{k}_{j} speed{k} 0 bent{j} 0 {spring:.12g}" for j, spring in enumerate(springs)),
+        *(f"Gslope{k}_{j} 0 slope{k} bent{j} 0 {entry:.12g}" for j, entry in enumerate(slopes)),
+        f"Islope{k} 0 slope{k} {slope_at_rest:.12g}",
+        f"Rslope{k} slope{k} 0 1",
+        f"Bstretch{k} speed{k} 0 I = {stretch:.12g} * V(longer) * V(slope{k})",
+        f"Blonger{k} 0 longer I = {0.5 * CIRCUIT.slope_per_V:g}"
+        f" * (V(bent{k}) + {-lumps.height_nm[k]:.9g}) * V(slope{k})",
+    ]
+    return "\n".join(lines)
+
+
+def _slopes(lumps: Lumps) -> np.ndarray:
+    """D in units of `CIRCUIT.slope_per_V` and nm."""
+    return lumps.drawn_m * NM / CIRCUIT.slope_per_V
+
+
+def _elongation(lumps: Lumps) -> str:
+    """Node `longer`, to which each pair adds, less what the beam at rest has."""
+    heights = lumps.height_nm
+    at_rest = 0.5 * CIRCUIT.slope_per_V * heights @ _slopes(lumps) @ heights
+    return f"Rlonger longer 0 1\nIlonger longer 0 {at_rest:.12g}"
+
+
+def _lump(lumps: Lumps) -> str:
+    """The subcircuit `rough_lump`: what draws a pair of lumps down, and its charge."""
+    width = lumps.width_m
+    dielectric = lumps.dielectric_nm
+    # electric gap (m), thickness of the gas (nm), its density over that around
+    electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
+    film = f"max({{rest}} - V(moved), {CIRCUIT.least_film_nm:g})"
+    dense = f"max(1 + V(excess), {CIRCUIT.least_density:g})"
+    knudsen = f"{{{CIRCUIT.free_path_nm_Pa:.9g}/gas}} / ({dense} * {film})"
+    return f"""* A pair of lumps; Verilog-A has the same.
 .subckt rough_lump {LUMP} params: rest=1 area=1 gas=1 viscosity=1 fringe=0 follow={CIRCUIT.follow_s:g}
 Gup 0 up 0 moved 1
 Rup up 0 1
@@ -97,14 +143,12 @@ Bcharge 0 charge I = 1e15 * V(top,bottom) * {{area*{VACUUM_PERMITTIVITY}}} * (1 
 Rexcess excess 0 1
 Bexcess 0 excess I = ({{rest}} - V(lost)) / {film} - 1
 Clost lost 0 1u
-Blost 0 lost I = {{1e-24*gas/(viscosity*{width**2:.9g})}} * {dense} * V(excess) * {film}^3
-+   * (1 + 9.638 * pow({{{CIRCUIT.free_path_nm_Pa:.9g}/gas}} / ({dense} * {film}), 1.159))
+Blost 0 lost I = {{{FLOW:g}*gas/(viscosity*{width**2:.9g})}} * {dense} * V(excess) * {film}^3
++   * (1 + 9.638 * pow({knudsen}, 1.159))
 Rdrawn drawn 0 1
 Bdrawn 0 drawn I = {0.5 * VACUUM_PERMITTIVITY} * V(top,bottom)^2 * (1 + {{fringe/{width:.9g}}} * {electric})
 +   / {electric}^2 - V(push) - {{gas}} * V(excess)
-.ends rough_lump
-
-{spice_pad(pad, cells)}"""
+.ends rough_lump"""
 
 
 def spice_pad(pad: PadCurves, cells: int) -> str:
@@ -112,25 +156,20 @@ def spice_pad(pad: PadCurves, cells: int) -> str:
     pushed away.
     """
     tables = tables_of(pad, cubic=False)
-    depths = tables.depth_nm
     # closing counts from a little farther out than the pad repels: a lump that begins to count is a
     # corner for ngspice
     repels = pad.separation_nm[pad.closing[0] > 0.0]
-    start = CIRCUIT.begins * float(repels.max(initial=depths[-1] + CIRCUIT.fade_nm))
+    start = CIRCUIT.begins * float(repels.max(initial=tables.depth_nm[-1] + CIRCUIT.fade_nm))
     deepest = f"{start:g} - V(near)"
     far = [piece.y[-1] for piece in tables.closing]
     push, pull = (Piece(piece.x, piece.y - piece.y[-1]) for piece in tables.closing)
-    weights = []
-    places = np.append(depths, depths[-1] + CIRCUIT.fade_nm)
-    for k in range(depths.size):
-        depths_here = places[max(k - 1, 0) : k + 2]
-        weights.append(_pwl(deepest, Piece(depths_here, (depths_here == depths[k]).astype(float))))
-    pushes = [_pwl("V(risen)", pieces[0]) for pieces in tables.opening]
-    pulls = [_pwl("V(risen)", pieces[1]) for pieces in tables.opening]
+    weights = _weights(tables, deepest)
+    pushes = [_pwl("V(risen)", push_change) for push_change, _ in tables.opening]
+    pulls = [_pwl("V(risen)", pull_change) for _, pull_change in tables.opening]
     push_sum = _weighted(_pwl(deepest, push, CIRCUIT.reach_nm), weights, pushes)
     pull_sum = _weighted(_pwl(deepest, pull), weights, pulls)
     # wild steps of a simulator stay finite
-    most = [piece.y.max() + CIRCUIT.most_folds for piece in tables.closing]
+    largest = [piece.y.max() + CIRCUIT.most_folds for piece in tables.closing]
     return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
 * {note(tables, cells)}
 * nodes     s      mean separation less rest, 1 V = 1 nm
@@ -157,11 +196,23 @@ Bpush 0 push I = {push_sum}
 Rpull pull 0 1
 Bpull 0 pull I = {pull_sum}
 Rforce force 0 1
-Bforce 0 force I = {{area}} * (exp(min(V(push) + {far[0]:.7g}, {most[0]:.4g})) - {tables.faint_GPa:.7g}
+Bforce 0 force I = {{area}} * (exp(min(V(push) + {far[0]:.7g}, {largest[0]:.4g})) - {tables.faint_GPa:.7g}
 +   - ({{hamaker/(6*3.14159265358979324)}} / pow(max(V(s) + {{rest}}, 1) + {{offset_nm}}, 3) + {tables.floor_GPa:g})
-+   * exp(min(V(pull) + {far[1]:.7g}, {most[1]:.4g})))
++   * exp(min(V(pull) + {far[1]:.7g}, {largest[1]:.4g})))
 .ends rough_pad
 """
+
+
+def _weights(tables: Tables, deepest: str) -> list[str]:
+    """How much the opening from each computed depth counts: hats over the deepest separation."""
+    depths = tables.depth_nm
+    # a pad that was hardly closed opens as it closed
+    nodes = np.append(depths, depths[-1] + CIRCUIT.fade_nm)
+    weights: list[str] = []
+    for k, depth in enumerate(depths):
+        around = nodes[max(k - 1, 0) : k + 2]
+        weights.append(_pwl(deepest, Piece(around, (around == depth).astype(float))))
+    return weights
 
 
 def _weighted(closed: str, weights: list[str], opened: list[str]) -> str:

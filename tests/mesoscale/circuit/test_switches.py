@@ -31,7 +31,7 @@ def test_corners_lie_beyond_the_draws_in_their_direction(monkeypatch):
     contact = ContactSettings(mechanics="asperity")
     made = {
         of.row["switch"]: of.row
-        for of in spread_switches(model_of(BEAM, 48), TABLE, contact, CUTOFFS_NM, 16)
+        for of in spread_switches(model_of(BEAM, 24), TABLE, contact, CUTOFFS_NM, 16)
     }
     assert set(made) == {*CORNERS, *(name for name in made if name.startswith("draw_"))}
     assert len(made) == len(CORNERS) + CIRCUIT.draws
