@@ -14,7 +14,7 @@ from typing import NoReturn
 
 from asperity.guards.bundle import ROOT
 from asperity.guards.environment import UnsafeFolder, secure
-from asperity.guards.foreign_text import as_word, did_you_mean, shown, wrapped
+from asperity.guards.foreign_text import as_file_name, as_word, did_you_mean, shown, wrapped
 
 # Ctrl-C while Snakemake is still imported ends it without a traceback
 START = (
@@ -87,10 +87,16 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
+class _Parser(argparse.ArgumentParser):
+    """One line on what is wrong, as everywhere else."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say it, and where the options are listed."""
+        self.exit(2, f"ERROR {message}; {self.prog} --help lists what is accepted\n")
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="asperity", description="contact mechanics of rough surfaces"
-    )
+    parser = _Parser(prog="asperity", description="contact mechanics of rough surfaces")
     version = importlib.metadata.version("asperity-contact")
     parser.add_argument("--version", action="version", version=f"asperity {version}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -105,44 +111,19 @@ def _parser() -> argparse.ArgumentParser:
         added[name].add_argument(
             "target", nargs="*", help="stage, for instance law (asperity targets); default: all"
         )
-    film = added["film"]
-    film.add_argument(
+    added["film"].add_argument(
         "files",
         nargs="+",
         help="scans, line profiles, containers, or folders of them: of one surface",
     )
-    film.add_argument(
-        "--tip-nm", type=float, help="radius of the AFM tip where no file states it; default: 5"
+    new = added["new"]
+    new.add_argument("file", help="for instance film.yaml")
+    new.add_argument(
+        "files", nargs="*", help="measured files of one surface; without: the paper's roughness"
     )
-    film.add_argument("--channel", help="name of the height channel, of files that have several")
-    film.add_argument(
-        "--unit",
-        help="length unit of a file that states none: um, or um,nm of positions and heights",
-    )
-    film.add_argument(
-        "--size", help="size of a map or line that states none, in --unit or the file's: 10 or 10x5"
-    )
-    words = (
-        "cut maps to their largest rectangle without missing points, or to pixels along x and y:"
-        " 10:500,0:480"
-    )
-    film.add_argument("--crop", nargs="?", const="largest", help=words)
-    film.add_argument(
-        "--points", help="places along x and y for points x, y, z on no regular grid: 64x64"
-    )
-    film.add_argument(
-        "--detrend", choices=("plane", "quadratic", "none"), help="tilt and form to take off"
-    )
-    words = (
-        "e_star=75, h_macro=1:1.6, e_star=75+-4 (GPa), e_star=gold/silica, hamaker=0.2 (1e-18 J),"
-        " humidity=40%%; default: the paper's films"
-    )
-    film.add_argument("--material", nargs="+", default=[], metavar="NAME=VALUE", help=words)
-    words = (
-        "gap_um=2, ends=cantilever, electrode=0.2:0.8, material=aluminium, …; default: a published"
-        " beam"
-    )
-    film.add_argument("--device", nargs="+", default=[], metavar="NAME=VALUE", help=words)
+    for name in ("film", "new"):
+        _add_words(added[name])
+    film = added["film"]
     film.add_argument("--scene", help="file to write; default: named like the first file")
     for name in ("run", "plan", "film", "demo"):
         added[name].add_argument(
@@ -158,7 +139,7 @@ def _parser() -> argparse.ArgumentParser:
         "changes",
         nargs="+",
         metavar="KEY=VALUES",
-        help="hold_voltage_V=30, gap_um=1,1.5,2, material=aluminium; each key by itself",
+        help="hold_voltage_V=30, gap_um=1,1.5,2, material=aluminium; several keys change together",
     )
     added["export"].add_argument("scene", help="name or file of a scene that has run")
     added["export"].add_argument("folder", help="folder to write, new or empty")
@@ -168,7 +149,6 @@ def _parser() -> argparse.ArgumentParser:
     added["crate"].add_argument(
         "scene", help="name or file of a scene that has run, or a crate to check (.zip)"
     )
-    added["new"].add_argument("file", help="for instance film.yaml")
     comparison = added["compare"]
     comparison.add_argument("first", help="for instance results/ci")
     comparison.add_argument("second")
@@ -181,6 +161,42 @@ def _parser() -> argparse.ArgumentParser:
         "--workers", type=int, default=1, help="processes that evaluate; default: 1"
     )
     return parser
+
+
+def _add_words(command: argparse.ArgumentParser) -> None:
+    """Options that say how measured files, a material and a device are."""
+    command.add_argument(
+        "--tip-nm", help="radius of the AFM tip where no file states it; default: 5"
+    )
+    command.add_argument("--channel", help="name of the height channel, of files that have several")
+    command.add_argument(
+        "--unit",
+        help="length unit of a file that states none: um, or um,nm of positions and heights",
+    )
+    command.add_argument(
+        "--size", help="size of a map or line that states none, in --unit or the file's: 10 or 10x5"
+    )
+    words = (
+        "cut maps to their largest rectangle without missing points, or to pixels along x and y:"
+        " 10:500,0:480"
+    )
+    command.add_argument("--crop", nargs="?", const="largest", help=words)
+    command.add_argument(
+        "--points", help="places along x and y for points x, y, z on no regular grid: 64x64"
+    )
+    command.add_argument(
+        "--detrend", choices=("plane", "quadratic", "none"), help="tilt and form to take off"
+    )
+    words = (
+        "e_star=75, h_macro=1:1.6, e_star=75+-4 (GPa), e_star=gold/silica, hamaker=0.2 (1e-18 J),"
+        " humidity=40%%; default: the paper's films"
+    )
+    command.add_argument("--material", nargs="+", default=[], metavar="NAME=VALUE", help=words)
+    words = (
+        "gap_um=2, ends=cantilever, electrode=0.2:0.8, material=aluminium, …; default: a published"
+        " beam"
+    )
+    command.add_argument("--device", nargs="+", default=[], metavar="NAME=VALUE", help=words)
 
 
 def targets() -> dict[str, str]:
@@ -217,16 +233,28 @@ def _serve(chosen: argparse.Namespace) -> int:
 
 
 def _new(chosen: argparse.Namespace) -> int:
-    from asperity.door import scene_lines
-
-    status = _write(Path(chosen.file), "\n".join(scene_lines(None, {}, {})) + "\n")
-    if status == 0:
-        print(f"{chosen.file} is written; asperity run {chosen.file}")
-    return status
+    """A scene, of files or without, and no run."""
+    return _written(chosen, Path(chosen.file)) or _say(
+        f"{chosen.file} is written; asperity run {shlex.quote(chosen.file)}"
+    )
 
 
 def _film(chosen: argparse.Namespace) -> int:
     """What the files show and what to doubt; then the scene and its run."""
+    name = as_file_name(Path(chosen.files[0]).resolve().stem) or "film"
+    scene = Path(chosen.scene or f"{name}.yaml")
+    return _written(chosen, scene, rewrite=True) or _snakemake(
+        argparse.Namespace(scene=str(scene), target=[], cores=chosen.cores, hours=chosen.hours)
+    )
+
+
+def _written(chosen: argparse.Namespace, scene: Path, rewrite: bool = False) -> int:
+    """Write the scene of the words on the command line, and say what they are; an exit status.
+
+    Parameters
+    ----------
+    rewrite : accept a file that says the same already.
+    """
     if missing := [name for name in chosen.files if not os.path.exists(name)]:
         meant = did_you_mean(missing[0], COMMANDS)
         return _refuse(f"{missing[0]}: neither a file nor a command{meant} (asperity --help)")
@@ -236,43 +264,34 @@ def _film(chosen: argparse.Namespace) -> int:
         "MKL",
     ):  # on small matrices threads wait for each other, three times as long
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
-    from asperity.door import readable, scene_lines, topography_of
-    from asperity.film import Film
-    from asperity.words import assumed_lines, device_of, material_of
+    from asperity.door import described
     from mesoscale.errors import InputError
     from mesoscale.extras import MissingExtra
 
     try:
-        material = material_of(chosen.material)
-        device = device_of(chosen.device)
-        topography = topography_of(chosen)
-        files = readable(chosen.files, lambda text: print(wrapped(shown(text))), topography)
-        film = Film(files, chosen.tip_nm, **topography)
-        scene = Path(chosen.scene or f"{_plain(Path(chosen.files[0]).resolve().stem)}.yaml")
-        text = "\n".join(scene_lines(film, material, device)) + "\n"
+        film, text, assumed = described(chosen, _say)
     except (InputError, MissingExtra) as error:
         return _refuse(str(error))
-    for line in film.lines():
-        print(wrapped(shown(line)))
-    if not (os.path.isfile(scene) and scene.read_text(encoding="utf-8") == text) and (
-        status := _write(scene, text)
-    ):
+    for line in film.lines() if film else ():
+        _say(line)
+    says_the_same = os.path.isfile(scene) and scene.read_text(encoding="utf-8") == text
+    if not (rewrite and says_the_same) and (status := _write(scene, text)):
         return status
-    print(wrapped(f"{scene} is the scene of this film"))
-    for line in assumed_lines(material, device):
-        print(wrapped(shown(line)))
-    if not film.description["gate"]["passed"]:
+    if film:
+        _say(f"{scene} is the scene of this film")
+    for line in assumed:
+        _say(line)
+    if film and not film.description["gate"]["passed"]:
         return _refuse(
             f"{scene}: not run because of the doubts above; mend it, then: asperity run {scene}"
         )
-    return _snakemake(
-        argparse.Namespace(scene=str(scene), target=[], cores=chosen.cores, hours=chosen.hours)
-    )
+    return 0
 
 
-def _plain(name: str) -> str:
-    """A name that a scene may have, of 100 characters at most."""
-    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("_.-")[:100] or "film"
+def _say(text: str) -> int:
+    """Print a line; the exit status of what went well."""
+    print(wrapped(shown(text)))
+    return 0
 
 
 def _write(file: Path, text: str) -> int:

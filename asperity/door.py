@@ -11,7 +11,15 @@ from typing import Any, get_args
 
 from asperity.film import MATERIAL, Film, pixels_for
 from asperity.guards.bundle import ROOT
-from asperity.words import NUMBER, SCALAR_KEYS, with_u_for_micro
+from asperity.words import (
+    NUMBER,
+    SCALAR_KEYS,
+    assumed_lines,
+    device_of,
+    material_of,
+    number_of,
+    with_u_for_micro,
+)
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import PAPER_ROWS
 from mesoscale.settings import DeviceSettings, InputRow, InstrumentSettings, TopographySettings
@@ -19,6 +27,44 @@ from mesoscale.settings.definitions import definition
 from mesoscale.settings.topography import LengthUnit
 from mesoscale.topography.measurements import check_count, files_in
 from mesoscale.topography.measurements.loading import load_measurements
+
+OF_FILES = ("tip_nm", "channel", "unit", "size", "crop", "points", "detrend")
+"""Options of the command line that tell how measured files are."""
+
+
+def described(
+    words: Namespace, say: Callable[[str], object]
+) -> tuple[Film | None, str, tuple[str, ...]]:
+    """What the words of a command line describe.
+
+    Parameters
+    ----------
+    words : the options of `asperity film`; without `files` the roughness is the paper's.
+    say : is told of files that are left out.
+
+    Returns
+    -------
+    The film, where there are files; the text of its scene; and lines on what nobody stated.
+
+    Raises
+    ------
+    InputError : a word that is not understood, or a file that cannot be read.
+    """
+    material = material_of(words.material)
+    device = device_of(words.device)
+    film = None
+    if words.files:
+        topography = topography_of(words)
+        tip_nm = None
+        if words.tip_nm:
+            tip_nm = number_of(f"--tip-nm={words.tip_nm}", words.tip_nm, "nm")
+        film = Film(readable(words.files, say, topography), tip_nm, **topography)
+    else:
+        for name in OF_FILES:
+            if getattr(words, name):
+                raise InputError(f"--{name.replace('_', '-')}: tells of measured files; name some")
+    text = "\n".join(scene_lines(film, material, device)) + "\n"
+    return film, text, tuple(assumed_lines(material, device))
 
 
 def topography_of(words: Namespace) -> dict[str, Any]:
@@ -78,7 +124,7 @@ def _check_alone(words: Namespace, option: str) -> None:
 
 
 def readable(
-    names: Sequence[str], say: Callable[[str], None], topography: Mapping[str, Any]
+    names: Sequence[str], say: Callable[[str], object], topography: Mapping[str, Any]
 ) -> list[str]:
     """Files by name, folders replaced by those of their files that can be read; `say` is told of
     the others.

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from asperity.film import Shown
-from asperity.pressed_map import map_on_sides, material_of_map
-from mesoscale.checks import check_periodic, checked_heights
+from asperity.pressed_map import map_on_sides, material_of_map, surface_of_maps
 from mesoscale.contact.compiling import announced
 from mesoscale.contact.cycle import Cycle, run_cycle
 from mesoscale.contact.surface import ContactAt
@@ -91,7 +90,7 @@ def roughness(
 
 def cycle(
     heights: Any,
-    side_nm: float,
+    side_nm: float | tuple[float, float],
     load_nN: float,
     e_star: float,
     *,
@@ -99,6 +98,7 @@ def cycle(
     h_prime: float = 0.0,
     hamaker: float = 0.0,
     gap_cutoff_nm: float | None = None,
+    counterface: Any = None,
     contact_at: ContactAt = "highest",
 ) -> Cycle:
     """Close a flat onto a map up to a load, and open it again: force against separation.
@@ -108,13 +108,14 @@ def cycle(
     Parameters
     ----------
     heights : (n, n) in nm, levelled, without missing values.
-    side_nm : length of the map.
+    side_nm : length of the map, or its lengths along x and y, which are the same.
     load_nN : largest repulsive force on the whole map (nN).
     e_star : effective modulus of both bodies, GPa.
     h_macro : hardness (GPa), at which the surface yields; None: elastic.
     h_prime : its size effect, GPa nm^0.5.
     hamaker : Hamaker constant (1e-18 J), by which both walls attract; 0: they do not.
     gap_cutoff_nm : least distance D0 of the attraction; None: that of a scene.
+    counterface : (n, n) heights of the second surface as an instrument sees it, as in `press`.
     contact_at : which heights touch first: the highest of measured maps, the lowest of
         `random_surface`.
 
@@ -127,11 +128,11 @@ def cycle(
     InputError : no such map, side, load or material; a load beyond full contact; a tilted map.
     """
     model, inputs = material_of_map(e_star, h_macro, h_prime, hamaker)
-    surface = checked_heights(heights, side_nm)
-    check_periodic(surface)
-    chosen: dict[str, Any] = {"model": model, "pixels": len(surface), "length_nm": side_nm}
+    surface, spacing = surface_of_maps(heights, counterface, side_nm, True, contact_at, 0, False)
+    chosen: dict[str, Any] = {"model": model, "pixels": len(surface)}
+    chosen["length_nm"] = spacing * len(surface)
     if gap_cutoff_nm is not None:
         chosen["gap_cutoff_nm"] = gap_cutoff_nm
     settings = ContactSettings(mechanics="coupled").model_copy(update=chosen)
     with announced():
-        return run_cycle(inputs, settings, 0, load_nN, heights=surface, contact_at=contact_at)
+        return run_cycle(inputs, settings, 0, load_nN, heights=surface, contact_at="lowest")

@@ -222,7 +222,7 @@ def press(
     by_load = loads_nN is not None
     steps = _steps(loads_nN, approach_nm)
     few = h_macro is None and steps.size <= FEW_LOADS  # no load needs the way there
-    surface, spacing = _surface(
+    surface, spacing = surface_of_maps(
         heights, counterface, side_nm, bool(periodic), contact_at, steps.size, few
     )
     settings = ContactSettings(model=model).model_copy(
@@ -413,7 +413,7 @@ def _rising(name: str, values: Any, unit: str, least: float, most: float) -> np.
     return steps
 
 
-def _surface(
+def surface_of_maps(
     heights: Any,
     counterface: Any,
     side_nm: float | tuple[float, float],

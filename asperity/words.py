@@ -126,9 +126,24 @@ def material_of(words: Sequence[str]) -> dict[str, InputRow]:
                 " (deviation)"
             )
         values = tuple(number_of(word, text, unit) for text in (first, second) if text is not None)
+        _check_accepted(word, values[:1] if sign == "+-" else values)
         stated: Any = {"distribution": KINDS[sign], "values": values, "source": "command line"}
         rows[name] = InputRow(**stated)
     return rows
+
+
+def _check_accepted(word: str, values: Sequence[float]) -> None:
+    """See that an input may have these values, before a scene is written.
+
+    Raises
+    ------
+    InputError
+    """
+    about = definition(word.partition("=")[0])
+    for value in values:
+        if not about.accepts(value):
+            unit = "" if about.unit == "1" else f" {about.unit}"
+            raise InputError(f"{word}: is {value:g}{unit}; accepted is {about.accepted}{unit}")
 
 
 def _modulus_of_bodies(word: str, names: str) -> InputRow:
@@ -169,11 +184,10 @@ def device_of(words: Sequence[str]) -> dict[str, Any]:
             measured[name] = _value_and_error(word, name, value)
             continue
         if name not in SCALAR_KEYS:
-            meant = did_you_mean(name, (*SCALAR_KEYS, "material", *MEASURABLE))
-            raise InputError(
-                f"{word}: accepted is KEY=VALUE with a key of material,"
-                f" {', '.join(SCALAR_KEYS)}, or measured {', '.join(MEASURABLE)}{meant}"
-            )
+            known = "material", *SCALAR_KEYS, *MEASURABLE
+            if meant := did_you_mean(name, known):
+                raise InputError(f"{word}: {name} is no key of the device{meant}")
+            raise InputError(f"{word}: accepted is KEY=VALUE, with a key of {', '.join(known)}")
         keys[name] = _device_value(word, name, value)
     stated = of_material | keys
     if measured:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import SurfaceTopography  # noqa: F401  (autodoc imports with TYPE_CHECKING set, which its pydantic models do not bear)
 
-from evidence.pages import figures, write_pages
+from evidence.pages import quoted, with_numbers, with_sources, write_pages
 
 ROOT = Path(__file__).parents[1]
 write_pages(ROOT / "docs" / "evidence")
@@ -31,8 +31,8 @@ html_title = "Asperity"
 html_search_scorer = str(Path(__file__).with_name("search_order.js"))
 default_role = "code"
 myst_heading_anchors = 3
-myst_enable_extensions = ["dollarmath", "substitution"]
-myst_substitutions = figures()  # numbers that pages quote, from evidence/data
+myst_enable_extensions = ["dollarmath"]
+NUMBERS = quoted()
 
 # examples are Python scripts with cells, run while the site is built
 nb_custom_formats = {".py": ["jupytext.reads", {"fmt": "py:percent"}]}
@@ -75,7 +75,15 @@ def collapse_navigation(app, pagename, templatename, context, doctree):
         ).replace(*level)
 
 
+def tell_sources(app, docname, source):
+    """Tell of each number where it is from; refuse a page whose numbers are of former studies."""
+    if with_numbers(source[0], NUMBERS) != source[0]:
+        raise ValueError(f"{docname}: numbers of former studies; python -m evidence numbers")
+    source[0] = with_sources(source[0], NUMBERS)
+
+
 def setup(app):
+    app.connect("source-read", tell_sources)
     app.connect(
         "html-page-context", collapse_navigation, priority=400
     )  # before the theme's, which is 500

@@ -47,6 +47,7 @@ def main() -> None:
     if sys.argv[1:] in ([], ["-h"], ["--help"]):
         print(
             "python -m evidence NAME [options]   runs a study and adds its rows to evidence/data/\n"
+            "python -m evidence numbers          writes its numbers into the pages of docs/\n"
         )
         for name, question in known.items():
             print(f"{name:<28} {question}\n{'':<28} {_state(name)}")
@@ -55,6 +56,11 @@ def main() -> None:
                 f"{name:<28} {study['question']}\n{'':<28} {_state(name)}; its code is at"
                 f" {study['commit']}"
             )
+        return
+    if sys.argv[1:] == ["numbers"]:
+        from evidence.pages import write_numbers  # which imports all studies
+
+        write_numbers()
         return
     name = RENAMED.get(sys.argv[1], sys.argv[1])
     options = sys.argv[2:]

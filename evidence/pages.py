@@ -5,6 +5,8 @@ pages quote.
 import ast
 import importlib
 import re
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from evidence.__main__ import studies
@@ -14,17 +16,61 @@ MOST_ROWS = 40
 """Rows of a table that a page shows; the file has all."""
 
 
-def figures() -> dict[str, str]:
-    """Numbers that pages quote as `{{ room_name_number }}`, each with its commit and command under
-    the pointer.
-    """
-    quoted = {}
+QUOTED = re.compile(r'\{\{ (\w+) \}\}|<abbr title="(\w+)">[^<]*</abbr>')
+"""A number that a page quotes by its name: still to be written, or written."""
+
+
+@dataclass(frozen=True)
+class Quoted:
+    """A number of a study, and by which command it was found."""
+
+    value: str
+    source: str
+
+
+def quoted() -> dict[str, Quoted]:
+    """Numbers that pages quote, by names `room_study_number`."""
+    numbers = {}
     for name in (*studies(), *ended()):
         for key, value in _figures(name).items():
             last = load(name)[-1]
-            where = f"{last['command']}, commit {last['commit']}, {last['date']}"
-            quoted[f"{name.replace('.', '_')}_{key}"] = f'<abbr title="{where}">{value}</abbr>'
-    return quoted
+            source = f"{last['command']}, commit {last['commit']}, {last['date']}"
+            numbers[f"{name.replace('.', '_')}_{key}"] = Quoted(value, source)
+    return numbers
+
+
+def with_numbers(text: str, numbers: Mapping[str, Quoted]) -> str:
+    """The text of a page with its numbers as the studies have them now.
+
+    Raises
+    ------
+    KeyError : it quotes a number that no study has.
+    """
+
+    def written(match: re.Match[str]) -> str:
+        name = match[1] or match[2]
+        return f'<abbr title="{name}">{numbers[name].value}</abbr>'
+
+    return QUOTED.sub(written, text)
+
+
+def with_sources(text: str, numbers: Mapping[str, Quoted]) -> str:
+    """The text of a page whose numbers tell under the pointer where they are from."""
+    return QUOTED.sub(
+        lambda match: f'<abbr title="{numbers[match[2]].source}">{numbers[match[2]].value}</abbr>',
+        text,
+    )
+
+
+def write_numbers() -> None:
+    """Write into all pages the numbers that they quote."""
+    numbers = quoted()
+    for page in (ROOT / "docs").glob("*.md"):
+        before = page.read_text(encoding="utf-8")
+        after = with_numbers(before, numbers)
+        if after != before:
+            page.write_text(after, encoding="utf-8")
+            print(page.relative_to(ROOT))
 
 
 def write_pages(folder: Path) -> None:

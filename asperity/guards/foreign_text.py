@@ -59,6 +59,11 @@ def as_cell(text: str) -> str:
     return text
 
 
+def as_file_name(text: str) -> str:
+    """Text as the name of a file or scene, of 100 characters at most; empty where none are left."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", text).strip("_.-")[:100]
+
+
 def as_word(text: str) -> str:
     """Text as a word that YAML, Snakemake and a shell hand on unchanged; plain names stay as they
     are.

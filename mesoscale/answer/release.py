@@ -173,6 +173,45 @@ def shrinks_by(known: Array, release: Array) -> float:
     return max(1.0 - remains, 0.0)
 
 
+@dataclass(frozen=True)
+class PartAnswer:
+    """What is known of switches of which too many have no answer.
+
+    Attributes
+    ----------
+    solved, refused : how many have an answer, and how many none.
+    stuck : share that sticks, if none of those without an answer does, and if all do.
+    median_V : median release, if all of these stick, and if they let go above all others; infinite
+        where they decide it.
+    """
+
+    solved: int
+    refused: int
+    stuck: tuple[float, float]
+    median_V: tuple[float, float]
+
+
+def answered_in_part(model: PadModel) -> PartAnswer | None:
+    """What is known whatever those without an answer do; None where no switch has one."""
+    release = model.states("release_V")
+    refused = len(model.refused)
+    if release.size == 0:
+        return None
+    total = release.size + refused
+    stuck = int((release == 0.0).sum())
+    if_stuck = np.append(release, np.zeros(refused))
+    if_released = np.append(release, np.full(refused, np.inf))
+    return PartAnswer(
+        release.size,
+        refused,
+        (stuck / total, (stuck + refused) / total),
+        (
+            float(np.quantile(if_stuck, 0.5, method="lower")),
+            float(np.quantile(if_released, 0.5, method="higher")),
+        ),
+    )
+
+
 def describe(values: Array) -> dict[str, Any]:
     """Deviation and quantiles."""
     quantiles = np.quantile(values, ENDS)

@@ -48,7 +48,8 @@ def test_words_of_an_engineer_are_keys_of_the_device():
         ("gap_um=5%", "gap_um is in um, not in %"),
         ("gap_um=two", "'two' is no number; write for instance gap_um=2.5"),
         ("gap_um=", "'' is no number"),
-        ("gap_u=2", "did you mean gap_um"),
+        ("gap_u=2", "gap_u is no key of the device; did you mean gap_um?"),
+        ("colour=2", "accepted is KEY=VALUE, with a key of material, ends"),
         ("pull_in_V=72", "value and standard error, pull_in_V=72+-2"),
         ("pull_in_V=72+-2%", "pull_in_V is in V, not in %"),
         ("resonance_kHz=52+-1", "needs the density of the beam"),
@@ -76,9 +77,12 @@ def test_words_of_a_material_are_rows_of_inputs(word, values):
     assert row.values == values
 
 
-@pytest.mark.parametrize("word", ["e_star=gold", "e_star=", "e_star=1,5", "hamaker=0.2J"])
+@pytest.mark.parametrize(
+    "word",
+    ["e_star=gold", "e_star=", "e_star=1,5", "hamaker=0.2J", "humidity=140%", "e_star=-5+-1"],
+)
 def test_a_material_that_is_not_understood_is_one_line(word):
-    with pytest.raises(InputError, match=f"{word}: "):
+    with pytest.raises(InputError, match=re.escape(f"{word}: ")):
         material_of([word])
 
 

@@ -38,4 +38,4 @@ def test_a_picture_is_what_its_example_draws(figure, tmp_path):
 
 
 def test_the_picture_of_the_readme_is_among_them():
-    assert "first_contact" in [figure.stem for figure in SHOWN]
+    assert "press_film" in [figure.stem for figure in SHOWN]

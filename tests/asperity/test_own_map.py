@@ -56,6 +56,15 @@ def test_an_elastic_cycle_goes_back_the_way_it_came():
     assert lost_aJ == pytest.approx(0.0, abs=1e-6)
 
 
+def test_lengths_along_x_and_y_and_a_second_map_are_taken_as_press_does():
+    """The two surfaces of half the waves are the one of both."""
+    alone = asp.cycle(WAVES, SIDE_NM, 500.0, 90.0)
+    two = asp.cycle(WAVES / 2, (SIDE_NM, SIDE_NM), 500.0, 90.0, counterface=WAVES[::-1] / 2)
+    np.testing.assert_allclose(two.closing.net_nN, alone.closing.net_nN, rtol=1e-9)
+    with pytest.raises(asp.InputError, match="must be squares"):
+        asp.cycle(WAVES, (SIDE_NM, 2 * SIDE_NM), 500.0, 90.0)
+
+
 @pytest.mark.parametrize(
     "material", [{"h_prime": 8.0}, {"h_macro": 0.0}, {"hamaker": -1.0}, {"contact_at": "middle"}]
 )

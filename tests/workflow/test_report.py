@@ -23,7 +23,7 @@ from workflow.report.numbers import show
 from workflow.report.page import Figure
 from workflow.report.render import render
 from workflow.report.stages import pad
-from workflow.report.stages.humidity import against_humidity, begins_to_stick
+from workflow.report.stages.humidity import OPENINGS, against_humidity, begins_to_stick
 from workflow.report.stages.humidity import describe as describe_humidity
 from workflow.report.stages.inputs import _distribution, stated_beside_computed
 from workflow.report.studies import Error, KnobTable, Value, pareto_front, recommended, tables_of
@@ -427,7 +427,9 @@ def test_the_page_says_from_which_humidity_on_the_switch_sticks():
     assert said.startswith(
         "At central inputs the switch sticks from between 30.0% and 50.0% humidity on (menisci"
     )
-    assert said.endswith("at none of these humidities (their volume stays).")
+    assert said.endswith("lets go at each humidity from 0% to 50% (their volume stays).")
+    one = [{"humidity": "0.4", "opening": opening, "release_V": "0.0"} for opening in OPENINGS]
+    assert begins_to_stick(one) == "At central inputs the switch sticks at 40% humidity."
     assert "<svg" in against_humidity([{**row, "stuck": ""} for row in rows])
 
 

@@ -54,14 +54,15 @@ def test_a_row_has_the_numbers_of_a_run_or_the_reason(here):
         "release_V": described,
         "pull_in_V": described,
         "quantile_error_V": {"0.5": 0.1},
-        "stuck": {"value": 0.25},
+        "stuck": {"value": 0.25, "low": 0.1, "high": 0.4},
         "points": 36,
         "refused": [],
         "deepened": 2,
     }
     place = here / "results/mine/answer/pad_switch.json"
     write_json(place, {"answer": answer, "answer_status": "ok"}, {})
-    row = row_of("128", "mine")
+    row = row_of("contact.pixels", "128", "mine")
+    assert row["contact.pixels"] == "128"
     assert (row["release_5_V"], row["release_V"], row["stuck"]) == (1.0, 2.0, 0.25)
     write_json(place, {"answer": None, "answer_status": "too few"}, {})
-    assert row_of("128", "mine") == {"value": "128", "reason": "too few"}
+    assert row_of("contact.pixels", "128", "mine")["reason"] == "too few"

@@ -137,7 +137,7 @@ def test_the_release_is_told_as_switches_are_solved(capsys, tmp_path):
     too.
     """
     jobs = []
-    for number, release_V in enumerate(([9.0], [0.0, 4.0, np.nan], [5.0, 6.0, 7.0])):
+    for number, release_V in enumerate(([9.0], [0.0, 4.0, np.nan], [5.0] * 18)):
         jobs.append(job("press_pads", number))
         jobs[-1].output = [str(tmp_path / f"{number}.h5")]
         with h5py.File(jobs[-1].output[0], "w") as file:
@@ -153,8 +153,9 @@ def test_the_release_is_told_as_switches_are_solved(capsys, tmp_path):
         send(terminal, "job_info", jobid=number, rule_name="press_pads", rule_msg="press")
         send(terminal, "job_finished", job_id=number)
     first, second = (line for line in capsys.readouterr().err.splitlines() if "so far" in line)
-    assert first == "  release of 2 switches so far: 2 V (5 %: 0.2 V; 95 %: 3.8 V); 50% stick"
-    assert second == "  release of 5 switches so far: 5 V (5 %: 0.8 V; 95 %: 6.8 V); 20% stick"
+    few, enough = "least: sticks; largest: 4.00 V", "5 %: 3.80 V; 95 %: 5.00 V"
+    assert first == f"  release of 2 switches so far: 2.00 V ({few}); 50% stick"
+    assert second == f"  release of 20 switches so far: 5.00 V ({enough}); 5% stick"
 
 
 def test_the_page_before_the_end_brings_no_warning():

@@ -1,10 +1,19 @@
 """One answer of one model: what the switch does, what that hangs on, what to do next."""
 
+import re
 from types import SimpleNamespace
 
 import pytest
 
-from workflow.report.first import _conditions, _release, _unsolved, release_bar
+from workflow.report.first import (
+    _bands,
+    _conditions,
+    _known,
+    _largest,
+    _release,
+    _unsolved,
+    release_bar,
+)
 from workflow.report.gates import _attraction, trust
 from workflow.report.page import Gate
 from workflow.report.stages.circuit import marks
@@ -208,7 +217,7 @@ def test_the_bar_has_the_zone_of_sticking_apart_from_the_axis_of_volts():
 def test_switches_without_answer_are_named_with_the_reason_of_the_first():
     assert _unsolved({"points": 126, "refused": []}) == ""
     words = _unsolved({"points": 126, "refused": ["asperities merge", "another"]})
-    assert words.startswith("2 of 128 switches have no answer.")
+    assert words.startswith("Of 128 switches, 2 without an answer are left out.")
     assert words.endswith("The reason of the first: asperities merge.")
 
 
@@ -281,3 +290,51 @@ def test_a_switch_that_sticks_is_told_what_frees_it():
     rows = [thick, gap, smooth]
     assert "freed by: RMS roughness 4.00 nm" in said(_pad(1.0, reserve={"freed_by": rows})).sentence
     assert "no single property" in said(_pad(1.0, reserve={"freed_by": [gap]})).sentence
+
+
+def test_where_a_share_sticks_the_next_step_says_with_what_fewer_would():
+    rows = [
+        {"key": "thickness_um", "unit": "um", "value": 4.0, "other": 5.6, "stuck": 0.12},
+        {"key": "gap_um", "unit": "um", "value": 3.0, "other": 4.2, "stuck": 0.2},
+    ]
+    words = " With thickness 5.60 µm, 12% of the 64 switches would stick instead of 40%."
+    assert said(_pad(0.4, sticking_by_key=rows)).next_step.endswith(words)
+    assert "would stick" not in said(_pad(0.4, sticking_by_key=[])).next_step
+
+
+def test_a_cause_of_nothing_is_not_listed():
+    rows = [("bow_nm", "each", 0.004), ("gap_um", "each", 0.3), ("rms", "common", 0.5)]
+    names = ("name", "varies", "share_of_variance")
+    answer = {"sensitivity": [dict(zip(names, row, strict=True)) for row in rows]}
+    assert _largest(answer, "each") == [("gap", 30)]
+
+
+def _with_bands(error_V):
+    ends = {"0.05": 3.0, "0.5": 6.0, "0.95": 9.0}
+    band = {end: {"value": value, "error": error_V} for end, value in ends.items()}
+    known = {"unknown_V": band, "between_V": band}
+    known["stuck_share"] = {"0.95": {"value": 0.1, "high": 0.1}}
+    return {**_pad()["answer"], "known": known}
+
+
+def test_bands_have_their_error_and_fit_on_the_axis():
+    answer = _with_bands(0.4)  # the interval is 6.3 V wide
+    assert "3.00\u00a0±\u00a00.4 to 9.00\u00a0±\u00a00.4 V" in _known(answer, _bands(answer))
+    bar = release_bar(said(_pad()), _bands(answer), {"0.05": 0.3, "0.95": 0.5})
+    assert 'class="unknown error"' in bar
+    assert "from device to device" in bar
+    right_ends = [float(path) for path in re.findall(r"H(\d+\.\d)", bar)]
+    assert max(right_ends) < 410.0
+
+
+def test_bands_that_few_switches_cannot_tell_apart_are_not_drawn():
+    answer = _with_bands(2.0)
+    assert _bands(answer) == {}
+    assert "cannot be told apart by a fit to 64 switches" in _known(answer, {})
+    assert "between" not in release_bar(said(_pad()), {})
+
+
+def test_where_most_stick_it_is_told_what_frees_the_one_at_central_inputs():
+    rows = [{"key": "rms", "unit": "nm", "value": 4.0, "frees": 9.0}]
+    pad = _pad(0.9, central={"release_V": 0.0}, reserve={"freed_by": rows})
+    assert said(pad).next_step.startswith("At central inputs it is freed by: RMS roughness 9.00 nm")

@@ -12,7 +12,7 @@ from mesoscale.inputs.table import collect, film_table, from_rows, to_rows
 from workflow.files.results import load_csv, write_csv
 from workflow.run.contact_settings import contact_on
 from workflow.run.pads import ScenePoints, write_solved
-from workflow.run.what_if import AS_RUN, PressedScene, main, what_if
+from workflow.run.what_if import AS_RUN, PressedScene, line_of, main, what_if
 from workflow.scene import load_scene
 
 SCENE = """extends: table1
@@ -59,23 +59,45 @@ def here(ran, tmp_path, monkeypatch):
 
 def test_its_own_value_gives_the_answer_of_the_run(here):
     scene = PressedScene("tiny.yaml")
-    as_run, same, other = what_if(scene, "device.spring_N_per_m=800,700")
+    as_run, same, other = what_if(scene, ["device.spring_N_per_m=800,700"])
     said = answer(scene.with_device(scene.device))
     assert as_run["release_V"] == said.release_V["quantiles"]["0.5"]
-    assert {**same, "value": AS_RUN} == as_run
+    assert {**same, "device": AS_RUN, "spring_N_per_m": 800.0} == as_run
     assert other["pull_in_V"] < as_run["pull_in_V"]
 
 
 def test_the_command_writes_a_table_and_a_picture(here, capsys):
     assert main(["tiny.yaml", "gap_um=3,3.49,3.7"]) == 0
     lines = capsys.readouterr().out
-    assert "gap_um = 3.7: closes at" in lines.replace("\n ", "")
-    with (here / "tiny_gap_um.csv").open(newline="") as stream:
+    assert "gap_um=3.7: closes at" in lines.replace("\n ", "")
+    with (here / "tiny_gap_um_3_3.49_3.7.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
-    assert [row["value"] for row in rows] == [AS_RUN, "3", "3.49", "3.7"]
+    assert rows[0]["device"] == AS_RUN
+    assert [float(row["gap_um"]) for row in rows] == [3.49, 3.0, 3.49, 3.7]
     pull_in_V = [float(row["pull_in_V"]) for row in rows[1:]]
     assert pull_in_V == sorted(pull_in_V)
-    assert (here / "tiny_gap_um.png").is_file()
+    assert (here / "tiny_gap_um_3_3.49_3.7.png").is_file()
+
+
+def test_several_keys_change_together(here):
+    scene = PressedScene("tiny.yaml")
+    rows = list(what_if(scene, ["gap_um=3,3.2", "spring_N_per_m=900"]))
+    stated = [(row["gap_um"], row["spring_N_per_m"]) for row in rows]
+    assert stated == [(3.49, 800.0), ("3", "900"), ("3.2", "900")]
+    both = scene.device.model_copy(update={"gap_um": 3.2, "spring_N_per_m": 900.0})
+    said = answer(scene.with_device(both))
+    assert rows[-1]["release_V"] == said.release_V["quantiles"]["0.5"]
+
+
+def test_where_many_have_no_answer_it_says_what_is_known(here):
+    """A voltage below pull-in closes some of the switches, and not the others."""
+    scene = PressedScene("tiny.yaml")
+    pull_in_V = answer(scene.with_device(scene.device)).pull_in_V["quantiles"]["0.5"]
+    row = list(what_if(scene, [f"hold_voltage_V={pull_in_V:.4g}"]))[-1]
+    assert 0.2 * 36 < row["no_answer"] == 36 - row["switches"]
+    assert row["stuck_high"] - row["stuck_low"] == pytest.approx(row["no_answer"] / 36)
+    assert "release_V" not in row
+    assert "no interval: 0% to" in line_of(row)
 
 
 @pytest.mark.parametrize(
@@ -85,6 +107,7 @@ def test_the_command_writes_a_table_and_a_picture(here, capsys):
         ("gap=3", "gap_um"),
         ("gap_um=wide", "is no number"),
         ("gap_um=-1", "gap_um"),
+        ("material=aluminum,brass", "no material 'brass' is known"),
     ],
 )
 def test_what_no_pad_answers_is_one_line(here, capsys, change, message):

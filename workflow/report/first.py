@@ -1,12 +1,14 @@
 """The first screen: the device, its release with the zone where it sticks, causes and next step."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from mesoscale.settings import DeviceSettings
 from workflow.report.available import Results
 from workflow.report.numbers import show
+from workflow.report.stages.humidity import begins_to_stick
+from workflow.report.stages.topography import first_map
 from workflow.report.verdict import (
     DECIDED,
     LITTLE,
@@ -24,8 +26,12 @@ KINDS = {
     "each": "To control: differs from device to device",
 }
 BANDS = {"unknown": "not known: the typical device", "between": "from device to device"}
+TELLING_SHARE = 0.25
+"""Of the interval's width: bands whose ends err by more are not told apart."""
 LEFT, RIGHT = 70.0, 410.0
 """Ends of the bar's axis in its picture."""
+FLOOR, ROW = 62.0, 28.0
+"""Where the axis lies under the bar, and how much lower for each band."""
 
 
 @dataclass(frozen=True)
@@ -36,8 +42,11 @@ class First:
     release: str
     pull_in: str
     conditions: str
+    humidity: str
     device: str
+    surface: tuple[str, str] | None
     bar: str
+    has_errors: bool
     causes: list[tuple[str, list[tuple[str, int]]]]
     known: str
     unsolved: str
@@ -61,16 +70,19 @@ def first_screen(results: Results, gates: Any) -> First | None:
     answer = results.json("answer/pad_switch.json").get("answer") or {}
     named = bool(said.causes)
     causes = [(head, _largest(answer, kind)) for kind, head in KINDS.items()] if named else []
-    bands = {kind: answer["known"][f"{kind}_V"] for kind in BANDS} if named else {}
+    bands = _bands(answer) if named else {}
     return First(
         said,
         release=_release(results),
         pull_in=_pull_in(results.json("answer/pad_switch.json")),
         conditions=_conditions(results),
+        humidity=begins_to_stick(results.rows("humidity/humidity.csv")),
         device=_device(results),
-        bar=release_bar(said, bands),
+        surface=first_map(results),
+        bar=release_bar(said, bands, answer.get("quantile_error_V")),
+        has_errors=bool(answer),
         causes=causes,
-        known=_known(answer) if named else "",
+        known=_known(answer, bands) if named else "",
         unsolved=_unsolved(answer),
         other_law=other,
     )
@@ -154,24 +166,48 @@ def _conditions(results: Results) -> str:
 
 def _largest(answer: dict[str, Any], kind: str) -> list[tuple[str, int]]:
     """What makes the most of the variance, of one kind; shares in percent."""
-    rows = [
-        row
+    shares = [
+        (in_words(row["name"]), round(100 * row["share_of_variance"]))
         for row in answer["sensitivity"]
-        if row["varies"] == kind and row["share_of_variance"] > 0
+        if row["varies"] == kind
     ]
-    return [(in_words(row["name"]), round(100 * row["share_of_variance"])) for row in rows[:3]]
+    return [(name, percent) for name, percent in shares if percent > 0][:3]
 
 
-def _known(answer: dict[str, Any]) -> str:
+def _bands(answer: dict[str, Any]) -> dict[str, Any]:
+    """What is not known, and what differs between devices; nothing where the switches are too few
+    to tell them apart.
+    """
+    bands = {kind: answer["known"][f"{kind}_V"] for kind in BANDS}
+    release_V = answer["release_V"]["quantiles"]
+    width_V = release_V["0.95"] - release_V["0.05"]
+    errors_V = [band[end]["error"] for band in bands.values() for end in ("0.05", "0.95")]
+    if max(errors_V) > TELLING_SHARE * width_V:
+        return {}
+    return bands
+
+
+def _known(answer: dict[str, Any], bands: dict[str, Any]) -> str:
     """What is not known, and what differs between devices, in words."""
-    known = answer["known"]
+    fitted = f"a fit to {answer['points']} switches"
+    if not bands:
+        return (
+            f"What is not known and what differs from device to device cannot be told apart by"
+            f" {fitted}. More switches would (pad.points). {_sticking(answer)}"
+        )
     typical, device = (
-        [show(known[f"{kind}_V"][q]["value"], 2) for q in ("0.05", "0.95")] for kind in BANDS
+        " to ".join(_with_error(bands[kind][end]) for end in ("0.05", "0.95")) for kind in BANDS
     )
     return (
-        f"Not known: where the typical device lets go, {typical[0]} to {typical[1]} V. From device"
-        f" to device: {device[0]} to {device[1]} V, all else known. {_sticking(answer)}"
+        f"Not known: where the typical device lets go, {typical} V. From device to device:"
+        f" {device} V, all else known. Both by {fitted}, with its error. {_sticking(answer)}"
     )
+
+
+def _with_error(end: dict[str, float]) -> str:
+    if end["value"] == 0.0:
+        return "0"
+    return f"{show(end['value'])}\u00a0±\u00a0{show(end['error'], 1)}"
 
 
 def _sticking(answer: dict[str, Any]) -> str:
@@ -206,8 +242,8 @@ def _unsolved(answer: dict[str, Any]) -> str:
 
 def _without_answer(refused: Sequence[str], solved: int) -> str:
     return (
-        f"{len(refused)} of {solved + len(refused)} switches have no answer. They are"
-        f" left out, and may be those that stick. The reason of the first: {refused[0]}."
+        f"Of {solved + len(refused)} switches, {len(refused)} without an answer are left"
+        f" out. They may be those that stick. The reason of the first: {refused[0]}."
     )
 
 
@@ -216,47 +252,50 @@ def _rate(share: float) -> str:
     return f"{share:.0%}" if share > 0.095 else f"{share:.1%}"
 
 
-def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
+def release_bar(
+    said: Verdict,
+    bands: dict[str, Any] | None = None,
+    errors_V: dict[str, float] | None = None,
+) -> str:
     """The release on an axis of volts: 5 to 95 % as a bar, the zone of sticking at its left end.
 
     Parameters
     ----------
     bands : 5 to 95 % of what is not known, and of what differs between devices.
+    errors_V : of the 5 and 95 % of the release, by the number of switches.
     """
     if said.release_V is None:
         return ""
     others = said.other_law_V or ()
-    top = 1.15 * max(*said.release_V, *others, 1.0)
+    bands = bands or {}
+    ends = [band["0.95"]["value"] + band["0.95"]["error"] for band in bands.values()]
+    if errors_V:
+        ends.append(said.release_V[-1] + errors_V["0.95"])
+    top = 1.15 * max(*said.release_V, *others, *ends, 1.0)
+    floor = FLOOR + len(bands) * ROW
 
     def x(value: float) -> str:
         return f"{LEFT + (RIGHT - LEFT) * value / top:.1f}"
 
     middle = said.release_V[len(said.release_V) // 2]
-    step = next(
-        step for step in (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 1e4, 1e5) if top / step <= 6
-    )
-    ticks = [k * step for k in range(int(top / step) + 1)]
     share = "" if said.stuck is None else f" {100 * said.stuck[1]:.0f}\u202f%"
     parts = [
-        f'<rect class="zone" x="0" y="8" width="{LEFT - 8:g}" height="70" rx="4"/>',
+        f'<rect class="zone" x="0" y="8" width="{LEFT - 8:g}" height="{floor - 8:g}" rx="4"/>',
         f'<text x="{LEFT / 2 - 4:g}" y="32" class="mid">sticks</text>',
         f'<text x="{LEFT / 2 - 4:g}" y="50" class="mid strong">{share}</text>',
-        f'<path class="axis" d="M{LEFT:g} 78H{RIGHT:g}"/>',
+        *_axis(top, floor, x),
         *(
-            f'<path class="axis" d="M{x(v)} 78v5"/><text x="{x(v)}" y="98" class="mid">{v:g}</text>'
-            for v in ticks
-        ),
-        f'<text x="{(LEFT + RIGHT) / 2:g}" y="114" class="mid">release voltage (V)</text>',
-        *(
-            f'<path class="{kind}" d="M{x(band["0.05"]["value"])} {y}H{x(band["0.95"]["value"])}">'
-            f"<title>{BANDS[kind]}</title></path>"
-            for y, (kind, band) in zip((54, 66), (bands or {}).items(), strict=False)
+            _band(kind, FLOOR + row * ROW, band, x)
+            for row, (kind, band) in enumerate(bands.items())
         ),
     ]
     if len(said.release_V) == 3 and said.release_V[2] > 0:
-        low = x(said.release_V[0])
-        high = x(said.release_V[2])
-        parts.append(f'<path class="interval" d="M{low} 36H{high}"/>')
+        low, _, high = said.release_V
+        parts.append(f'<path class="interval" d="M{x(low)} 36H{x(high)}"/>')
+        if errors_V:
+            from_V = max(low - errors_V["0.05"], 0.0)
+            to_V = high + errors_V["0.95"]
+            parts.append(f'<path class="interval error" d="M{x(from_V)} 36H{x(to_V)}"/>')
     if middle > 0:
         parts += [
             f'<path class="median" d="M{x(middle)} 24v24"/>',
@@ -269,8 +308,34 @@ def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
         )
     label = f"Release voltage: {', '.join(volts(value) for value in said.release_V)}"
     return (
-        '<svg class="bar" viewBox="0 0 420 118" role="img"'
+        f'<svg class="bar" viewBox="0 0 420 {floor + 40:g}" role="img"'
         f' aria-label="{label}">{"".join(parts)}</svg>'
+    )
+
+
+def _axis(top: float, floor: float, x: Callable[[float], str]) -> Iterator[str]:
+    """The axis of volts, from 0 to a little below `top`."""
+    steps = (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 1e4, 1e5)
+    step = next(step for step in steps if top / step <= 6)
+    yield f'<path class="axis" d="M{LEFT:g} {floor:g}H{RIGHT:g}"/>'
+    for k in range(int(top / step) + 1):
+        at = x(k * step)
+        yield f'<path class="axis" d="M{at} {floor:g}v5"/>'
+        yield f'<text x="{at}" y="{floor + 20:g}" class="mid">{k * step:g}</text>'
+    middle = (LEFT + RIGHT) / 2
+    yield f'<text x="{middle:g}" y="{floor + 36:g}" class="mid">release voltage (V)</text>'
+
+
+def _band(kind: str, above: float, band: dict[str, Any], x: Callable[[float], str]) -> str:
+    """A band as a bar under its name, with its error as a thin line."""
+    low, high = (band[end] for end in ("0.05", "0.95"))
+    from_V = max(low["value"] - low["error"], 0.0)
+    to_V = high["value"] + high["error"]
+    y = above + 10
+    return (
+        f'<text x="{LEFT + 4:g}" y="{above:g}" class="name">{BANDS[kind]}</text>'
+        f'<path class="{kind} error" d="M{x(from_V)} {y:g}H{x(to_V)}"/>'
+        f'<path class="{kind}" d="M{x(low["value"])} {y:g}H{x(high["value"])}"/>'
     )
 
 

@@ -205,8 +205,7 @@ def _freedom(pad: dict[str, Any]) -> str:
     if not rows:
         return "A stiffer or shorter beam might free it."
     nearest = min(rows, key=lambda row: abs(row["frees"] - row["value"]) / abs(row["value"] or 1.0))
-    unit = "" if nearest["unit"] == "1" else f" {shown_unit(nearest['unit'])}"
-    value = f"{show(nearest['frees'])}{unit}"
+    value = with_unit(nearest["frees"], nearest["unit"])
     return f"At central inputs it is freed by: {in_words(nearest['key'])} {value}."
 
 
@@ -218,6 +217,25 @@ def pull_in_shrinks_by(pad: dict[str, Any]) -> float:
     if "pull_in_V" in measured or pad.get("electrode") == "flat":
         return 0.0
     return (pad.get("answer") or {}).get("pull_in_shrinks_by", 0.0)
+
+
+def with_unit(value: float, unit: str) -> str:
+    """A property of the device or an input, with its unit."""
+    if unit == "1":
+        return show(value)
+    return f"{show(value)} {shown_unit(unit)}"
+
+
+def _fewer_stick(pad: dict[str, Any]) -> str:
+    """With which change of one property fewer switches stick; a sentence with a space before it."""
+    rows = pad.get("sticking_by_key")
+    if not rows:
+        return ""
+    row = rows[0]
+    changed = f"{in_words(row['key'])} {with_unit(row['other'], row['unit'])}"
+    now = f"{pad['answer']['stuck']['value']:.0%}"
+    switches = f"the {pad['answer']['points']} switches"
+    return f" With {changed}, {row['stuck']:.0%} of {switches} would stick instead of {now}."
 
 
 def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: bool) -> str:
@@ -234,11 +252,20 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
         return f"Measure a pull-off force next (target calibration). {_freedom(pad)}"
     if sticks:
         return f"No better measurement would free it. {_freedom(pad)}"
+    freed = ""
+    if pad["central"] and pad["central"]["release_V"] == 0.0 and pad.get("reserve"):
+        freed = f"{_freedom(pad)} "
+    return f"{freed}{_narrows(pad, no_cause)}{_fewer_stick(pad)}".strip()
+
+
+def _narrows(pad: dict[str, Any], no_cause: str) -> str:
+    """What narrows the interval, in a sentence; empty where nothing is known."""
+    answer = pad["answer"]
     rows = answer["sensitivity"]
-    if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
-        return "Compute more cells next (pad.point_cells)."
     if no_cause and answer["explained"] <= 0:
         return "Compute more switches next (pad.points)."
+    if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
+        return "Compute more cells next (pad.point_cells)."
     if no_cause:
         return ""
     by_pull_in = pull_in_shrinks_by(pad)

@@ -21,6 +21,8 @@ from workflow.run.cost import Costs, refusal, wall_seconds
 from workflow.run.job import last_line
 from workflow.scene.renamed import SINCE, STAGES, name_now, place_now
 
+FEWEST_SWITCHES = 20
+"""For the 5 and 95 % of their releases: of fewer, less than one lies beyond."""
 NO_SUCH_TARGET = re.compile(
     r"MissingRuleException:\nNo rule to produce (.*) \(if you use input functions"
 )
@@ -222,6 +224,8 @@ def release_so_far(files: Iterable[str]) -> Iterator[str]:
     import h5py  # not while a run is planned
     import numpy as np
 
+    from workflow.report.verdict import volts
+
     release_V = []
     for path in files:
         with h5py.File(path) as file:  # of the central point the job says more
@@ -229,16 +233,14 @@ def release_so_far(files: Iterable[str]) -> Iterator[str]:
                 file[name].attrs.get("release_V", np.nan) for name in file if name != "point_0000"
             ]
     solved = [value for value in release_V if np.isfinite(value)]
-    if solved:
-        low, middle, high = (
-            f"{press:.3g} V" if press else "sticks"
-            for press in np.quantile(solved, (0.05, 0.5, 0.95))
-        )
-        stuck = np.mean(np.equal(solved, 0.0))
-        yield (
-            f"  release of {len(solved)} switches so far: {middle} (5 %: {low}; 95 %: {high});"
-            f" {stuck:.0%} stick"
-        )
+    if not solved:
+        return
+    low, middle, high = (volts(value) for value in np.quantile(solved, (0.05, 0.5, 0.95)))
+    ends = f"5 %: {low}; 95 %: {high}"
+    if len(solved) < FEWEST_SWITCHES:
+        ends = f"least: {volts(min(solved))}; largest: {volts(max(solved))}"
+    stuck = np.mean(np.equal(solved, 0.0))
+    yield f"  release of {len(solved)} switches so far: {middle} ({ends}); {stuck:.0%} stick"
 
 
 def _say_if_silent(about: Mapping[str, Any]) -> None:

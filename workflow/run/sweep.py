@@ -68,12 +68,13 @@ def scenes_of(given: str, word: str) -> dict[str, Path]:
     return files
 
 
-def row_of(value: str, name: str) -> dict[str, Any]:
+def row_of(key: str, value: str, name: str) -> dict[str, Any]:
     """What the finished run of a scene says, as a row of the table."""
+    row = {"device": f"{key}={value}", key: value}
     content = load_json(f"results/{name}/answer/pad_switch.json")
     if content["answer"] is None:
-        return {"value": value, "reason": content["answer_status"]}
-    return {"value": value, **numbers_of(content["answer"]), "reason": ""}
+        return row | {"reason": content["answer_status"]}
+    return row | numbers_of(content["answer"]) | {"reason": ""}
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -96,15 +97,15 @@ def main(arguments: list[str] | None = None) -> int:
             if status := subprocess.run(command, check=False).returncode:
                 print(f"ERROR {file}: see above; what is finished is kept", file=sys.stderr)
                 return status
-            rows.append(row_of(value, file.stem))
-            print(wrapped(shown(line_of(key, rows[-1]))), flush=True)
+            rows.append(row_of(key, value, file.stem))
+            print(wrapped(shown(line_of(rows[-1]))), flush=True)
     except (InputError, MistakenYaml, SceneError, OSError, yaml.YAMLError) as error:
         print(f"ERROR {shown(str(error))}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("\ninterrupted; what is finished is kept: sweep again", file=sys.stderr)
         return 130
-    write_answers(name, key, rows)
+    write_answers(name, [chosen.values], rows)
     return 0
 
 

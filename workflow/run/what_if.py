@@ -7,15 +7,17 @@ picture.
 import argparse
 import csv
 import json
+import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
+from itertools import product
 from pathlib import Path
 from typing import Any
 
-from asperity.guards.foreign_text import shown, wrapped
+from asperity.guards.foreign_text import as_file_name, shown, wrapped
 from asperity.words import device_of
-from mesoscale.answer.release import answer
+from mesoscale.answer.release import answer, answered_in_part
 from mesoscale.answer.switches import PadModel
 from mesoscale.answer.what_if import with_device
 from mesoscale.errors import InputError
@@ -29,14 +31,15 @@ from workflow.run.pads import ScenePoints, load_model, points_of
 from workflow.scene import SceneError, load_scene
 from workflow.schemas import UnfitTable
 
-COLUMNS: tuple[str, ...] = (
-    "value",
+NUMBERS: tuple[str, ...] = (
     "pull_in_V",
     "release_5_V",
     "release_V",
     "release_95_V",
     "median_error_V",
     "stuck",
+    "stuck_low",
+    "stuck_high",
     "switches",
     "no_answer",
     "continued",
@@ -98,56 +101,94 @@ def _check_unchanged(results: Results, model: PadModel, given: str) -> None:
         )
 
 
-def what_if(scene: PressedScene, word: str) -> Iterator[dict[str, Any]]:
-    """A row for the scene's own device, and one for each value of a key of it.
+def what_if(scene: PressedScene, words: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """A row for the scene's own device, and one for each combination of the values of its keys.
 
     Parameters
     ----------
-    word : such as gap_um=1,1.5,2 or material=aluminium, as the engineer writes it.
+    words : such as gap_um=1,1.5,2 and material=aluminium, as the engineer writes them.
 
     Returns
     -------
-    Rows with `COLUMNS`: quantiles of release and pull-in, the share that sticks, how many switches
-    have an answer and how many none, and how many press their pad harder than it was computed. A
-    value that the answer cannot be had for has a `reason` and no numbers.
+    Rows with `device` in words, the keys with their values, and `NUMBERS`: quantiles of release and
+    pull-in, the share that sticks with its interval, how many switches have an answer and how many
+    none, and how many press their pad harder than it was computed. Where too many have none, the
+    `reason` says so, with what is known all the same.
 
     Raises
     ------
     InputError : no key of the device, a value that it does not accept, or another kind of switch.
     """
-    name, _, values = word.removeprefix("device.").partition("=")
-    if "." in name:
+    keys = values_of(words)
+    if scene.device.measured and not set(keys) <= {"hold_voltage_V", "release_at"}:
         raise InputError(
-            f"{word}: changes what pads are pressed from; copy the scene, change it and run it"
+            f"{' '.join(words)}: device.measured tells of the device as it is; another one was not"
+            " measured"
         )
-    if scene.device.measured and name not in ("hold_voltage_V", "release_at"):
-        raise InputError(
-            f"{word}: device.measured tells of the device as it is; another one was not measured"
-        )
-    devices = {AS_RUN: scene.device}
+    known = scene.device.model_dump(mode="json", include=set(keys))
+    rows = [({"device": AS_RUN} | known, scene.device)]
     departs = scene.device.spread.youngs_modulus_GPa
-    for value in values.split(","):
-        changes = device_of([f"{name}={value}"])
-        stated = scene.device.model_dump() | changes
-        if "youngs_modulus_GPa" in changes and departs == PLATED_NICKEL:
+    for values in product(*keys.values()):
+        of_keys = dict(zip(keys, values, strict=True))
+        changes = [f"{key}={value}" for key, value in of_keys.items()]
+        changed = device_of(changes)
+        stated = scene.device.model_dump() | changed
+        if "youngs_modulus_GPa" in changed and departs == PLATED_NICKEL:
             stated["spread"].pop("youngs_modulus_GPa")  # another metal is no plated nickel
         device = DeviceSettings(**stated)
         if device.kind != scene.device.kind:
             raise InputError(
-                f"{word}: another kind of switch; copy the scene, change it and run it"
+                f"{' '.join(changes)}: another kind of switch; copy the scene, change it and run it"
             )
-        devices[value] = device
-    for value, device in devices.items():
-        try:
-            numbers = numbers_of(asdict(answer(scene.with_device(device))))
-        except InputError as error:
-            yield {"value": value, "reason": str(error)}
-        else:
-            yield {"value": value, **numbers, "reason": ""}
+        rows.append(({"device": " ".join(changes)} | of_keys, device))
+    for row, device in rows:
+        yield row | _answered(scene.with_device(device))
+
+
+def values_of(words: Sequence[str]) -> dict[str, list[str]]:
+    """Values by key of a device, from words such as gap_um=1,1.5,2.
+
+    Raises
+    ------
+    InputError : a key of another section, or one that is given twice.
+    """
+    keys: dict[str, list[str]] = {}
+    for word in words:
+        key, _, values = word.removeprefix("device.").partition("=")
+        if "." in key:
+            raise InputError(
+                f"{word}: changes what pads are pressed from; copy the scene, change it and run it"
+            )
+        if key in keys:
+            raise InputError(f"{word}: {key} is given twice; write {key}=1,2")
+        keys[key] = values.split(",")
+    return keys
+
+
+def _answered(model: PadModel) -> dict[str, Any]:
+    """The numbers of a row; where too many switches have no answer, what is known all the same."""
+    try:
+        return numbers_of(asdict(answer(model))) | {"reason": ""}
+    except InputError as error:
+        known = answered_in_part(model)
+        if known is None:
+            return {"reason": str(error)}
+        low, high = known.stuck
+        first, last = (volts(value) for value in known.median_V)
+        median = first if first == last else f"{first} to {last}"
+        if known.median_V[1] == math.inf:
+            median = "not known"
+        return {
+            "stuck_low": low,
+            "stuck_high": high,
+            "switches": known.solved,
+            "no_answer": known.refused,
+            "reason": f"{low:.0%} to {high:.0%} stick, median {median}: {error}",
+        }
 
 
 def numbers_of(answer: Mapping[str, Any]) -> dict[str, float]:
-    """The columns of a row, but for its value and reason, from `answer` of pad_switch.json."""
+    """The numbers of a row, but for its reason, from `answer` of pad_switch.json."""
     release_V = answer["release_V"]["quantiles"]
     return {
         "pull_in_V": answer["pull_in_V"]["quantiles"]["0.5"],
@@ -156,49 +197,58 @@ def numbers_of(answer: Mapping[str, Any]) -> dict[str, float]:
         "release_95_V": release_V["0.95"],
         "median_error_V": answer["quantile_error_V"]["0.5"],
         "stuck": answer["stuck"]["value"],
+        "stuck_low": answer["stuck"]["low"],
+        "stuck_high": answer["stuck"]["high"],
         "switches": answer["points"],
         "no_answer": len(answer["refused"]),
         "continued": answer["deepened"],
     }
 
 
-def line_of(name: str, row: dict[str, Any]) -> str:
+def line_of(row: dict[str, Any]) -> str:
     """A row in words."""
-    value = row["value"]
-    device = value if value == AS_RUN else f"{name} = {value}"
     if row["reason"]:
-        return f"{device}: no answer: {row['reason']}"
+        return f"{row['device']}: no interval: {row['reason']}"
     ends = volts(row["release_5_V"]), volts(row["release_95_V"])
     interval = interval_of(*ends).replace("\u00a0", " ")
     words = (
-        f"{device}: closes at {show(row['pull_in_V'])} V and {does(row['release_V'])}"
-        f" {interval}, {row['stuck']:.0%} stick"
+        f"{row['device']}: closes at {show(row['pull_in_V'])} V and {does(row['release_V'])}"
+        f" {interval}, median ± {show(row['median_error_V'], 1)} V, {row['stuck']:.0%} stick"
     )
     if row["continued"]:
         words += f"; {row['continued']} of {row['switches']} press harder than their pads were"
     return words
 
 
-def write_answers(scene: str, key: str, rows: Sequence[dict[str, Any]]) -> None:
-    """Write the rows of a key as a table and a picture in the working folder, and name both."""
-    table = Path(f"{scene}_{key.rpartition('.')[2]}.csv")
+def write_answers(scene: str, words: Sequence[str], rows: Sequence[dict[str, Any]]) -> None:
+    """Write rows as a table and a picture in the working folder, and name both.
+
+    The files are named by the question, so that another question keeps them.
+
+    Parameters
+    ----------
+    words : the question, such as gap_um=1,1.5,2.
+    """
+    name = as_file_name("_".join([scene, *words]))
+    table = Path(f"{name}.csv")
+    keys = [key for key in rows[-1] if key not in ("device", *NUMBERS)]
     with table.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.DictWriter(stream, COLUMNS, restval="")
+        writer = csv.DictWriter(stream, ("device", *keys, *NUMBERS), restval="")
         writer.writeheader()
         writer.writerows(rows)
     written = [str(table)]
-    if _draw(table.with_suffix(".png"), key, rows):
-        written.append(str(table.with_suffix(".png")))
+    picture = Path(f"{name}.png")
+    varied = [key for key in keys if len({row[key] for row in rows if row["device"] != AS_RUN}) > 1]
+    if len(varied) == 1 and _draw(picture, varied[0], rows):
+        written.append(str(picture))
     print(f"written: {', '.join(written)}")
 
 
-def _draw(path: Path, name: str, rows: Sequence[dict[str, Any]]) -> bool:
+def _draw(path: Path, key: str, rows: Sequence[dict[str, Any]]) -> bool:
     """Draw release and pull-in against the values, where these are numbers; says whether."""
     try:
         solved = [
-            (float(row["value"]), row)
-            for row in rows
-            if row["value"] != AS_RUN and not row["reason"]
+            (float(row[key]), row) for row in rows if row["device"] != AS_RUN and not row["reason"]
         ]
     except ValueError:
         return False
@@ -216,7 +266,7 @@ def _draw(path: Path, name: str, rows: Sequence[dict[str, Any]]) -> bool:
     axes.fill_between(x, low, high, alpha=0.25, label="release, 5 to 95 %")
     axes.plot(x, middle, "o-", label="release, median")
     axes.plot(x, pull_in, "s--", color="0.5", label="pull-in, median")
-    axes.set(xlabel=name, ylabel="voltage (V)", ylim=(0.0, None))
+    axes.set(xlabel=key, ylabel="voltage (V)", ylim=(0.0, None))
     axes.legend()
     figure.savefig(path)
     plt.close(figure)
@@ -224,20 +274,18 @@ def _draw(path: Path, name: str, rows: Sequence[dict[str, Any]]) -> bool:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print a line a device, and write the table and picture of each key."""
+    """Print a line a device, and write their table and picture."""
     parser = argparse.ArgumentParser(prog="asperity what-if", description=__doc__)
     parser.add_argument("scene")
     parser.add_argument("changes", nargs="+")
     chosen = parser.parse_args(arguments)
     try:
         scene = PressedScene(chosen.scene)
-        for word in chosen.changes:
-            name = word.removeprefix("device.").partition("=")[0]
-            rows = []
-            for row in what_if(scene, word):
-                rows.append(row)
-                print(wrapped(shown(line_of(name, row))), flush=True)
-            write_answers(scene.name, name, rows)
+        rows = []
+        for row in what_if(scene, chosen.changes):
+            rows.append(row)
+            print(wrapped(shown(line_of(row))), flush=True)
+        write_answers(scene.name, chosen.changes, rows)
     except (InputError, SceneError, UnfitTable, OSError) as error:
         print(f"ERROR {shown(str(error))}", file=sys.stderr)
         return 1

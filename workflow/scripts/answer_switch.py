@@ -12,6 +12,7 @@ from mesoscale.answer.budget import TWIN, budget, effects_of, with_twins
 from mesoscale.answer.other_devices import release_by_hardness
 from mesoscale.answer.release import switch_on_pad
 from mesoscale.answer.reserve import central_reserve, freed_by_surface
+from mesoscale.answer.sticking import sticking_by_key
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.studies.own_errors import of_switch
@@ -30,6 +31,8 @@ with job(snakemake) as run:
     if reserve and model.central.sticks:
         reserve["freed_by"] += freed_by_surface(model.central, points.on_grid, settings.cells)
     switch["reserve"] = reserve
+    contact = points.contact
+    switch["sticking_by_key"] = sticking_by_key(model, points.table, contact, points.device)
     if points.device.measured:
         from mesoscale.answer.measured import what_remains  # compiles
 

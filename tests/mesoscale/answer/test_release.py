@@ -3,6 +3,7 @@ pads.
 """
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,13 @@ from evidence.pad.closed_form import ClosedForm
 from mesoscale.answer import points, switches
 from mesoscale.answer.other_devices import release_by_key
 from mesoscale.answer.points import central_point, plan_points
-from mesoscale.answer.release import _probability, answer, shrinks_by, switch_on_pad
+from mesoscale.answer.release import (
+    _probability,
+    answer,
+    answered_in_part,
+    shrinks_by,
+    switch_on_pad,
+)
 from mesoscale.answer.switches import PadModel, solve_point, solve_points
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.table import input_table
@@ -397,3 +404,23 @@ def test_release_by_key_has_no_row_where_the_device_has_no_answer():
         )
         == []
     )
+
+
+@pytest.mark.parametrize(
+    ("release_V", "refused", "stuck", "median_V"),
+    [
+        ([0.0, 2.0, 3.0, 4.0, 5.0], 2, (1 / 7, 3 / 7), (2.0, 4.0)),
+        ([0.0, 0.0, 0.0, 4.0], 1, (3 / 5, 4 / 5), (0.0, 0.0)),
+        ([0.0, 2.0, 3.0], 3, (1 / 6, 4 / 6), (0.0, np.inf)),
+    ],
+)
+def test_of_too_few_answers_it_says_what_is_so_whatever_the_others_do(
+    release_V, refused, stuck, median_V
+):
+    """All ways in which the others may come out lie within."""
+    model = SimpleNamespace(states=lambda name: np.array(release_V), refused=["why"] * refused)
+    known = answered_in_part(model)
+    assert known.stuck == stuck
+    assert known.median_V == median_V
+    nobody = SimpleNamespace(states=lambda name: np.array([]), refused=["why"])
+    assert answered_in_part(nobody) is None

@@ -24,6 +24,19 @@ def describe(results: Results) -> Iterator[Block]:
     if reserve and not reserve["freed_by"]:
         times = show(reserve["bears_times"], 2)
         yield f"At central inputs it sticks only where the pad attracts with {times} times as much."
+    if sticking := pad.get("sticking_by_key"):
+        yield table(
+            f"How many stick, instead of {pad['answer']['stuck']['value']:.0%}, if one property of"
+            " the device were another; solved on the pads of all points",
+            sticking,
+            {
+                "property": lambda row: labelled(row["key"]),
+                "value": lambda row: show(row["value"]),
+                "other value": lambda row: show(row["other"]),
+                "stick": lambda row: f"{row['stuck']:.0%}",
+            },
+            front=True,
+        )
     if not rows:
         yield "The switch at central inputs has no answer, so there is nothing to compare with."
         return

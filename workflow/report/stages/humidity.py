@@ -27,9 +27,10 @@ def describe(results: Results) -> Iterator[Block]:
     )
     releases = any(float(row["release_V"] or 0.0) for row in rows)
     some_free = any(float(row["stuck"] or 1.0) < 1.0 for row in rows)
-    if releases or some_free:
+    several = len({row["humidity"] for row in rows}) > 1
+    if several and (releases or some_free):
         yield _figure(rows)
-    else:  # its axes would be empty
+    else:  # its axes would be empty, or hold one point
         yield begins_to_stick(rows) or "The switch has no answer at any of these humidities."
     yield table(
         "The switch against humidity",
@@ -60,26 +61,37 @@ def _figure(rows: list[CsvRow]) -> Figure:
 
 def begins_to_stick(rows: list[CsvRow]) -> str:
     """From which humidity on the switch sticks, for each limit of opening."""
-    sentences = []
+    outcome_by_label = {}
     for opening, (_, label) in OPENINGS.items():
         known = [row for row in rows if row["opening"] == opening and row["release_V"]]
-        stuck = [float(row["humidity"]) for row in known if float(row["release_V"]) == 0.0]
-        free = [
-            float(row["humidity"])
-            for row in known
-            if not stuck or float(row["humidity"]) < stuck[0]
-        ]
-        if stuck and free:
-            sentences.append(
-                f"from between {free[-1]:.1%} and {stuck[0]:.1%} humidity on ({label})"
-            )
-        elif stuck:
-            sentences.append(f"at all of these humidities ({label})")
-        elif free:
-            sentences.append(f"at none of these humidities ({label})")
-    if not sentences:
+        if known:
+            outcome_by_label[label] = _sticks_from(known)
+    different = set(outcome_by_label.values())
+    if not different:
         return ""
-    return f"At central inputs the switch sticks {'; '.join(sentences)}."
+    if len(different) == 1:
+        return f"At central inputs the switch {different.pop()}."
+    outcomes = (f"{outcome} ({label})" for label, outcome in outcome_by_label.items())
+    return f"At central inputs the switch {'; '.join(outcomes)}."
+
+
+def _sticks_from(rows: list[CsvRow]) -> str:
+    """From which of rising humidities on it sticks, in words."""
+    tried = [float(row["humidity"]) for row in rows]
+    stuck = [
+        humidity
+        for humidity, row in zip(tried, rows, strict=True)
+        if float(row["release_V"]) == 0.0
+    ]
+    free = [humidity for humidity in tried if not stuck or humidity < stuck[0]]
+    where = f"at {tried[0]:.0%} humidity"
+    if len(tried) > 1:
+        where = f"at each humidity from {tried[0]:.0%} to {tried[-1]:.0%}"
+    if not stuck:
+        return f"lets go {where}"
+    if not free:
+        return f"sticks {where}"
+    return f"sticks from between {free[-1]:.1%} and {stuck[0]:.1%} humidity on"
 
 
 def _release(row: CsvRow) -> str:

@@ -98,11 +98,7 @@ def maps(results: Results) -> str | None:
 
     def plot(*axes):
         for axis, name in zip(axes, named, strict=False):
-            size = float(scan_attributes[name]["length_x_nm"])
-            unit = "nm"
-            if size >= 1000:
-                size = size / 1e3
-                unit = "µm"
+            size, unit = _size(scan_attributes[name])
             rms = float(scan_attributes[name].get("rms_nm", np.nan))
             title = short[name.removeprefix("scans/")]
             if len(title) > 32:
@@ -115,15 +111,9 @@ def maps(results: Results) -> str | None:
                 axis.plot(np.linspace(0, size, len(line)), line, color=BLUE, linewidth=0.7)
                 axis.set_ylabel("height (nm)")
                 continue
-            heights = _thin(groups[name]["heights"])
-            limit = float(np.quantile(np.abs(heights), 0.995))
-            shades = {"cmap": "cividis", "vmin": -limit, "vmax": limit, "interpolation": "none"}
-            image = axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), **shades)
-            bar = axis.figure.colorbar(image, ax=axis, shrink=0.7)
+            bar = _show_map(axis, groups[name]["heights"], size)
             if name == last_map:
                 bar.set_label("height (nm)")
-            bar.outline.set_visible(False)
-            axis.grid(False)
         for axis in axes[len(named) :]:
             axis.set_visible(False)
 
@@ -135,6 +125,52 @@ def maps(results: Results) -> str | None:
         columns,
         rows,
     )
+
+
+def first_map(results: Results) -> tuple[str, str] | None:
+    """The user's first map in small, with what it is; None of lines alone, or of made-up scans."""
+    if not results.has("topography/spectra.h5", "topography/parameters.json"):
+        return None
+    if results.json("topography/parameters.json").get("synthetic"):
+        return None
+    groups, _, scan_attributes = results.h5("topography/spectra.h5")
+    names = [name for name in sorted(groups) if name.startswith("scans/")]
+    of_maps = [name for name in names if "heights" in groups[name]]
+    if not of_maps:
+        return None
+    first = of_maps[0]
+    size, unit = _size(scan_attributes[first])
+    rms_nm = show(scan_attributes[first].get("rms_nm"))
+
+    def plot(axis):
+        axis.set_xlabel(unit)
+        axis.locator_params(axis="x", nbins=4)
+        _show_map(axis, groups[first]["heights"], size).set_label("height (nm)")
+
+    words = f"Your surface: {first.removeprefix('scans/')}, RMS {rms_nm} nm"
+    if others := len(names) - 1:
+        words += f"; {others} more below"
+    return draw("first-map", "Height map of the surface", plot, (3.6, 2.2)), f"{words}."
+
+
+def _size(attributes: Mapping[str, Any]) -> tuple[float, str]:
+    """Length of a scan in a unit of its size."""
+    size_nm = float(attributes["length_x_nm"])
+    if size_nm >= 1000:
+        return size_nm / 1e3, "µm"
+    return size_nm, "nm"
+
+
+def _show_map(axis: Any, heights: np.ndarray, size: float) -> Any:
+    """Draw a map; returns its colour bar."""
+    heights = _thin(heights)
+    limit = float(np.quantile(np.abs(heights), 0.995))
+    shades = {"cmap": "cividis", "vmin": -limit, "vmax": limit, "interpolation": "none"}
+    image = axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), **shades)
+    bar = axis.figure.colorbar(image, ax=axis, shrink=0.7)
+    bar.outline.set_visible(False)
+    axis.grid(False)
+    return bar
 
 
 def spectra(results: Results) -> str | None:
