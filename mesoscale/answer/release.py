@@ -101,8 +101,7 @@ def answer(model: PadModel) -> Answer:
     InputError : too few of them have an answer.
     """
     solved = [model.points[k] for k in model.solved]
-    never = [reason for reason in model.refused if NEVER_CLOSES in reason]
-    refused = [reason for reason in model.refused if NEVER_CLOSES not in reason]
+    never, refused = _never_and_refused(model)
     if never and len(solved) < FEWEST:
         raise InputError(
             f"device: {len(never)} of {len(model.points)} switches never close: {never[0]}"
@@ -173,6 +172,12 @@ def shrinks_by(known: Array, release: Array) -> float:
     return max(1.0 - remains, 0.0)
 
 
+def _never_and_refused(model: PadModel) -> tuple[list[str], list[str]]:
+    """Reasons of points that the hold voltage never closes, and of those that cannot be solved."""
+    never = [reason for reason in model.refused if NEVER_CLOSES in reason]
+    return never, [reason for reason in model.refused if reason not in never]
+
+
 @dataclass(frozen=True)
 class PartAnswer:
     """What is known of switches of which too many have no answer.
@@ -194,7 +199,7 @@ class PartAnswer:
 def answered_in_part(model: PadModel) -> PartAnswer | None:
     """What is known whatever those without an answer do; None where no switch has one."""
     release = model.states("release_V")
-    refused = len(model.refused)
+    refused = len(_never_and_refused(model)[1])
     if release.size == 0:
         return None
     total = release.size + refused

@@ -42,6 +42,7 @@ NUMBERS: tuple[str, ...] = (
     "stuck_high",
     "switches",
     "no_answer",
+    "never_close",
     "continued",
     "reason",
 )
@@ -201,6 +202,7 @@ def numbers_of(answer: Mapping[str, Any]) -> dict[str, float]:
         "stuck_high": answer["stuck"]["high"],
         "switches": answer["points"],
         "no_answer": len(answer["refused"]),
+        "never_close": answer["never_close"]["value"],
         "continued": answer["deepened"],
     }
 
@@ -215,6 +217,8 @@ def line_of(row: dict[str, Any]) -> str:
         f"{row['device']}: closes at {show(row['pull_in_V'])} V and {does(row['release_V'])}"
         f" {interval}, median ± {show(row['median_error_V'], 1)} V, {row['stuck']:.0%} stick"
     )
+    if row["never_close"]:
+        words += f"; {row['never_close']:.0%} of the devices never close and are left out"
     if row["continued"]:
         words += f"; {row['continued']} of {row['switches']} press harder than their pads were"
     return words
