@@ -101,7 +101,7 @@ def test_a_voltage_below_pull_in_closes_some_of_the_devices(here):
     assert "of the devices never close and are left out" in line_of(half)
     assert few["switches"] < 8
     assert "release_V" not in few
-    assert "no interval: 0% to" in line_of(few)
+    assert "no interval: " in line_of(few)
     assert "switches never close" in line_of(few)
 
 
