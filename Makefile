@@ -1,6 +1,6 @@
 # make run [SCENE=reduced|ci|paper|full|path.yaml] [TARGET=law] [HOURS=100]   set up, then run a scene (12 hours at most)
 # make plan [SCENE=…] [TARGET=…]   which jobs would run and how long they take; runs nothing
-# make test | bench | lint | docs | floors
+# make test | bench | lint | docs | floors | image
 SCENE ?= reduced
 TARGET ?=
 HOURS ?=
@@ -19,7 +19,7 @@ ifneq ($(shell test -w "$$HOME" && echo yes),yes)
 export UV_CACHE_DIR := $(CURDIR)/.uv/cache
 endif
 
-.PHONY: run plan test bench lint docs floors setup docs-setup
+.PHONY: run plan test bench lint docs floors image setup docs-setup
 run: setup
 	@$(RUN) asperity run $(if $(HOURS),--hours "$(HOURS)") "$(SCENE)" $(TARGET)
 
@@ -49,6 +49,9 @@ docs: docs-setup
 
 floors: | $(UV)
 	.ci/floors
+
+image:
+	.ci/container $(BASE)
 
 setup: .venv/.asperity-ready
 

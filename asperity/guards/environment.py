@@ -7,6 +7,7 @@ stays.
 
 import locale
 import os
+import pwd
 import tempfile
 from pathlib import Path
 
@@ -51,6 +52,7 @@ def secure() -> None:
     # in place of `.pyscf_conf.py`, which PySCF would run
     os.environ.setdefault("PYSCF_CONFIG_FILE", str(Path(__file__).with_name("empty_settings")))
     os.environ.setdefault("NUMBA_CACHE_DIR", "")  # beside the code, as without this variable
+    _introduce_user()
     if not _writable(Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")):
         cache = _own_cache()
         os.environ["XDG_CACHE_HOME"] = cache
@@ -67,6 +69,18 @@ def secure() -> None:
         present = [*Path().glob(name)] if "*" in name else [Path(name)]
         if present and os.path.lexists(present[0]):
             raise UnsafeFolder(f"{present[0]}: {why}; move it away, or work in another folder")
+
+
+def _introduce_user() -> None:
+    """Give a name and a home to a user whom the system does not know, as a container's may be;
+    Snakemake would not start.
+    """
+    try:
+        pwd.getpwuid(os.getuid())
+    except KeyError:
+        os.environ.setdefault("USER", str(os.getuid()))
+        if "HOME" not in os.environ:
+            os.environ["HOME"] = _own_cache()
 
 
 def _check_state(path: Path) -> None:

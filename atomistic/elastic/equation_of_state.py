@@ -71,36 +71,63 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
     InputError
         if there are fewer than five different volumes
     """
-    from scipy.optimize import least_squares
-
     volume = np.asarray(volumes_A3, float)
     energy = np.asarray(energies_eV, float)
-    if len(np.unique(volume)) < MIN_POINTS:
-        raise InputError(
-            f"equation of state: {len(np.unique(volume))} different volumes, at least {MIN_POINTS}"
-            " are needed"
-        )
-    if not (np.all(np.isfinite(energy)) and np.all(volume > 0)):
-        raise InputError("equation of state: volumes must be positive and energies finite")
-    flags: list[str] = []
-    centre = volume[np.argmin(energy)]
+    _check(volume, energy)
+    centre = float(volume[np.argmin(energy)])
     basis = np.vander((volume / centre) ** (-2 / 3), 4, increasing=True)
     shift = energy.mean()
     coefficients, *_ = np.linalg.lstsq(basis, energy - shift, rcond=None)
     misfits = basis @ coefficients - (energy - shift)
     residual = float(np.sqrt(np.mean(misfits**2)) * 1000)
-    V0, E0, B, B_prime = _minimum(coefficients, float(centre), volume)
+    V0, E0, B, B_prime = _minimum(coefficients, centre, volume)
     E0 += float(shift)
     if not np.isfinite(V0):
-        flags.append("E(V) has no minimum")
         nan = float("nan")
-        return EquationOfState(nan, nan, nan, nan, nan, residual, len(volume), tuple(flags))
+        no_minimum = ("E(V) has no minimum",)
+        return EquationOfState(nan, nan, nan, nan, nan, residual, len(volume), no_minimum)
+    flags: list[str] = []
     if not volume.min() < V0 < volume.max():
         flags.append(
             f"V0 {V0:.1f} Å3 outside the scanned {volume.min():.1f} to {volume.max():.1f} Å3"
         )
     if not B_PRIME_RANGE[0] <= B_prime <= B_PRIME_RANGE[1]:
         flags.append(f"B' {B_prime:.1f} outside {B_PRIME_RANGE[0]:g} to {B_PRIME_RANGE[1]:g}")
+    unit = EV_PER_A3_IN_GPA
+    B_vinet, settled = _vinet_modulus(volume, energy, V0, E0, B, B_prime)
+    if not settled or abs(B_vinet / B - 1) > FORMS_AGREE:
+        flags.append(
+            f"Birch-Murnaghan {B * unit:.1f} and Vinet {B_vinet * unit:.1f} GPa differ by more than"
+            f" {FORMS_AGREE:.0%}"
+        )
+    error = _modulus_error(volume, energy, centre, coefficients, misfits)
+    # beyond, it says less than the difference of the functionals, 8 % in silicon nitride
+    if not error <= 0.1 * B:
+        flags.append(
+            f"B {B * unit:.0f} +- {error * unit:.0f} GPa: the energies scatter about the fitted"
+            " curve"
+        )
+    moduli = (B * unit, B_prime, B_vinet * unit, error * unit)
+    return EquationOfState(V0, *moduli, residual, len(volume), tuple(flags))
+
+
+def _check(volume: np.ndarray, energy: np.ndarray) -> None:
+    """Refuse points that no curve goes through."""
+    different = len(np.unique(volume))
+    if different < MIN_POINTS:
+        raise InputError(
+            f"equation of state: {different} different volumes, at least {MIN_POINTS} are needed"
+        )
+    if not (np.all(np.isfinite(energy)) and np.all(volume > 0)):
+        raise InputError("equation of state: volumes must be positive and energies finite")
+
+
+def _vinet_modulus(
+    volume: np.ndarray, energy: np.ndarray, V0: float, E0: float, B: float, B_prime: float
+) -> tuple[float, bool]:
+    """B (eV/Å³) by Vinet's equation, from that by Birch and Murnaghan; whether its fit settled."""
+    from scipy.optimize import least_squares
+
     scale = np.ptp(energy) or 1.0
     start_B_prime = 4.0
     if np.isfinite(B_prime):
@@ -111,34 +138,31 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
         fitted = vinet(volume, p[0] * V0, E0 + p[1] * scale, p[2] * B, p[3])
         return (fitted - energy) / scale
 
-    solution = least_squares(misfit, start, method="lm" if len(volume) >= 4 else "trf")
-    B_vinet = float(solution.x[2] * B)
-    if not solution.success or abs(B_vinet / B - 1) > FORMS_AGREE:
-        flags.append(
-            f"Birch-Murnaghan {B * EV_PER_A3_IN_GPA:.1f} and Vinet {B_vinet * EV_PER_A3_IN_GPA:.1f}"
-            f" GPa differ by more than {FORMS_AGREE:.0%}"
-        )
-    # B moves by row k of `slopes` when energy k does
-    step = 1e-6 * scale
+    solution = least_squares(misfit, start, method="lm")
+    return float(solution.x[2] * B), bool(solution.success)
+
+
+def _modulus_error(
+    volume: np.ndarray,
+    energy: np.ndarray,
+    centre: float,
+    coefficients: np.ndarray,
+    misfits: np.ndarray,
+) -> float:
+    """Standard error of B (eV/Å³), where energies scatter about the curve as their misfits do.
+
+    The error is sqrt(sum_k (dB/dE_k)²) times the scatter. The coefficients move by column k of the
+    pseudoinverse when energy k does, and B with them.
+    """
+    basis = np.vander((volume / centre) ** (-2 / 3), 4, increasing=True)
+    step = 1e-6 * (np.ptp(energy) or 1.0)
+    B = _minimum(coefficients, centre, volume)[2]
     slopes = []
     for column in np.linalg.pinv(basis).T:
-        moved = _minimum(coefficients + step * column, float(centre), volume)
+        moved = _minimum(coefficients + step * column, centre, volume)
         slopes.append((moved[2] - B) / step)
     freedom = len(volume) - len(coefficients)
-    error = float(np.linalg.norm(slopes) * np.linalg.norm(misfits) / np.sqrt(freedom))
-    unit = EV_PER_A3_IN_GPA
-    # beyond, it says less than the difference of the functionals, 8 % in silicon nitride
-    if not error <= 0.1 * B:
-        flags.append(
-            f"B {B * unit:.0f} +- {error * unit:.0f} GPa: the energies scatter about the fitted"
-            " curve"
-        )
-    B_GPa = B * unit
-    error_GPa = error * unit
-    flagged = tuple(flags)
-    return EquationOfState(
-        V0, B_GPa, B_prime, B_vinet * unit, error_GPa, residual, len(volume), flagged
-    )
+    return float(np.linalg.norm(slopes) * np.linalg.norm(misfits) / np.sqrt(freedom))
 
 
 def _minimum(

@@ -83,13 +83,11 @@ class LocalPad:
 def _reach_nm(curves: PadCurves) -> float:
     """Largest rise above a computed depth at which opening and closing still differ."""
     same_GPa = SAME * float(curves.closing[0].max())
-    apart = (
-        np.abs(curves.opening.sum(axis=1) - curves.closing.sum(axis=0)) > same_GPa
-    )  # not a number below the depth
-    last = apart.shape[1] - 1 - apart[:, ::-1].argmax(axis=1)
-    return float(
-        np.max(np.where(apart.any(axis=1), curves.separation_nm[last] - curves.depth_nm, 0.0))
-    )
+    difference_GPa = np.abs(curves.opening.sum(axis=1) - curves.closing.sum(axis=0))
+    differ = difference_GPa > same_GPa  # not so below the depth, where there is no number
+    last = differ.shape[1] - 1 - differ[:, ::-1].argmax(axis=1)
+    rises_nm = np.where(differ.any(axis=1), curves.separation_nm[last] - curves.depth_nm, 0.0)
+    return float(rises_nm.max())
 
 
 @njit(cache=True)
@@ -108,43 +106,74 @@ def pad_pressure(
 ):
     """Set net pressure (GPa) and slope (GPa/nm) of a pad at places with a deepest closing of their
     own; all (e, p).
+
+    A place that was closed and has risen since opens along its own curve. All others close: along
+    the curve, and beyond its end with the attraction of the flats.
     """
-    last = at_nm.size - 1
-    depth_step = max(depth_nm[1] - depth_nm[0], 1e-9)  # 1e-9: a pad of one depth
-    rise_step = rise_nm[1] - rise_nm[0]
     for e in range(separation_nm.shape[0]):
         for g in range(separation_nm.shape[1]):
             s = separation_nm[e, g]
             deep = deepest_nm[e, g]
             risen = s - deep
             if risen > 0.0 and deep <= depth_nm[-1] and risen < rise_nm[-1]:
-                x = min(max((deep - depth_nm[0]) / depth_step, 0.0), depth_nm.size - 1 - 1e-9)
-                y = min(max(risen / rise_step, 0.0), rise_nm.size - 1 - 1e-9)
-                i = int(x)
-                j = int(y)
-                share = x - i
-                part = y - j
-                low = (1 - share) * opening[i, j] + share * opening[i + 1, j]
-                high = (1 - share) * opening[i, j + 1] + share * opening[i + 1, j + 1]
-                # opening starts where closing ended, to the last digit: a step there would never
-                # come to rest
-                start = (1 - share) * opening[i, 0] + share * opening[i + 1, 0]
-                place = min(max(np.searchsorted(at_nm, deep) - 1, 0), last - 1)
-                portion = (deep - at_nm[place]) / (at_nm[place + 1] - at_nm[place])
-                ended = closing[place] + portion * (closing[place + 1] - closing[place])
-                alike = start > 0.0 and 0.5 * start < ended < 2.0 * start
-                scale, shift = (ended / start, 0.0) if alike else (1.0, ended - start)
-                fading = shift if risen < FADE_NM else 0.0
-                pressure[e, g] = scale * (low + part * (high - low)) + fading * (
-                    1.0 - risen / FADE_NM
+                ended = _closed(deep, at_nm, closing)
+                pressure[e, g], slope[e, g] = _opened(
+                    deep, risen, ended, depth_nm, rise_nm, opening
                 )
-                slope[e, g] = scale * (high - low) / rise_step - fading / FADE_NM
-            elif s > at_nm[last]:
+            elif s > at_nm[-1]:
                 pressure[e, g] = -hamaker / (6.0 * np.pi * (s + offset_nm) ** 3)
                 slope[e, g] = -3.0 * pressure[e, g] / (s + offset_nm)
             else:
-                place = min(max(np.searchsorted(at_nm, s) - 1, 0), last - 1)
-                slope[e, g] = (closing[place + 1] - closing[place]) / (
-                    at_nm[place + 1] - at_nm[place]
-                )
-                pressure[e, g] = closing[place] + slope[e, g] * (s - at_nm[place])
+                k = _piece(s, at_nm)
+                slope[e, g] = (closing[k + 1] - closing[k]) / (at_nm[k + 1] - at_nm[k])
+                pressure[e, g] = closing[k] + slope[e, g] * (s - at_nm[k])
+
+
+@njit(cache=True)
+def _piece(s, at_nm):
+    """First node of the straight piece at a separation; beyond the ends, of the nearest piece."""
+    return min(max(np.searchsorted(at_nm, s) - 1, 0), at_nm.size - 2)
+
+
+@njit(cache=True)
+def _closed(s, at_nm, closing):
+    """Pressure (GPa) of a pad that closes, at a separation."""
+    k = _piece(s, at_nm)
+    share = (s - at_nm[k]) / (at_nm[k + 1] - at_nm[k])
+    return closing[k] + share * (closing[k + 1] - closing[k])
+
+
+@njit(cache=True)
+def _opened(deep, risen, ended, depth_nm, rise_nm, opening):
+    """Pressure (GPa) and slope of a place that has risen (nm) from its deepest closing.
+
+    Between the nodes of the table the pressure p is bilinear. It starts where closing `ended`, to
+    the last digit: a step there would never come to rest. So p is multiplied by
+    ended / p(risen = 0). A ratio says nothing where push and pull nearly cancel. There the
+    difference is added, and fades over `FADE_NM`.
+    """
+    depth_step = max(depth_nm[1] - depth_nm[0], 1e-9)  # 1e-9: a pad of one depth
+    rise_step = rise_nm[1] - rise_nm[0]
+    x = min(max((deep - depth_nm[0]) / depth_step, 0.0), depth_nm.size - 1 - 1e-9)
+    y = min(max(risen / rise_step, 0.0), rise_nm.size - 1 - 1e-9)
+    i = int(x)
+    j = int(y)
+    u = x - i
+    v = y - j
+
+    # along the depths, at the start of opening and at the rises below and above
+    start = (1 - u) * opening[i, 0] + u * opening[i + 1, 0]
+    low = (1 - u) * opening[i, j] + u * opening[i + 1, j]
+    high = (1 - u) * opening[i, j + 1] + u * opening[i + 1, j + 1]
+
+    if start > 0.0 and 0.5 * start < ended < 2.0 * start:
+        scale = ended / start
+        difference = 0.0
+    else:
+        scale = 1.0
+        difference = ended - start
+    if risen >= FADE_NM:
+        difference = 0.0
+    pressure = scale * (low + v * (high - low)) + difference * (1.0 - risen / FADE_NM)
+    slope = scale * (high - low) / rise_step - difference / FADE_NM
+    return pressure, slope

@@ -13,10 +13,18 @@ MOST_STEPS = 60_000
 """Of a motion to balance."""
 FARTHEST_NM = 100.0
 """Largest step of a place that is far from landing."""
-BEGUN_PER_M, WEAKEST_PER_M, STRONGEST_PER_M = 6.6e4, 66.0, 6.6e20
-"""Stiffnesses that hold a beam back, over the pull of its spring: where it begins and after a turn,
-the least, and that of a step which is gone whatever it does. They are 1e9, 1e6 and 1e25 Pa/m of the
+BEGUN_PER_M = 6.6e4
+"""Damping of a motion (an added stiffness) over the pull of the spring, with which it begins and
+which is its floor after a reversal; 1e9 Pa/m of the default switch."""
+WEAKEST_PER_M = 66.0
+"""Least damping of a step that is tried again; 1e6 Pa/m of the default switch."""
+STRONGEST_PER_M = 6.6e20
+"""With so much damping a step is gone whatever it does, as it leads nowhere; 1e25 Pa/m of the
 default switch."""
+LEAST_GROWTH, LARGEST_GROWTH = 1.5, 10.0
+"""Factors between which the damping grows where a step is tried again."""
+DECAY = 0.3
+"""Factor by which the damping falls after a step of less than half of what is allowed."""
 STILL_NM = 1e-3
 """Last step of a motion that has settled: a thousandth of the length over which a pad's pressure
 changes."""
@@ -73,6 +81,12 @@ def determinant(a, b, c, d, e, f, g, h, i):
 def solve_beam_matrix(blocks, coupling, right, stretching):
     """Solve for the nodes of a beam, whose stretching adds `stretching` times a column times
     itself; in place.
+
+    With K the band of bending and loads, v the column and S the stretching, K x + S v (v x) = f is
+    solved with the growth n of the axial force as one unknown more:
+
+        [ K    v ] [x]   [f]
+        [ S v -1 ] [n] = [0].
 
     Nodes are eliminated one after the other, the last one together with the axial force: there the
     matrix may be singular, as it is where a beam buckles or snaps (W. Govaerts, Numerical Methods
@@ -261,6 +275,40 @@ def deflect(nodal, shape):
     return deflection
 
 
+@njit(cache=True)
+def _longest(moved, s, places, contact_nm, longest_nm):
+    """Largest step (nm) of all places, and the largest step over what is allowed there.
+
+    Allowed is a quarter of the way to landing, but at least `longest_nm` and at most `FARTHEST_NM`.
+    """
+    _, lands, dimple_nm, stopper_nm, _ = places
+    largest_nm = 0.0
+    excess = 0.0
+    for e in range(s.shape[0]):
+        for g in range(s.shape[1]):
+            height_nm = s[e, g] - stopper_nm
+            if lands[e, g] > 0.0:
+                height_nm = s[e, g] - (dimple_nm + contact_nm)
+            allowed_nm = min(max(0.25 * height_nm, longest_nm), FARTHEST_NM)
+            excess = max(excess, abs(moved[e, g]) / allowed_nm)
+            largest_nm = max(largest_nm, abs(moved[e, g]))
+    return largest_nm, excess
+
+
+@njit(cache=True)
+def _remember(deepest_nm, s, places):
+    """Note how deep each place came, and return the lowest separation of places that land."""
+    _, lands, dimple_nm, _, _ = places
+    lowest_nm = np.inf
+    for e in range(s.shape[0]):
+        for g in range(s.shape[1]):
+            if lands[e, g] > 0.0:
+                height_nm = s[e, g] - dimple_nm
+                deepest_nm[e, g] = min(deepest_nm[e, g], height_nm)
+                lowest_nm = min(lowest_nm, height_nm)
+    return lowest_nm
+
+
 @njit(cache=True, nogil=True)  # switches are solved side by side
 def creep(
     nodal,
@@ -274,13 +322,20 @@ def creep(
     contact_nm,
     off_nm,
     free_nm,
-    most_nm,
+    longest_nm,
 ):
     """Let a beam move to balance at one voltage, every place remembering how deep it came; both
     changed in place.
 
-    The beam is held back by an added stiffness that grows where steps are too large: an overdamped
-    motion.
+    The motion is overdamped. Each step is Newton's, with a stiffness added that holds the beam
+    back: its damping, in Pa/m.
+
+    - A step that is too long, or that leads to a balance which is not stable, is tried again with
+      more damping.
+    - After a short step the damping falls, down to a floor.
+    - The curves of a pad are of straight pieces, between which plain steps may go back and forth
+      for ever. So a reversal raises the floor tenfold. Without one the floor sinks, the more slowly
+      the more reversals there were: after ten half as fast.
 
     Parameters
     ----------
@@ -290,77 +345,59 @@ def creep(
     contact_nm : separation at which a place is about to land.
     off_nm : in balance above it, no place is in contact.
     free_nm : a rising beam is off the pad where no place is below this separation.
-    most_nm : largest step of a place in contact.
+    longest_nm : largest step of a place in contact.
     """
     begun = BEGUN_PER_M * spring_Pa
     weakest = WEAKEST_PER_M * spring_Pa
     strongest = STRONGEST_PER_M * spring_Pa
-    inertia = begun
-    least = 0.0
-    turns = 0
-    lowest = np.inf
-    last = np.zeros(nodal.shape[0])
+    damping = begun
+    damping_floor = 0.0
+    reversals = 0
+    lowest_nm = np.inf
+    last_change = np.zeros(nodal.shape[0])
     pressure = np.empty_like(rest_m)
     slope = np.empty_like(rest_m)
     nothing = np.zeros_like(rest_m)
-    _, lands, dimple_nm, stopper_nm, _ = places
+    dimple_nm = places[2]
     s = (rest_m + deflect(nodal, beam[0])) / NM
     for _ in range(MOST_STEPS):
         pad_pressure(s - dimple_nm, deepest_nm, pressure, slope, *pad)
         add_loads(s, pressure, slope, electric, places)
         change, _, work = newton_step(
-            nodal, pressure * GPA, slope * (GPA / NM), nothing, inertia, *beam
+            nodal, pressure * GPA, slope * (GPA / NM), nothing, damping, *beam
         )
         moved = deflect(change, beam[0]) / NM
+        largest_nm, excess = _longest(moved, s, places, contact_nm, longest_nm)
 
-        # the largest step over what is allowed there: a quarter of the way to landing
-        excess = 0.0
-        largest_move = 0.0
-        for e in range(s.shape[0]):
-            for g in range(s.shape[1]):
-                height_nm = s[e, g] - stopper_nm
-                if lands[e, g] > 0.0:
-                    height_nm = s[e, g] - (dimple_nm + contact_nm)
-                allowed = min(max(0.25 * height_nm, most_nm), FARTHEST_NM)
-                excess = max(excess, abs(moved[e, g]) / allowed)
-                largest_move = max(largest_move, abs(moved[e, g]))
-
-        # too far, or towards a balance that is not stable: again, held back more
+        # too far, or towards a balance that is not stable
         if excess > 1.0 or work < 0.0:
-            inertia = max(min(max(1.2 * excess, 1.5), 10.0) * inertia, weakest)
-            if inertia < strongest:
+            growth = min(max(1.2 * excess, LEAST_GROWTH), LARGEST_GROWTH)
+            damping = max(growth * damping, weakest)
+            if damping < strongest:
                 continue
 
-        # go, and remember how deep each place came
         nodal += change
         s += moved
-        before = lowest
-        lowest = np.inf
-        for e in range(s.shape[0]):
-            for g in range(s.shape[1]):
-                if lands[e, g] > 0.0:
-                    deepest_nm[e, g] = min(deepest_nm[e, g], s[e, g] - dimple_nm)
-                    lowest = min(lowest, s[e, g] - dimple_nm)
+        lowest_before_nm = lowest_nm
+        lowest_nm = _remember(deepest_nm, s, places)
         if deepest_nm.min() < pad[0][0]:
             return BEYOND
-        if lowest > free_nm and lowest > before:
+        if lowest_nm > free_nm and lowest_nm > lowest_before_nm:
             return FREE
 
-        # the curves are of straight pieces, between which plain steps may cycle: hold back more
-        # after each turn, and forget it the later the more turns there were: after ten half as fast
-        back = (change[:, 0] * last).sum() < 0.0
-        last = change[:, 0].copy()
-        if back:
-            turns += 1
-            least = max(10.0 * least, begun)
+        reversed_now = (change[:, 0] * last_change).sum() < 0.0
+        last_change = change[:, 0].copy()
+        if reversed_now:
+            reversals += 1
+            damping_floor = max(10.0 * damping_floor, begun)
         else:
-            least = least * (1.0 - 3.0 / (10 + turns))
-        if excess < 0.5 or back:
-            inertia = max(0.3 * inertia, least)
+            damping_floor = damping_floor * (1.0 - 3.0 / (10 + reversals))
+        if excess < 0.5 or reversed_now:
+            damping = max(DECAY * damping, damping_floor)
 
-        unbalanced_Pa = largest_move * NM * inertia
-        if largest_move < STILL_NM and unbalanced_Pa < BALANCED_SHARE * spring_Pa:
-            if lowest < off_nm:
+        unbalanced_Pa = largest_nm * NM * damping
+        if largest_nm < STILL_NM and unbalanced_Pa < BALANCED_SHARE * spring_Pa:
+            if lowest_nm < off_nm:
                 return SETTLED
             return FREE
     return UNSETTLED

@@ -3,13 +3,12 @@
 A line across an isotropic surface of spectrum C(q) has the spectrum (Nayak 1971,
 doi:10.1115/1.3451608; Jacobs, Junge and Pastewka 2017, doi:10.1088/2051-672X/aa51f8)
 
-    C1(k) = integral of C(sqrt(k^2 + p^2)) over all p = 2 integral_k^inf C(q) q dq / sqrt(q^2 -
-    k^2),
+    C1(k) = integral of C(sqrt(k^2 + p^2)) over all p
+          = 2 integral_k^inf C(q) q dq / sqrt(q^2 - k^2),
 
-nm^3 at k in 1/nm. Its inverse takes a derivative of noisy data, and what a power law turns into, a
-factor, fails on a plateau. So C is sought instead whose C1 fits: straight between nodes in log q
-and log C, by Whittle's (Gamma) likelihood, with changes of the logarithmic slope from node to node
-held small.
+in nm^3 at k in 1/nm. Its inverse takes a derivative of noisy data. For a power law it is a factor,
+which is wrong on a plateau. So that C is sought whose C1 fits: straight between nodes in ln q and
+ln C, by Whittle's (Gamma) likelihood. A prior holds small what the slope changes from node to node.
 """
 
 from dataclasses import dataclass
@@ -20,14 +19,31 @@ from mesoscale.errors import InputError
 from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.spectrum import FLOOR, Spectrum
 
-# sine tapers (Riedel and Sidorenko 1995, doi:10.1109/78.365298): n of them give 2 n/(2 n + 1)
-# independent modes per wave number, and spread each over a variance of (n + 1)(2 n + 1)/24 wave
-# numbers
 TAPERS = 3
-MOST_STEPS = 60  # of the fit of a spectrum; most take ten, some creep
-SETTLED = 1e-3  # of ln L: what the last step could gain; it moves ln C by a twentieth of its error
+"""Sine tapers of a line (Riedel and Sidorenko 1995, doi:10.1109/78.365298)."""
 COVER = 2 * TAPERS / (2 * TAPERS + 1)
+"""Independent modes that they give to each wave number."""
 SPREAD = np.sqrt((TAPERS + 1) * (2 * TAPERS + 1) / 24)
+"""Standard deviation, in wave numbers, of what each of these mixes."""
+DECADE = np.log(10)
+NODE_DISTANCE = DECADE / 10
+"""Between nodes of ln C, in ln q."""
+NODES_BEYOND = 15
+"""Nodes above the data, 1.5 decades: short waves lift C1 everywhere."""
+READ_AT = 160
+"""Points at which C is read for one C1, by Gauss and Legendre."""
+BEND_DEVIATION = 0.35
+"""Prior: standard deviation by which the rise of ln C from node to node changes."""
+SLOPE, SLOPE_DEVIATION, SLOPE_NODES = -0.75, 1.5, 5
+"""Prior of d ln C / d ln q, where a line hardly determines it (its plateau), and how many nodes
+share one such slope."""
+MOST_STEPS = 60
+"""Steps of a fit; most take ten, some creep."""
+SETTLED = 1e-3
+"""What the last step could gain in ln L: it moves ln C by a twentieth of its error."""
+ALWAYS_THERE = 0.25
+"""Error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60 lines
+each)."""
 
 
 def line_spectrum(profile: Profile) -> tuple[np.ndarray, np.ndarray]:
@@ -60,12 +76,7 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
         the information left out.
     """
     measured = binned_line(*line_spectrum(profile), low, high)
-    bins, modes = measured.q, measured.modes
-    distance = np.log(10) / 10  # nodes a decade
-    decades = np.log(bins[-1] / bins[0]) / distance
-    count = max(4, int(np.ceil(decades)) + 1)
-    # C is continued for 1.5 decades beyond the data, because short waves lift C1 everywhere
-    nodes = np.log(bins[0]) + distance * np.arange(count + 15)
+    nodes = _nodes(measured.q)
     heights, covariance, settled = _solve(nodes, measured)
     if not settled:
         raise InputError(
@@ -73,23 +84,33 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
             " give a longer or finer profile, or leave it out"
         )
     keep = (nodes >= np.log(low) - 1e-9) & (nodes <= np.log(high) + 1e-9)
-    # errors of neighbouring nodes go together: sums have their error where each node has that of
-    # its row's sum
-    apart = np.abs(nodes[keep][:, None] - nodes[keep])
-    together = apart < 0.5 * np.log(10)
-    variance = np.sum(covariance[np.ix_(keep, keep)] * together, axis=1)
-    # neighbouring nodes, which the smoothing ties, have together no more than the wave numbers that
-    # they lie among
-    near = np.abs(nodes[keep][:, None] - np.log(bins)) < 0.2 * np.log(10)
-    sharing = (apart < 0.2 * np.log(10)).sum(axis=1)
-    worth = np.minimum(1 / np.maximum(variance, 1e-3), near @ modes / sharing)
-    # error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60
-    # lines each)
-    worth /= 1 + worth * 0.25**2
+    modes = _modes(nodes[keep], covariance[np.ix_(keep, keep)], measured)
     nyquist = np.pi / profile.step_nm
     q = np.exp(nodes[keep])
     psd = np.exp(heights[keep])
-    return Spectrum(q, psd, worth, measured.spacing, nyquist, sharp=True)
+    return Spectrum(q, psd, modes, measured.spacing, nyquist, sharp=True)
+
+
+def _nodes(q: np.ndarray) -> np.ndarray:
+    """Nodes of ln C: ln q, evenly from the first of the data to `NODES_BEYOND` above the last."""
+    steps = np.log(q[-1] / q[0]) / NODE_DISTANCE
+    count = max(4, int(np.ceil(steps)) + 1)
+    return np.log(q[0]) + NODE_DISTANCE * np.arange(count + NODES_BEYOND)
+
+
+def _modes(nodes: np.ndarray, covariance: np.ndarray, measured: Spectrum) -> np.ndarray:
+    """Independent modes that the error of ln C at each node (ln q) is worth."""
+    distance = np.abs(nodes[:, None] - nodes)
+    # errors of neighbouring nodes go together: sums have their error where each node has that of
+    # its row's sum
+    together = distance < 0.5 * DECADE
+    variance = np.sum(covariance * together, axis=1)
+    # neighbouring nodes, which the smoothing ties, have together no more than the wave numbers that
+    # they lie among
+    near_bins = np.abs(nodes[:, None] - np.log(measured.q)) < 0.2 * DECADE
+    sharing = (distance < 0.2 * DECADE).sum(axis=1)
+    modes = np.minimum(1 / np.maximum(variance, 1e-3), near_bins @ measured.modes / sharing)
+    return modes / (1 + modes * ALWAYS_THERE**2)
 
 
 def binned_line(k: np.ndarray, c1: np.ndarray, low: float, high: float) -> Spectrum:
@@ -113,9 +134,12 @@ def projected(q: np.ndarray, psd: np.ndarray, k: np.ndarray) -> np.ndarray:
 
 
 def _points(k: np.ndarray, end: float) -> tuple[np.ndarray, np.ndarray]:
-    """Where C is read for C1 at each k (m,), and with which weight: (m, 160) each; q = k cosh t."""
+    """Where C is read for C1 at each k (m,), and with which weight: q = k cosh t.
+
+    Shape (m, `READ_AT`) each.
+    """
     reach = np.arccosh(np.maximum(end / k, 1 + 1e-9))
-    t, w = np.polynomial.legendre.leggauss(160)
+    t, w = np.polynomial.legendre.leggauss(READ_AT)
     t = 0.5 * (t + 1)[None, :] * reach[:, None]
     points = k[:, None] * np.cosh(t)
     return points, points * w[None, :] * reach[:, None]  # 2 * (reach / 2)
@@ -196,13 +220,11 @@ def _model_of(nodes: np.ndarray, measured: Spectrum) -> _LineModel:
 def _prior(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """What is believed of ln C at nodes without the line: `prior` and `pull` of the model."""
     unit = np.eye(len(nodes))
-    # standard deviation of the change of slope times the node distance, from node to node
-    bends = np.diff(unit, 2, axis=0) / 0.35
+    bends = np.diff(unit, 2, axis=0) / BEND_DEVIATION
     rise = np.diff(unit, axis=0) / (nodes[1] - nodes[0])
-    # the logarithmic slope is -0.75 +- 1.5 where a line hardly determines it (its plateau); five
-    # nodes share one
-    prior = bends.T @ bends + rise.T @ rise / (1.5**2 * 5)
-    pull = rise.sum(axis=0) * -0.75 / (1.5**2 * 5)
+    slope_variance = SLOPE_DEVIATION**2 * SLOPE_NODES
+    prior = bends.T @ bends + rise.T @ rise / slope_variance
+    pull = rise.sum(axis=0) * SLOPE / slope_variance
     return prior, pull
 
 

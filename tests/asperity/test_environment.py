@@ -2,6 +2,7 @@
 a scene wrongly.
 """
 
+import getpass
 import os
 import signal
 import subprocess
@@ -134,6 +135,22 @@ def test_a_home_that_is_read_only_costs_nothing(tmp_path, monkeypatch):
     assert folder.parent == tmp_path
     assert folder.stat().st_mode & 0o077 == 0
     assert os.environ["MPLCONFIGDIR"] == os.environ["NUMBA_CACHE_DIR"] == str(folder)
+
+
+def test_a_user_whom_the_system_does_not_know_gets_name_and_home(tmp_path, monkeypatch):
+    """As in a container that runs under the number of another machine's user."""
+
+    def unknown(number):
+        raise KeyError(number)
+
+    for variable in ("HOME", "USER", "LOGNAME", "LNAME", "USERNAME"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setattr("pwd.getpwuid", unknown)
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    secure()
+    assert Path.home().parent == tmp_path
+    assert getpass.getuser() == str(os.getuid())
 
 
 def test_set_up_needs_no_installed_locale_and_no_home(tmp_path):

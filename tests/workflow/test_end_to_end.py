@@ -8,6 +8,7 @@ whose pads are as the central one.
 
 import json
 import shutil
+import zipfile
 from pathlib import Path
 
 import h5py
@@ -144,6 +145,22 @@ def test_every_h5_file_is_complete_and_has_units(finished):
                 name for name, item in datasets(file).items() if "units" not in item.attrs
             ]
             assert not unlabelled, path
+
+
+def test_snakemake_reports_page_figures_and_tables_with_captions(finished):
+    """Snakemake's own report; a missing caption or a page without figures would end it."""
+    done = finished.run("ci", options=("--report", "ci.zip"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    with zipfile.ZipFile(finished.folder / "ci.zip") as archive:
+        names = {Path(name).name for name in archive.namelist()}
+        text = archive.read("ci/report.html").decode()
+    tables = {"inputs.csv", "points.csv", "bulk_moduli.csv", "parameters.csv", "budget.csv"}
+    assert tables | {"report.html"} <= names
+    drawn = {path.name for path in (finished.folder / "results/ci/figures").glob("*.svg")}
+    assert len(drawn) > 8
+    assert drawn <= names
+    for words in ("Table 1 of the paper for this scene", "Figure budget-bars of the report page"):
+        assert words in text
 
 
 def test_a_second_run_has_nothing_to_do(finished):

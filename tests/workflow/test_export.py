@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from asperity.guards.bundle import ROOT
 from mesoscale.contact.cycle import Branch
 from mesoscale.contact.resistance import resistance_Ohm, stiffness_of
 from tests.workflow.made_up_results import write_all
@@ -123,6 +124,29 @@ def test_conductance_is_that_of_barber(exported, results):
     per_area = table["conductance_per_m"] * harmonic_mean
     assert per_area.to_numpy() == pytest.approx(1 / ohm / AREA_M2, rel=1e-12)
     assert table["pressure_Pa"].to_numpy() == pytest.approx(way.force_nN * 1e-9 / AREA_M2)
+
+
+def test_conductance_over_the_gap_is_the_same_curve(exported):
+    """As oofem's S2SThermalContact takes it; the gap rises while the pressure falls."""
+    over_pressure = pd.read_csv(exported / "moose/load_1000_conductance.csv")
+    over_gap = pd.read_csv(exported / "moose/load_1000_conductance_of_gap.csv")
+    assert len(over_gap) > 5
+    same = over_pressure.sort_values("gap_m").drop_duplicates("gap_m")
+    assert np.array_equal(over_gap, same[["gap_m", "conductance_per_m"]])
+
+
+def test_a_finite_element_code_takes_the_conductance(exported, monkeypatch):
+    """The bar of docs/export.md in scikit-fem, against resistances in series."""
+    pytest.importorskip("skfem", reason="scikit-fem of the group dev is not installed")
+    page = (ROOT / "docs/export.md").read_text(encoding="utf-8")
+    (script,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    monkeypatch.chdir(exported)
+    names: dict = {}
+    exec(script, names)
+    table = pd.read_csv("moose/load_7000_conductance.csv")
+    conductance = table["conductance_per_m"] * 30.0
+    series = 100.0 / (1e-3 / 30.0 + 1.0 / conductance)
+    assert np.array(names["flux"]) == pytest.approx(series.to_numpy(), rel=1e-9)
 
 
 def test_the_pad_is_exported_from_each_depth(exported, results):

@@ -7,6 +7,7 @@ import re
 import shutil
 from html.parser import HTMLParser
 from pathlib import Path
+from xml.etree import ElementTree
 
 import matplotlib
 import numpy as np
@@ -18,6 +19,7 @@ from tests.workflow.browser import probed
 from workflow.files.results import write_csv
 from workflow.report.available import Results
 from workflow.report.drawing import draw
+from workflow.report.figures import figures_of
 from workflow.report.gates import gates_of, trust
 from workflow.report.numbers import show
 from workflow.report.page import Figure
@@ -28,6 +30,7 @@ from workflow.report.stages.humidity import describe as describe_humidity
 from workflow.report.stages.inputs import _distribution, stated_beside_computed
 from workflow.report.studies import Error, KnobTable, Value, pareto_front, recommended, tables_of
 
+ROOT = Path(__file__).resolve().parents[2]
 SECTIONS = (
     "hardness",
     "elastic",
@@ -45,6 +48,26 @@ ON_TOP = ("history", "calibration", "accuracy", "stability")
 @pytest.fixture(scope="module")
 def page(page_of):
     return page_of("paper")
+
+
+def test_figures_of_the_page_stand_alone(page):
+    """Each is one whole SVG in colours that any program knows."""
+    figures = figures_of(page)
+    assert len(figures) == len(re.findall(r'id="[\w-]+-figure_1"', page))
+    assert {"budget-bars", "spots", "fig4"} <= figures.keys()
+    for name, picture in figures.items():
+        root = ElementTree.fromstring(picture)
+        assert root.tag == "{http://www.w3.org/2000/svg}svg", name
+        assert not re.search(r"var\(--(?!width)", picture), name
+    assert "#0072b2" in figures["budget-bars"], "the blue of the light page"
+
+
+def test_every_table_of_a_report_has_its_caption_and_none_is_left():
+    rules = "".join(path.read_text() for path in (ROOT / "workflow/rules").glob("*.smk"))
+    tables = set(re.findall(r'captioned\(f"{RESULTS}/([\w/]+)\.csv"\)', rules))
+    folder = ROOT / "workflow/report/captions"
+    captions = {str(file.relative_to(folder).with_suffix("")) for file in folder.rglob("*.rst")}
+    assert tables == captions - {"page", "figure", "workflow"}
 
 
 class Outline(HTMLParser):

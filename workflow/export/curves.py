@@ -60,7 +60,7 @@ def _cell_tables(results: Results) -> Iterator[ContactTable]:
         )
         if branch == "opening":
             way = Branch(**{field.name: group[field.name] for field in fields(Branch)})
-            yield _conductance(curve, way, float(curve_attributes[curve]["e_star"]), area_m2)
+            yield from _conductance(curve, way, float(curve_attributes[curve]["e_star"]), area_m2)
 
 
 def _pad_tables(results: Results) -> Iterator[ContactTable]:
@@ -93,8 +93,11 @@ def _over_gap(name: str, meaning: str, gap_m: Array, pressure_Pa: Array) -> Cont
     return ContactTable(name, meaning, columns)
 
 
-def _conductance(curve: str, opening: Branch, e_star_GPa: float, area_m2: float) -> ContactTable:
-    """Conductance over the repulsive pressure, by the stiffness of the elastic way back.
+def _conductance(
+    curve: str, opening: Branch, e_star_GPa: float, area_m2: float
+) -> Iterator[ContactTable]:
+    """Conductance over the repulsive pressure and over the gap, by the stiffness of the elastic way
+    back.
 
     Times the harmonic mean of the two conductivities it is the conductance of an area: electrical
     in S/m^2, thermal in W/(m^2 K). The equation is that of `mesoscale.contact.resistance`, for
@@ -110,7 +113,10 @@ def _conductance(curve: str, opening: Branch, e_star_GPa: float, area_m2: float)
         "conductance_per_m": stiffness[first] / (e_star_GPa * GPA),
     }
     meaning = f"conductance over conductivity of one cell, opening, curve {curve}"
-    return ContactTable(f"{curve}_conductance", meaning, columns)
+    yield ContactTable(f"{curve}_conductance", meaning, columns)
+    gap_m, first = np.unique(columns["gap_m"], return_index=True)
+    over_gap = {"gap_m": gap_m, "conductance_per_m": columns["conductance_per_m"][first]}
+    yield ContactTable(f"{curve}_conductance_of_gap", meaning, over_gap)
 
 
 def write_comsol(folder: Path, tables: list[ContactTable]) -> None:

@@ -9,7 +9,7 @@ rule answer:
         effects=EFFECTS,
     output:
         switch=f"{RESULTS}/answer/pad_switch.json",
-        budget=f"{RESULTS}/answer/budget.csv",
+        budget=captioned(f"{RESULTS}/answer/budget.csv"),
         errors=f"{RESULTS}/answer/errors.csv",
         verilog=f"{RESULTS}/answer/rough_pad.va",
         spice=f"{RESULTS}/answer/rough_pad.sub",

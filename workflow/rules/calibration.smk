@@ -93,7 +93,7 @@ rule calibration:
         cycles=[f"{RESULTS}/calibration/cycles/chunk_{chunk}.csv" for chunk in MEASUREMENT_CHUNKS],
     output:
         samples=f"{RESULTS}/calibration/samples.csv",
-        summary=f"{RESULTS}/calibration/summary.csv",
+        summary=captioned(f"{RESULTS}/calibration/summary.csv"),
         predictive=f"{RESULTS}/calibration/predictive.csv",
         posterior=f"{RESULTS}/calibration/posterior.json",
     log:

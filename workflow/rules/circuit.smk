@@ -8,7 +8,7 @@ rule circuit:
     output:
         models=directory(f"{RESULTS}/circuit/models"),
         summary=f"{RESULTS}/circuit/circuit.json",
-        table=f"{RESULTS}/circuit/circuit.csv",
+        table=captioned(f"{RESULTS}/circuit/circuit.csv"),
         loop=f"{RESULTS}/circuit/loop.csv",
     log:
         f"{RESULTS}/logs/circuit.log",

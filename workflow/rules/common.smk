@@ -127,6 +127,22 @@ def needed(stage):
     return stage in SCENE.stages()
 
 
+def captioned(table):
+    """A table for `snakemake --report`, with its caption in a file of the same name."""
+    name = Path(table).relative_to(RESULTS).with_suffix("")
+    return report(
+        table,
+        caption=f"../report/captions/{name}.rst",
+        category="Tables",
+        labels={"table": str(name)},
+    )
+
+
+def is_used(proxy):
+    """Is this rule part of the run? A host workflow may exclude one and make its files itself."""
+    return any(rule is proxy.rule for rule in workflow.rules)
+
+
 def of_run(pattern):
     """The file of every closing run."""
     return [f"{RESULTS}/hardness/{pattern.format(run=run)}" for run in CLOSINGS]

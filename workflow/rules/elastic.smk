@@ -108,7 +108,7 @@ rule elastic:
         counter_body=COUNTER_BODY,
     output:
         points=f"{RESULTS}/elastic/points.csv",
-        moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
+        moduli=captioned(f"{RESULTS}/elastic/bulk_moduli.csv"),
         structures=f"{RESULTS}/elastic/structures.csv",
         e_star=f"{RESULTS}/elastic/e_star.json",
         samples=f"{RESULTS}/elastic/e_star.h5",
@@ -123,7 +123,7 @@ rule elastic:
         "../scripts/combine_e_star.py"
 
 
-if needed("elastic"):
+if needed("elastic") and is_used(rules.elastic):
     SHOWN += rules.elastic.output
     KEPT += rules.elastic.input.scans
     KEPT += expand([*rules.make_amorphous.output, *rules.scan_glass.output], amorphous=GLASSES)

@@ -12,7 +12,7 @@ rule failure:
         **PRESSED,
     output:
         rate=f"{RESULTS}/failure/failure.json",
-        table=f"{RESULTS}/failure/failure.csv",
+        table=captioned(f"{RESULTS}/failure/failure.csv"),
     log:
         f"{RESULTS}/logs/failure.log",
     params:

@@ -116,7 +116,7 @@ rule hardness:
         ],
         h_macro=H_MACRO_FILE,
     output:
-        points=f"{RESULTS}/hardness/points.csv",
+        points=captioned(f"{RESULTS}/hardness/points.csv"),
         fit=f"{RESULTS}/hardness/fit.json",
     log:
         f"{RESULTS}/logs/hardness.log",
@@ -131,7 +131,7 @@ rule hardness:
         "../scripts/fit_hardness.py"
 
 
-if needed("hardness"):
+if needed("hardness") and is_used(rules.hardness):
     SHOWN += [*rules.hardness.output, *rules.hardness.input.curves, *rules.hardness.input.witnesses]
     KEPT += [
         *rules.hardness.input.summaries,

@@ -10,7 +10,7 @@ rule history:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
-        cycles=f"{RESULTS}/history/cycles.csv",
+        cycles=captioned(f"{RESULTS}/history/cycles.csv"),
         dwell=f"{RESULTS}/history/dwell.csv",
     log:
         f"{RESULTS}/logs/history.log",

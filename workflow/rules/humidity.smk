@@ -7,7 +7,7 @@ rule humidity:
         required(SCENE.humid, "the air is dry; give inputs.humidity or contact.air"),
         **PRESSED,
     output:
-        f"{RESULTS}/humidity/humidity.csv",
+        captioned(f"{RESULTS}/humidity/humidity.csv"),
     log:
         f"{RESULTS}/logs/humidity.log",
     resources:

@@ -26,7 +26,7 @@ rule inputs:
         **INPUT_STAGES,
         **SAMPLES,
     output:
-        f"{RESULTS}/inputs.csv",
+        captioned(f"{RESULTS}/inputs.csv"),
     log:
         f"{RESULTS}/logs/inputs.log",
     params:

@@ -30,7 +30,7 @@ rule law:
         chunks=[f"{RESULTS}/law/runs/chunk_{chunk}.h5" for chunk in RUN_CHUNKS],
         nominal=f"{RESULTS}/contact/nominal.h5",
     output:
-        parameters=f"{RESULTS}/law/parameters.csv",
+        parameters=captioned(f"{RESULTS}/law/parameters.csv"),
         nominal=f"{RESULTS}/law/nominal.csv",
     log:
         f"{RESULTS}/logs/law.log",

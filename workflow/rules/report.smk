@@ -9,8 +9,20 @@ rule report:
         SHOWN,
         style=STYLE,
     output:
-        page=f"{RESULTS}/report.html",
+        figures=report(
+            directory(f"{RESULTS}/figures"),
+            patterns=["{figure}.svg"],
+            caption="../report/captions/figure.rst",
+            category="Figures",
+            labels={"figure": "{figure}"},
+        ),
         record=f"{RESULTS}/scene.yaml",
+        # last, so that Snakemake dates it last: an older page is one of former results
+        page=report(
+            f"{RESULTS}/report.html",
+            caption="../report/captions/page.rst",
+            category="Page",
+        ),
     log:
         f"{RESULTS}/logs/report.log",
     params:

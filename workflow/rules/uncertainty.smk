@@ -39,8 +39,8 @@ rule uncertainty:
         direct=DIRECT,
         again=[f"{RESULTS}/uncertainty/direct/chunk_again.csv"] if DIRECT else [],
     output:
-        outputs=f"{RESULTS}/uncertainty/outputs.csv",
-        sensitivity=f"{RESULTS}/uncertainty/sensitivity.csv",
+        outputs=captioned(f"{RESULTS}/uncertainty/outputs.csv"),
+        sensitivity=captioned(f"{RESULTS}/uncertainty/sensitivity.csv"),
         surrogate=f"{RESULTS}/uncertainty/surrogate.json",
         samples=f"{RESULTS}/uncertainty/samples.csv",
         validation=f"{RESULTS}/uncertainty/validation.csv",

@@ -1,8 +1,8 @@
 """Write the report page from the result files of the scene's stages, and record what the run
 depends on.
 
-In: result files of all stages that the scene needs. Out: report.html, self-contained; scene.yaml
-with the resolved settings, package versions, git commit.
+In: result files of all stages that the scene needs. Out: report.html, self-contained; figures/, its
+figures as SVG; scene.yaml with the resolved settings, package versions, git commit.
 """
 
 from pathlib import Path
@@ -12,6 +12,7 @@ import yaml
 from asperity.guards.bundle import ROOT
 from workflow.files.results import write_text
 from workflow.report.available import Results
+from workflow.report.figures import figures_of
 from workflow.report.render import render
 from workflow.run.job import job, own_commit, package_versions
 
@@ -29,4 +30,8 @@ with job(snakemake) as run:
     )
     results = [path for path in snakemake.input if path not in set(snakemake.input.style)]
     results += [snakemake.output.record, *snakemake.params.studies]
-    write_text(snakemake.output.page, render(Results(root, results, scene["name"])))
+    page = render(Results(root, results, scene["name"]))
+    Path(snakemake.output.figures).mkdir(exist_ok=True)
+    for name, picture in figures_of(page).items():
+        write_text(f"{snakemake.output.figures}/{name}.svg", picture)
+    write_text(snakemake.output.page, page)
