@@ -217,7 +217,8 @@ def _device_value(word: str, name: str, value: str) -> Any:
     """A value in the shape that the key of the device has."""
     kind = DeviceSettings.model_fields[name].annotation
     choices = [choice for choice in _choices(kind) if isinstance(choice, str)]
-    if choices:
+    or_number = float in _choices(kind) and re.fullmatch(NUMBER, value)
+    if choices and not or_number:
         if value not in choices:
             meant = did_you_mean(value, choices)
             raise InputError(f"{word}: accepted are {', '.join(choices)}{meant}")

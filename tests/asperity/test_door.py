@@ -93,8 +93,17 @@ def test_bodies_have_a_source_and_are_beams():
         DeviceSettings(**body.of_a_beam)
 
 
-def test_a_scene_of_words_is_the_device_that_they_state(tmp_path):
-    stated = device_of(["ends=cantilever", "electrode=0.2:0.8", "material=gold"])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["ends=cantilever", "electrode=0.2:0.8", "material=gold"],
+        ["gap_um=3", "release_at=0.5"],
+        ["release_at=jump"],
+    ],
+)
+def test_a_scene_of_words_is_the_device_that_they_state(tmp_path, words):
+    """Also where the modulus is not stated, which then stays as unknown as it is."""
+    stated = device_of(words)
     path = tmp_path / "words.yaml"
     path.write_text("\n".join(scene_lines(None, material_of(["e_star=Au/SiN"]), stated)))
     device = yaml.safe_load(path.read_text())["device"]

@@ -66,6 +66,7 @@ def test_a_row_has_the_numbers_of_a_run_or_the_reason(here):
         "points": 36,
         "refused": [],
         "deepened": 2,
+        "never_close": {"value": 0.0, "low": 0.0, "high": 0.1},
     }
     place = here / "results/mine/answer/pad_switch.json"
     write_json(place, {"answer": answer, "answer_status": "ok"}, {})
