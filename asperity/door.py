@@ -209,7 +209,9 @@ def scene_lines(
     for name in SCALAR_KEYS:
         value = device.get(name, getattr(defaults, name))
         about = DeviceSettings.model_fields[name].description
-        yield f"  {name}: {_as_yaml(value)}  # {about}"
+        # a modulus that stands in a scene counts as known
+        untold = "# " * (name == "youngs_modulus_GPa" and name not in device)
+        yield f"  {untold}{name}: {_as_yaml(value)}  # {about}"
     if measured := device.get("measured"):
         yield "  measured:  # value and standard error, which narrow the device"
         for name, pair in measured.items():

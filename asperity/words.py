@@ -143,7 +143,12 @@ def _check_accepted(word: str, values: Sequence[float]) -> None:
     for value in values:
         if not about.accepts(value):
             unit = "" if about.unit == "1" else f" {about.unit}"
-            raise InputError(f"{word}: is {value:g}{unit}; accepted is {about.accepted}{unit}")
+            meant = ""
+            if about.unit == "1" and about.accepts(value / 100.0) and not word.endswith("%"):
+                meant = f"; per cent are written {word}%"
+            raise InputError(
+                f"{word}: is {value:g}{unit}; accepted is {about.accepted}{unit}{meant}"
+            )
 
 
 def _modulus_of_bodies(word: str, names: str) -> InputRow:
@@ -192,7 +197,10 @@ def device_of(words: Sequence[str]) -> dict[str, Any]:
     stated = of_material | keys
     if measured:
         stated["measured"] = measured
-    DeviceSettings(**stated)
+    try:
+        DeviceSettings(**stated)
+    except InputError as error:
+        raise InputError(str(error).replace("DeviceSettings:", "device:")) from None
     return stated
 
 
@@ -209,7 +217,8 @@ def _device_value(word: str, name: str, value: str) -> Any:
     """A value in the shape that the key of the device has."""
     kind = DeviceSettings.model_fields[name].annotation
     choices = [choice for choice in _choices(kind) if isinstance(choice, str)]
-    if choices:
+    or_number = float in _choices(kind) and re.fullmatch(NUMBER, value)
+    if choices and not or_number:
         if value not in choices:
             meant = did_you_mean(value, choices)
             raise InputError(f"{word}: accepted are {', '.join(choices)}{meant}")

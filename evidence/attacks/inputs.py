@@ -22,8 +22,8 @@ from mesoscale.contact.cycle import run_cycle
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.curves import PadCurves
-from mesoscale.settings import ContactSettings, DeviceSettings
-from mesoscale.studies.answer_stability import made_up_pad, solved_beam
+from mesoscale.settings import ContactSettings
+from mesoscale.studies.answer_stability import made_up_pad, published_beam, solved_beam
 from mesoscale.switch.beam_switch import BeamStates
 
 __all__ = ["contacts", "devices", "figures", "presses", "rows", "stresses"]
@@ -151,7 +151,7 @@ def devices(seed: int, count: int) -> Iterator[Attack]:
 
 def _copied(rng: np.random.Generator) -> str:
     start, end = np.sort(rng.uniform(0.0, 1.0, 2))
-    settings = DeviceSettings(
+    settings = published_beam(
         ends="cantilever" if rng.random() < 0.3 else "clamped",
         length_um=10.0 ** rng.uniform(1.7, 3),
         width_um=10.0 ** rng.uniform(0.7, 2.5),
@@ -205,7 +205,7 @@ def stresses(seed: int, count: int) -> Iterator[Attack]:
 
 def _swept(rng: np.random.Generator) -> str:
     law = made_up_pad(10.0 ** rng.uniform(-1, 1.3))
-    settings = DeviceSettings(thickness_um=rng.uniform(3.0, 5.0))
+    settings = published_beam(thickness_um=rng.uniform(3.0, 5.0))
     solved = []
     for stress in np.arange(-4.0, 40.0, 1.0):
         at_stress = settings.model_copy(update={"residual_stress_MPa": float(stress)})

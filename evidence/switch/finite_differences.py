@@ -24,7 +24,8 @@ class Beam:
         self.bending = (
             modulus / (1 - settings.poisson_ratio**2 if plate else 1) * self.width * thick**3 / 12
         )
-        self.axial = modulus * self.width * thick / self.length
+        give = 1e-6 * settings.anchor_um_per_N
+        self.axial = 1.0 / (self.length / (modulus * self.width * thick) + give)
         self.tension = (
             settings.residual_stress_MPa * 1e6 * (1 - settings.poisson_ratio) * self.width * thick
         )
@@ -35,10 +36,13 @@ class Beam:
         self.thin = settings.dielectric_nm * 1e-9 / settings.permittivity
         self.edge = settings.fringe / self.width
         one = np.ones(nodes)
-        # fourth difference; a clamped end mirrors the first inner point
+        # fourth difference; a clamped end mirrors the first inner point, and one that turns by
+        # EI w'' = k w' mirrors a part of it
+        give = 2.0 * self.bending * 1e6 * settings.anchor_rad_per_uN_m / self.h
+        mirrored = (1.0 - give) / (1.0 + give)
         self.fourth = np.array([0 * one, -4 * one, 6 * one, -4 * one, 0 * one])
         self.fourth[0], self.fourth[4] = one, one
-        self.fourth[2, 0] = self.fourth[2, -1] = 7.0
+        self.fourth[2, 0] = self.fourth[2, -1] = 6.0 + mirrored
         self.second = np.array([0 * one, one, -2 * one, one, 0 * one])
 
     def times(self, bands, w):

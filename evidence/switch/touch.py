@@ -23,7 +23,7 @@ from evidence.circuit.loop import central_pad
 from mesoscale.pad.curves import Flats, PadCurves
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
-from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.studies.answer_stability import made_up_pad, published_beam
 from mesoscale.switch.beam import beam_of
 from mesoscale.switch.beam_motion import MovingBeam
 
@@ -92,7 +92,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         pads[folder.name] = central_pad(folder)[1]
     for name, pad in pads.items():
         for case, changes in DEVICES.items():
-            settings = DeviceSettings(**changes)
+            settings = published_beam(**changes)
             product = MovingBeam(beam_of(settings), settings, LocalPad(pad)).come_down()
             twin = Differences(settings, pad, given.nodes).pull_in()
             yield {

@@ -19,6 +19,8 @@ from mesoscale.switch import States, switch_of
 from mesoscale.theory.charging import charge_shift
 
 HERE = "this scene's points"
+ANCHORS = ("anchor_um_per_N", "anchor_rad_per_uN_m")
+"""Properties of which `of_own` is a share of what the beam itself has."""
 SETTLE = {"common": "measure it", "each": "control it from device to device"}
 
 
@@ -43,6 +45,8 @@ class Effect(Settings):
     changes: str = key("", "property of the device that it changes")
     factor: float = key(1.0, "times its value")
     step: float = key(0.0, "and so much more")
+    of_own: float = key(0.0, "and so much of what the beam itself gives way by")
+    either_way: bool = key(False, "whether it may as well be so much less")
     to: str = key("", "another choice in place of its value")
 
     @model_validator(mode="after")
@@ -53,6 +57,8 @@ class Effect(Settings):
             )
         if self.changes and self.changes not in DeviceSettings.model_fields:
             raise ValueError(f"changes = {self.changes}: no property of the device")
+        if self.of_own and self.changes not in ANCHORS:
+            raise ValueError(f"of_own is of {' and '.join(ANCHORS)}, not of {self.changes}")
         ways = [
             self.volts,
             self.share,
@@ -270,7 +276,7 @@ def _moved_V(
             return None, "; no answer"
         return abs(other - usual), "; it may stick" * (other == 0.0)
     if effect.changes:
-        return pressed.reach_V(_changed(effect, pressed))
+        return pressed.reach_V(*changed_devices(effect, device, pressed.states.pull_in_V))
     if effect.charge_e_cm2 is not None:
         density = effect.charge_e_cm2 * elementary_charge * 1e4
         return float(charge_shift(density, device.dielectric_nm, device.permittivity)), ""
@@ -280,10 +286,27 @@ def _moved_V(
     return effect.volts if effect.share is None else effect.share * release, ""
 
 
-def _changed(effect: Effect, pressed: _Pressed) -> DeviceSettings:
-    """The device with the property that an effect changes."""
-    device = pressed.device
+def changed_devices(
+    effect: Effect, device: DeviceSettings, pull_in_V: float
+) -> Iterator[DeviceSettings]:
+    """The device with the property that an effect changes, and with the opposite change."""
     if effect.to:
-        return device.model_copy(update={effect.changes: effect.to})
-    value = value_of(device, effect.changes, pressed.states.pull_in_V)
-    return device.model_copy(update={effect.changes: value * effect.factor + effect.step})
+        yield device.model_copy(update={effect.changes: effect.to})
+        return
+    value = value_of(device, effect.changes, pull_in_V)
+    changed = value * effect.factor + effect.step
+    if effect.of_own:
+        changed += effect.of_own * gives_way(device)[effect.changes]
+    yield device.model_copy(update={effect.changes: changed})
+    if effect.either_way:
+        yield device.model_copy(update={effect.changes: 2.0 * value - changed})
+
+
+def gives_way(device: DeviceSettings) -> dict[str, float]:
+    """What a beam itself gives way by, in the units of its anchors: L / (EA) and L / (EI)."""
+    section_um2 = device.width_um * device.thickness_um
+    inertia_um4 = section_um2 * device.thickness_um**2 / 12.0
+    return {
+        "anchor_um_per_N": 1e3 * device.length_um / (device.youngs_modulus_GPa * section_um2),
+        "anchor_rad_per_uN_m": 1e3 * device.length_um / (device.bending_GPa * inertia_um4),
+    }

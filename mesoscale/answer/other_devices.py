@@ -1,5 +1,6 @@
 """Release of the switch at central inputs if one thing were another: a property of the device, for
-who designs it, or the hardness of the contact, for rows of the budget.
+who designs it, the mark of a C-V curve that counts as release, or the hardness of the contact, for
+rows of the budget.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -19,6 +20,8 @@ FACTORS = (0.7, 0.85, 1.2, 1.4)
 """On a property of the device."""
 STRESSES_MPA = (-20.0, -10.0, 10.0, 20.0)
 """On top of the residual stress, which may be 0."""
+SHARES = (0.75, 0.5, 0.25)
+"""Of the held capacitance, whose voltages the page names."""
 HARDNESS_OF_BODY = ("h_macro", "h_prime")
 HARDNESS_OF_FILM = ("h_film",)
 
@@ -84,6 +87,22 @@ def value_of(device: DeviceSettings, key: str, pull_in_V: float) -> float:
     """The device's own value; of what it leaves open, what follows from the rest."""
     value = getattr(device, key)
     return float(pull_in_V if value is None else value)
+
+
+def by_capacitance(device: DeviceSettings, pad: PadCurves) -> list[dict[str, Any]]:
+    """Voltages at which the capacitance has fallen to a share of that while held, and of the jump.
+
+    Returns
+    -------
+    Rows with `release_at` and `release_V`, which is None where the switch has no answer.
+    """
+    rows = []
+    for share in ("jump", *SHARES):
+        other = device.model_copy(update={"release_at": share})
+        release_V = release_or_nan_V(other, pad)
+        known = release_V if np.isfinite(release_V) else None
+        rows.append({"release_at": share, "release_V": known})
+    return rows
 
 
 def release_by_hardness(

@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.answer.known import ENDS, fit_additive, known
-from mesoscale.answer.other_devices import release_by_key
+from mesoscale.answer.other_devices import by_capacitance, release_by_key
 from mesoscale.answer.switches import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.pad.adhesion import adhesion_of
 from mesoscale.pad.curves import attracting
 from mesoscale.switch import release_or_nan_V
+from mesoscale.switch.switch import NEVER_CLOSES
 
 Array = NDArray[np.float64]
 
@@ -29,6 +30,8 @@ ELECTRODES = {"beam": "bending", "plate": "flat"}
 """What the result files call them."""
 SOLVED_SHARE = 0.8
 """Of the points must be solved, since those that cannot be are no random part of them."""
+FEWEST = 8
+"""Switches that close, of which an answer can be."""
 RESAMPLES = 1000
 """Of the points, for the errors of quantiles."""
 
@@ -57,6 +60,10 @@ class Answer:
         of cells.
     sensitivity : by what varies, the largest first.
     points, refused : number of solved switches, and why the others are none.
+    never_close : share of all points that the hold voltage never closes, with its interval; they
+        are no part of the release.
+    pull_in_shrinks_by : share by which the interval of the release shrinks where the pull-in of the
+        device is known.
     deepened : of the solved, those that press harder than their pads were computed.
     cells : of all pads together.
     cells_error_V : root mean square error of a point by its number of cells.
@@ -76,6 +83,8 @@ class Answer:
     sensitivity: tuple[Sensitivity, ...]
     points: int
     refused: tuple[str, ...]
+    never_close: dict[str, float]
+    pull_in_shrinks_by: float
     deepened: int
     cells: int
     cells_error_V: float
@@ -92,10 +101,15 @@ def answer(model: PadModel) -> Answer:
     InputError : too few of them have an answer.
     """
     solved = [model.points[k] for k in model.solved]
-    refused = model.refused
-    if len(solved) < SOLVED_SHARE * len(model.points):
+    never, refused = _never_and_refused(model)
+    if never and len(solved) < FEWEST:
         raise InputError(
-            f"device: {len(refused)} of {len(model.points)} switches cannot be solved: {refused[0]}"
+            f"device: {len(never)} of {len(model.points)} switches never close: {never[0]}"
+        )
+    closing = len(model.points) - len(never)
+    if len(solved) < SOLVED_SHARE * closing:
+        raise InputError(
+            f"device: {len(refused)} of {closing} switches cannot be solved: {refused[0]}"
         )
     release = model.states("release_V")
     stuck = model.states("release_V") == 0.0
@@ -131,6 +145,8 @@ def answer(model: PadModel) -> Answer:
         ),
         len(solved),
         tuple(refused),
+        probability(len(never), len(model.points)),
+        shrinks_by(model.states("pull_in_V"), release),
         int(model.states("deepened").sum()),
         sum(point.pad.count for point in solved if point.pad),
         error_V,
@@ -138,6 +154,28 @@ def answer(model: PadModel) -> Answer:
         fit.noise,
         known(fit, np.array([varies[k] == "common" for k in varying], bool), cells),
     )
+
+
+def shrinks_by(known: Array, release: Array) -> float:
+    """Share by which the interval of the release shrinks where a number of each switch is known;
+    both of shape (m,).
+
+    The release is fitted by the number and its square, and each switch predicted by the others.
+    """
+    if known.std() == 0.0 or release.std() == 0.0 or known.size < FEWEST:
+        return 0.0
+    columns = np.vander((known - known.mean()) / known.std(), 3)
+    inverse = np.linalg.pinv(columns)
+    free = 1.0 - np.einsum("pi,ip->p", columns, inverse)
+    left = (release - columns @ (inverse @ release)) / np.maximum(free, 1e-9)
+    remains = float(np.sqrt(np.mean(left**2))) / float(release.std())
+    return max(1.0 - remains, 0.0)
+
+
+def _never_and_refused(model: PadModel) -> tuple[list[str], list[str]]:
+    """Reasons of points that the hold voltage never closes, and of those that cannot be solved."""
+    never = [reason for reason in model.refused if NEVER_CLOSES in reason]
+    return never, [reason for reason in model.refused if reason not in never]
 
 
 @dataclass(frozen=True)
@@ -161,7 +199,7 @@ class PartAnswer:
 def answered_in_part(model: PadModel) -> PartAnswer | None:
     """What is known whatever those without an answer do; None where no switch has one."""
     release = model.states("release_V")
-    refused = len(model.refused)
+    refused = len(_never_and_refused(model)[1])
     if release.size == 0:
         return None
     total = release.size + refused
@@ -236,11 +274,13 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
     cells_computed = 0
     adhesion = []
     by_key = []
+    falls = []
     if central.pad:
         cells_computed = central.pad.count
         adhesion = [asdict(opened) for opened in adhesion_of(central.pad.curves)]
     if central.pad and central.states:
         by_key = release_by_key(settings, central.pad.curves)
+        falls = by_capacitance(settings, central.pad.curves)
     reasons = _reasons(central)
     return {
         "electrode": ELECTRODES[settings.kind],
@@ -252,6 +292,7 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         ],
         "adhesion": adhesion,
         "by_key": by_key,
+        "by_capacitance": falls,
         "gate": {"passed": not reasons, "reasons": reasons},
         "answer": content,
         "answer_status": status,

@@ -21,8 +21,9 @@ if TYPE_CHECKING:  # rules read settings, and are linted where Snakemake is alon
 REFERENCE_C = 20.0
 """Temperature at which stress and shape at rest are stated."""
 PartOfBeam = tuple[float, float]
-NOTHING = ("measured", None)
-"""A device of which nothing was measured."""
+NOTHING = (("measured", None), ("release_at", "jump"), ("anchor_rad_per_uN_m", 0.0))
+"""Keys that say nothing, and are left out of results."""
+Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 
 
 class SpreadRow(DistributionRow):
@@ -45,20 +46,31 @@ def _normal(deviation: float, source: str = ASSUMED, **what: Any) -> SpreadRow:
     return SpreadRow(distribution="normal", values=(0.0, deviation), source=source, **what)
 
 
+NICKEL_GPa = 152.0
+"""Mean modulus of plated nickel, by the published values of config/materials/plated_nickel.csv."""
+PLATED_NICKEL = SpreadRow(
+    distribution="truncated_normal",
+    values=(0.0, 0.30, -0.6, 0.6),
+    source=(
+        "seven published values of plated nickel, 85 to 205 GPa"
+        " (config/materials/plated_nickel.csv), cut at Voigt's bound of 242 GPa"
+    ),
+    relative=True,
+    varies="common",
+)
+"""Scatter of plated nickel from bath to bath, of a beam whose modulus nobody stated."""
+STATED_MODULUS = _normal(
+    0.05, f"{ASSUMED}; of a modulus that the scene states", relative=True, varies="common"
+)
+"""The same of a modulus that is stated."""
+
+
 class SpreadSettings(Settings):
     """Departures of a device from its stated properties, uncertain inputs (docs/answer.md)."""
 
     thickness_um: SpreadRow | None = _departs("thickness_um", _normal(0.02, relative=True))
     gap_um: SpreadRow | None = _departs("gap_um", _normal(0.02, relative=True))
-    youngs_modulus_GPa: SpreadRow | None = _departs(
-        "youngs_modulus_GPa",
-        _normal(
-            0.05,
-            f"{ASSUMED}; plated nickel has 85 to 205 GPa (Luo et al., Mater. Lett. 58 (2004) 2306)",
-            relative=True,
-            varies="common",
-        ),
-    )
+    youngs_modulus_GPa: SpreadRow | None = _departs("youngs_modulus_GPa", PLATED_NICKEL)
     residual_stress_MPa: SpreadRow | None = _departs("residual_stress_MPa", _normal(5.0))
     dielectric_nm: SpreadRow | None = _departs(
         "dielectric_nm",
@@ -144,7 +156,8 @@ DESIGNED: dict[Kind, tuple[str, ...]] = {
 class DeviceSettings(Settings):
     """Switch driven by the force-separation law (docs/switch.md).
 
-    The defaults are the published fixed-fixed beam of the PRISM capacitive switch.
+    The defaults are the published fixed-fixed beam of the PRISM capacitive switch, of plated
+    nickel.
     """
 
     ends: Literal["clamped", "cantilever"] = key(
@@ -158,7 +171,12 @@ class DeviceSettings(Settings):
         "distance from the beam at rest to the mean plane of the dielectric",
         "(0.01, 1000] um",
     )
-    youngs_modulus_GPa: float = key(89.3, "Young's modulus of the beam", "[0.001, 2000] GPa")
+    youngs_modulus_GPa: float = key(
+        NICKEL_GPa,
+        "Young's modulus of the beam; default: mean of plated nickel, which varies by 30 %; one"
+        " that you state varies by 5 %",
+        "[0.001, 2000] GPa",
+    )
     poisson_ratio: float = key(0.3, "Poisson's ratio of the beam", "[0, 0.5)")
     bends_as: Literal["beam", "plate"] | None = key(
         None,
@@ -181,6 +199,9 @@ class DeviceSettings(Settings):
     )
     anchor_um_per_N: float = key(
         0.0, "how far both anchors together give way to the axial force", "[0, 1e9] um/N"
+    )
+    anchor_rad_per_uN_m: float = key(
+        0.0, "how far each anchor turns under the moment of the beam", "[0, 1e9] rad/(uN m)"
     )
     spring_N_per_m: float | None = key(
         None, "stiffness of a plate of length times width; null: a beam", "[0.001, 1e6] N/m"
@@ -221,14 +242,28 @@ class DeviceSettings(Settings):
     hold_voltage_V: float | None = key(
         None, "voltage of the closed switch; null: its pull-in voltage", "[0.001, 1e4] V"
     )
+    release_at: Literal["jump"] | Share = key(
+        "jump",
+        "which voltage is the release: at the jump open (jump), or where the capacitance has fallen"
+        " to this share of that while held, as in 0.5",
+    )
     measured: MeasuredSettings | None = key(
         None, "what was measured of this device; null: its properties are known by `spread` alone"
     )
 
     @model_serializer(mode="wrap")
     def _without_nothing_measured(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Nothing measured is left out, so that results without it stay as they were."""
-        return {name: value for name, value in dump(self).items() if (name, value) != NOTHING}
+        """What says nothing is left out, so that results without it stay as they were."""
+        return {name: value for name, value in dump(self).items() if (name, value) not in NOTHING}
+
+    @model_validator(mode="after")
+    def _stated_modulus(self) -> "DeviceSettings":
+        """A modulus that is stated departs by less than that of any plated nickel."""
+        name = "youngs_modulus_GPa"
+        if name in self.model_fields_set and name not in self.spread.model_fields_set:
+            narrower = self.spread.model_copy(update={name: STATED_MODULUS})
+            object.__setattr__(self, "spread", narrower)  # frozen from here on
+        return self
 
     @model_validator(mode="after")
     def _measured_of_a_beam(self) -> "DeviceSettings":

@@ -20,7 +20,7 @@ from mesoscale.errors import InputError
 from mesoscale.pad.curves import PadCurves, attracting, deepened, on_deep_enough
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.settings.definitions import RMS_SCATTER
-from mesoscale.studies.answer_stability import SOLVED, TIP, lifted, made_up_pad
+from mesoscale.studies.answer_stability import SOLVED, TIP, lifted, made_up_pad, published_beam
 from mesoscale.studies.driver import HardCase
 from mesoscale.switch.beam import COARSE_ELEMENTS, beam_of, lumped_beam
 from mesoscale.switch.beam_switch import BeamSwitch
@@ -57,7 +57,7 @@ def hard_cases(point: Point, contact: ContactSettings, pad: PadCurves) -> list[H
 def hard_lumps() -> Iterator[HardCase]:
     """Beams with electrode and pad all along, and such as have no lumps."""
     for name, changes in SOLVED.items():
-        settings = DeviceSettings(**changes)
+        settings = published_beam(**changes)
         if not settings.without_lumps:
             yield HardCase(
                 name,
@@ -66,21 +66,21 @@ def hard_lumps() -> Iterator[HardCase]:
                 partial(_lumps, settings, made_up_pad(2.0)),
             )
     for adhesion_kPa in (0.0, 30.0, 300.0, 1e4):
-        judge = partial(_lumps, DeviceSettings(), made_up_pad(adhesion_kPa))
+        judge = partial(_lumps, published_beam(), made_up_pad(adhesion_kPa))
         yield HardCase(
             f"adhesion of {adhesion_kPa:g} kPa", "from none to sticking", CHECK_LUMPS, judge
         )
     refused: dict[str, tuple[Callable[[], Any], str]] = {
         "odd number of lumps": (
-            lambda: lumps_of(DeviceSettings(), 3),
+            lambda: lumps_of(published_beam(), 3),
             "even number of lumps, at least 4, not 3",
         ),
         "cantilever": (
-            lambda: lumps_of(DeviceSettings(**TIP), 8),
+            lambda: lumps_of(published_beam(**TIP), 8),
             "circuits are made of beams clamped at both ends",
         ),
         "plate on a spring": (
-            lambda: central_switch(DeviceSettings(spring_N_per_m=10.0), made_up_pad()),
+            lambda: central_switch(published_beam(spring_N_per_m=10.0), made_up_pad()),
             "circuits are made of bending electrodes",
         ),
     }

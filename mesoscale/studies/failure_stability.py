@@ -15,7 +15,7 @@ from mesoscale.failure.population import FAILURE, Population
 from mesoscale.failure.rate import furthest_allowed, learn
 from mesoscale.pad.curves import PadCurves, attracting
 from mesoscale.settings import DeviceSettings
-from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.studies.answer_stability import made_up_pad, published_beam
 from mesoscale.studies.driver import Array, HardCase
 from mesoscale.switch import switch_of
 from mesoscale.switch.reserve import Attracted
@@ -28,8 +28,8 @@ from mesoscale.uncertainty.rare_events import (
     sample_event,
 )
 
-BEAM = DeviceSettings(hold_voltage_V=80.0)
-PLATE = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)
+BEAM = published_beam(hold_voltage_V=80.0)
+PLATE = published_beam(spring_N_per_m=1e3, hold_voltage_V=160.0)
 PROBABILITIES = (1e-8, 1e-6, 1e-4, 1e-2, 0.1, 0.5, 0.99)
 DIMENSION = 12
 DEVIATIONS = 4.0

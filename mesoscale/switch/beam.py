@@ -68,6 +68,7 @@ class Beam:
     weights_m : length that each integration point stands for, shape (elements, points).
     wired, lands : 1 over the electrode, and over the pad; else 0; shape (elements, points).
     dimple_nm, stopper_nm : heights of what lands on the pad, and of what stands elsewhere.
+    turning_rad_N_m : how far each anchor turns under a moment.
     """
 
     width_m: float
@@ -84,6 +85,7 @@ class Beam:
     lands: Array
     dimple_nm: float = 0.0
     stopper_nm: float = 0.0
+    turning_rad_N_m: float = 0.0
 
     @property
     def elements(self) -> int:
@@ -117,6 +119,13 @@ class Beam:
         )
         unknowns = 2 * self.elements - (0 if self.cantilever else 2)
         weights = self.width_m * self.weights_m
+        rest = self.rest_nodal.copy()
+        for turn in self.turns:
+            element = turn.element
+            shapes[element] = turn.follows.T @ shapes[element]
+            pulled[element] = turn.follows.T @ pulled[element] @ turn.follows
+            bending[element] = turn.follows.T @ bending[element] @ turn.follows + turn.spring
+            rest[turn.node, 1] -= turn.slope(self.rest_nodal)  # it is at rest already
         return (
             shapes,
             self.bending_N_m2 * bending,
@@ -125,9 +134,20 @@ class Beam:
             shapes[:, :, None] * shapes[:, None] * weights[:, None, None],
             self.tension_N,
             self.stretching_N_m,
-            self.rest_nodal,
+            rest,
             unknowns,
         )
+
+    @cached_property
+    def turns(self) -> list["Turn"]:
+        """The anchors that turn."""
+        give_m = self.turning_rad_N_m * self.bending_N_m2
+        if give_m == 0.0:
+            return []
+        first = _turn(float(self.sizes_m[0]), 0, 0, give_m)
+        if self.cantilever:
+            return [first]
+        return [first, _turn(float(self.sizes_m[-1]), self.elements - 1, 1, give_m)]
 
     @property
     def places(self) -> tuple[Array, Array, float, float, float]:
@@ -178,6 +198,49 @@ class Beam:
         pressure, slope = load(self.rest_m + self.deflection_m(nodal))
         other = np.zeros_like(pressure) if other is None else other
         return newton_step(nodal, pressure, slope, other, inertia, *self.mechanics)[:2]
+
+
+@dataclass(frozen=True)
+class Turn:
+    """An anchor that turns: the slope of its end follows the node beside it.
+
+    So the kernels know no slope of an end. In balance of moments it follows bending alone; what
+    tension and load add within one element vanishes with its size.
+
+    Attributes
+    ----------
+    element, node : at the anchor.
+    slope_by : slope of the end by the nodal values of its element, shape (4,).
+    follows : nodal values of the element by those that are free, shape (4, 4).
+    spring : energy of the anchor, as bending of the element with EI = 1, shape (4, 4).
+    """
+
+    element: int
+    node: int
+    slope_by: Array
+    follows: Array
+    spring: Array
+
+    def slope(self, nodal: Array) -> float:
+        """Slope of the end by nodal values, shape (nodes, 2)."""
+        return float(self.slope_by @ nodal[self.element : self.element + 2].ravel())
+
+
+def _turn(size_m: float, element: int, end: int, give_m: float) -> Turn:
+    """The anchor at an end (0 or 1) of an element.
+
+    Parameters
+    ----------
+    give_m : its turn under a moment of 1, times EI.
+    """
+    bending, _ = _stiffness(size_m)
+    outer = 1 + 2 * end
+    inner = slice(0, 2) if end else slice(2, 4)
+    slope_by = np.zeros(4)
+    slope_by[inner] = -bending[outer, inner] * give_m / (bending[outer, outer] * give_m + 1.0)
+    follows = np.eye(4)
+    follows[outer] += slope_by
+    return Turn(element, element + end, slope_by, follows, np.outer(slope_by, slope_by) / give_m)
 
 
 def beam_of(settings: DeviceSettings, elements: int = ELEMENTS) -> Beam:
@@ -265,6 +328,7 @@ def _beam(settings: DeviceSettings, sizes: Array, within: Array, weights: Array)
         lands=nowhere,
         dimple_nm=settings.dimple_nm,
         stopper_nm=settings.stopper_nm,
+        turning_rad_N_m=1e6 * settings.anchor_rad_per_uN_m,
     )
     share = flat.at_m / length_m
     stated = replace(
@@ -349,10 +413,13 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
         )
     moved = np.zeros((stated.elements + 1, 2))
     moved.ravel()[freedoms] = u
+    deflection_m = stated.deflection_m(moved)
+    for turn in stated.turns:
+        moved[turn.node, 1] = turn.slope(moved)
     rested = replace(
         stated,
-        rest_nodal=rest + moved,
-        rest_m=stated.rest_m + stated.deflection_m(moved),
+        rest_nodal=stated.rest_nodal + moved,
+        rest_m=stated.rest_m + deflection_m,
         tension_N=stated.tension_N + more,
     )
     lowest = rested.rest_m / NM - np.where(rested.lands > 0, rested.dimple_nm, rested.stopper_nm)

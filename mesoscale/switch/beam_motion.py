@@ -424,7 +424,15 @@ class MovingBeam:
             f"device: the beam finds no balance at {voltage:.4g} V; this is a fault of the solver"
         )
 
-    def release_V(self, hold_V: float, opening_nm: float, tolerance: float) -> float:
+    def still_held(self, voltage: float, longest_nm: float, least_fF: float) -> bool:
+        """Whether the beam is closed in the balance at a voltage, with this capacitance at least;
+        see `creep`.
+        """
+        return self.creep(voltage, longest_nm) and self.capacitance_fF() >= least_fF
+
+    def release_V(
+        self, hold_V: float, opening_nm: float, tolerance: float, least_fF: float = 0.0
+    ) -> float:
         """Lower the voltage from the held state until the beam lets go; 0 where it sticks.
 
         The voltage is halved in the longer steps of closing until it opens. These may tear off a
@@ -435,15 +443,16 @@ class MovingBeam:
         ----------
         opening_nm : largest step of a place in contact.
         tolerance : relative error.
+        least_fF : capacitance below which it counts as let go.
         """
-        held = self._halved(hold_V)
+        held = self._halved(hold_V, least_fF)
         low_V = None
         while low_V is None or held.voltage - low_V > tolerance * held.voltage:
             if low_V is None:
                 voltage = _lower_V(held.voltage, hold_V)
             else:
                 voltage = 0.5 * (low_V + held.voltage)
-            if self.creep(voltage, opening_nm):
+            if self.still_held(voltage, opening_nm, least_fF):
                 held = self._state(voltage)
                 if voltage == 0.0:
                     return 0.0
@@ -452,7 +461,7 @@ class MovingBeam:
                 self._return_to(held)
         return held.voltage
 
-    def _halved(self, hold_V: float) -> _Held:
+    def _halved(self, hold_V: float, least_fF: float) -> _Held:
         """Halve the voltage until the beam opens, and return to the last voltage but one.
 
         An opening is elastic, so the state at a lower voltage is reached from any higher one.
@@ -461,7 +470,7 @@ class MovingBeam:
         while True:
             before_V = closed[-1].voltage
             voltage = _lower_V(before_V, hold_V)
-            if voltage >= before_V or not self.creep(voltage, CLOSING_NM):
+            if voltage >= before_V or not self.still_held(voltage, CLOSING_NM, least_fF):
                 break
             closed.append(self._state(voltage))
         last_but_one = closed[-2:][0]

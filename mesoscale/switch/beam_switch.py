@@ -136,7 +136,9 @@ class BeamSwitch(Switch):
         return BeamStates(
             pull_in_V=pull_in_V,
             capacitance_fF=capacitance_fF,
-            release_V=moving.release_V(hold_V, self.opening_nm, self.tolerance),
+            release_V=moving.release_V(
+                hold_V, self.opening_nm, self.tolerance, self.held_share * capacitance_fF
+            ),
             touches=touches,
             hold_V=hold_V,
             landed_share=landed_share,
@@ -161,7 +163,10 @@ class BeamSwitch(Switch):
         def still_closed(voltage: float, times: float) -> bool:
             moving = self._on(local.attracting(times, bare))
             moving.nodal = snapped.nodal.copy()
-            return moving.creep(close_V) and moving.creep(voltage, OPENING_NM)
+            if not moving.creep(close_V):
+                return False
+            held_fF = self.held_share * moving.capacitance_fF()
+            return moving.still_held(voltage, OPENING_NM, held_fF)
 
         return still_closed
 

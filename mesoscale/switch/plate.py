@@ -111,15 +111,18 @@ class PlateSwitch(Switch):
         NotComputed : the held state is not on the computed closing curve.
         InputError : the hold voltage does not hold the plate.
         """
-        return closed_on_pad(self.plate, pad, self.settings.hold_voltage_V)
+        return closed_on_pad(self.plate, pad, self.settings.hold_voltage_V, self.held_share)
 
 
-def closed_on_pad(plate: Plate, pad: PadCurves, hold_voltage_V: float | None) -> PlateStates:
+def closed_on_pad(
+    plate: Plate, pad: PadCurves, hold_voltage_V: float | None, held_share: float = 0.0
+) -> PlateStates:
     """Close a plate on a pad, hold it, and release it.
 
     Parameters
     ----------
     hold_voltage_V : voltage of the closed switch; None takes its own pull-in voltage.
+    held_share : of the held capacitance, below which it counts as released.
 
     Raises
     ------
@@ -150,7 +153,10 @@ def closed_on_pad(plate: Plate, pad: PadCurves, hold_voltage_V: float | None) ->
 
     held = brentq(missing_V2, grid[inner], grid[inner + 1])
     hold_nm = float(np.asarray(held))
-    release_V2 = _release_V2(plate, pad, grid, hold_nm)
+    farthest_nm = np.inf
+    if held_share > 0.0:
+        farthest_nm = (hold_nm + plate.dielectric_nm) / held_share - plate.dielectric_nm
+    release_V2 = _release_V2(plate, pad, grid, hold_nm, farthest_nm)
     return PlateStates(
         pull_in_V=_volts(pull_in_V2),
         release_V=_volts(release_V2),
@@ -171,13 +177,21 @@ def _pull_in_V2(
     return float(_balancing_V2(plate, around, pad.closing_GPa(around)).max())
 
 
-def _release_V2(plate: Plate, pad: PadCurves, grid: Array, hold_nm: float) -> float:
+def _release_V2(
+    plate: Plate, pad: PadCurves, grid: Array, hold_nm: float, farthest_nm: float
+) -> float:
     """Square of the voltage at the lowest point of the way up before its barrier, the fold that the
-    way down met, too.
+    way down met, too; up to a separation where it counts as released.
     """
-    rising = np.concatenate([[hold_nm], grid[grid > hold_nm]])
+    further = grid[grid > hold_nm]
+    if farthest_nm < further[-1]:
+        further = np.append(further[further < farthest_nm], farthest_nm)
+    rising = np.concatenate([[hold_nm], further])
     up_V2 = _balancing_V2(plate, rising, pad.opening_GPa(rising, hold_nm))
-    barrier = int(np.argmax(np.where(rising > pad.separation_nm[-1], up_V2, -np.inf)))
+    beyond = rising > pad.separation_nm[-1]
+    barrier = rising.size - 1
+    if beyond.any():
+        barrier = int(np.argmax(np.where(beyond, up_V2, -np.inf)))
     return float(up_V2[: barrier + 1].min())
 
 

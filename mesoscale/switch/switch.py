@@ -26,6 +26,8 @@ MARGIN = 1.25
 """Over what a switch presses with: the mean of the few pilot cells of a pad is off by 15 %."""
 PULL_IN_ERROR = 1e-3
 """Relative error of a pull-in by the number of elements."""
+NEVER_CLOSES = "never closes this switch"
+"""In the reason of a switch that its hold voltage never closes."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,8 @@ class States:
     Attributes
     ----------
     pull_in_V : voltage at which the open switch snaps shut, or touches where that comes first.
-    release_V : voltage at which the closed switch lets go; 0 where it sticks.
+    release_V : voltage at which the closed switch lets go, or has lost the share of its capacitance
+        that `device.release_at` states; 0 where it does not.
     capacitance_fF : while held closed.
     deepened : whether the pad was pressed harder than it was computed, so that its curves were
         continued.
@@ -162,6 +165,12 @@ class Switch(ABC):
         """
         return self.settings.hold_voltage_V or self.pull_in_V
 
+    @property
+    def held_share(self) -> float:
+        """Share of the held capacitance below which the switch counts as released."""
+        share = self.settings.release_at
+        return 0.0 if share == "jump" else share
+
     def least_GPa(self, separation_nm: Array | float) -> Array:
         """Pressure to which its pad is computed at least, at separations of any shape.
 
@@ -197,7 +206,7 @@ def never_closes(settings: DeviceSettings, pull_in_V: float, touches: bool = Fal
         return ""
     closes = "touches" if touches else "pulls in"
     return (
-        f"device.hold_voltage_V = {hold_V:.4g}: never closes this switch, which {closes} at"
+        f"device.hold_voltage_V = {hold_V:.4g}: {NEVER_CLOSES}, which {closes} at"
         f" {pull_in_V:.4g} V; give the largest voltage that it is closed with, or null for pull-in"
         " itself"
     )

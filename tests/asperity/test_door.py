@@ -49,6 +49,7 @@ def test_words_of_an_engineer_are_keys_of_the_device():
         ("gap_um=two", "'two' is no number; write for instance gap_um=2.5"),
         ("gap_um=", "'' is no number"),
         ("gap_u=2", "gap_u is no key of the device; did you mean gap_um?"),
+        ("hold_voltage_V=-5", "device: hold_voltage_V = -5.0: "),
         ("colour=2", "accepted is KEY=VALUE, with a key of material, ends"),
         ("pull_in_V=72", "value and standard error, pull_in_V=72+-2"),
         ("pull_in_V=72+-2%", "pull_in_V is in V, not in %"),
@@ -92,8 +93,17 @@ def test_bodies_have_a_source_and_are_beams():
         DeviceSettings(**body.of_a_beam)
 
 
-def test_a_scene_of_words_is_the_device_that_they_state(tmp_path):
-    stated = device_of(["ends=cantilever", "electrode=0.2:0.8", "material=gold"])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["ends=cantilever", "electrode=0.2:0.8", "material=gold"],
+        ["gap_um=3", "release_at=0.5"],
+        ["release_at=jump"],
+    ],
+)
+def test_a_scene_of_words_is_the_device_that_they_state(tmp_path, words):
+    """Also where the modulus is not stated, which then stays as unknown as it is."""
+    stated = device_of(words)
     path = tmp_path / "words.yaml"
     path.write_text("\n".join(scene_lines(None, material_of(["e_star=Au/SiN"]), stated)))
     device = yaml.safe_load(path.read_text())["device"]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mesoscale.studies.answer_stability import published_beam
 from workflow.files.results import Dataset, write_csv, write_h5, write_json, write_text
 from workflow.schemas import schema_of
 
@@ -279,7 +280,6 @@ def _pad(root: Path) -> None:
     from mesoscale.pad.curves import Flats
     from mesoscale.pad.grid import PadGrid
     from mesoscale.pad.pressed import Pad, curve_rows
-    from mesoscale.settings import DeviceSettings
     from mesoscale.switch import switch_of
 
     area, flats = 1e6, Flats(0.215, 0.165)
@@ -301,9 +301,9 @@ def _pad(root: Path) -> None:
     settled = np.ones(24, bool)
     pad = Pad(grid, np.full(24, 1 / 24), np.ones(24), 40 - shifts, closing, opening, settled, flats)
     _write(root / "pad/curves.csv", curve_rows(pad))
-    states = switch_of(DeviceSettings()).states(pad.curves)
+    states = switch_of(published_beam()).states(pad.curves)
     central = Solved(
-        Point({}, 0.165, DeviceSettings()), pad, states, (states.release_V, states.release_V)
+        Point({}, 0.165, published_beam()), pad, states, (states.release_V, states.release_V)
     )
     model = PadModel(central, Design((), (), np.empty((0, 0)), np.arange(0), ()), ())
     switch = switch_on_pad(model, area) | {"reserve": central_reserve(central)}

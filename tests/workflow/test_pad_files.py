@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from mesoscale.answer.switches import Solved
-from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings import ContactSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch import States
 from tests.mesoscale.answer.test_release import MIDDLE, SEPARATION, TABLE, pad_of_two
 from workflow.run.pads import CURVES, STATES, ScenePoints, UnfitModel, load_model, write_solved
@@ -15,7 +16,7 @@ from workflow.run.pads import CURVES, STATES, ScenePoints, UnfitModel, load_mode
 
 def test_a_model_comes_back_from_its_file_and_from_its_parts(tmp_path):
     """With a point that could not be pressed, and one of whose halves one carries no switch."""
-    points = ScenePoints(TABLE, ContactSettings(mechanics="asperity"), DeviceSettings(), 2)
+    points = ScenePoints(TABLE, ContactSettings(mechanics="asperity"), published_beam(), 2)
     pad = pad_of_two(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1)
     states = States(pull_in_V=70.0, release_V=6.0, capacitance_fF=8e3)
     solved = {
@@ -101,7 +102,7 @@ FORGED = {
 @pytest.mark.parametrize("name", FORGED)
 def test_a_forged_model_is_refused_in_one_line(tmp_path, name):
     """None is believed, and none ends in an error of this program."""
-    points = ScenePoints(TABLE, ContactSettings(mechanics="asperity"), DeviceSettings(), 1)
+    points = ScenePoints(TABLE, ContactSettings(mechanics="asperity"), published_beam(), 1)
     pad = pad_of_two(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1)
     states = States(pull_in_V=70.0, release_V=6.0, capacitance_fF=8e3)
     path = str(tmp_path / "model.h5")

@@ -148,10 +148,10 @@ def test_points_that_cannot_tell_causes_apart_are_refused_before_anything_runs()
     ("device", "words"),
     [
         (
-            "{hold_voltage_V: 40}",
+            "{hold_voltage_V: 40, youngs_modulus_GPa: 89.3}",
             "device.hold_voltage_V = 40: never closes this switch, which pulls in at 75.62 V",
         ),
-        ("{hold_voltage_V: 40, bow_nm: -2000}", ""),
+        ("{hold_voltage_V: 40, bow_nm: -2000, youngs_modulus_GPa: 89.3}", ""),
         (
             "{gap_um: 1, tilt_nm: 2100}",
             "at rest the electrode is -50 nm above what it lands on at its lowest",

@@ -12,7 +12,8 @@ from mesoscale.answer.switches import PadModel, solve_point, solve_points
 from mesoscale.circuit import switches
 from mesoscale.circuit.switches import spread_switches
 from mesoscale.inputs.table import film_table
-from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
+from mesoscale.settings import ContactSettings, InputRow
+from mesoscale.studies.answer_stability import published_beam
 from tests.mesoscale.answer.test_release import pad_of_two, table
 from workflow.files.results import load_csv, write_csv
 from workflow.schemas import STAGES, UnfitTable, schema_of
@@ -177,7 +178,7 @@ def test_switches_for_circuits_fit_their_table_whatever_their_inputs(
 
     for module in (switches, answer_switches):
         monkeypatch.setattr(module, "press_pad", press_pad)
-    contact, device = ContactSettings(mechanics="asperity"), DeviceSettings()
+    contact, device = ContactSettings(mechanics="asperity"), published_beam()
     of_pad = film_table(table(**rows), {}, scatter)
     cutoffs = cutoff_range(of_pad, contact)
     design = plan_points(of_pad, contact, device, 8)

@@ -5,9 +5,18 @@ from types import SimpleNamespace
 
 import pytest
 
-from workflow.report.first import _bands, _conditions, _known, _largest, _unsolved, release_bar
+from workflow.report.first import (
+    _bands,
+    _conditions,
+    _known,
+    _largest,
+    _release,
+    _unsolved,
+    release_bar,
+)
 from workflow.report.gates import _attraction, trust
 from workflow.report.page import Gate
+from workflow.report.stages.circuit import marks
 from workflow.report.verdict import CELLS, verdict
 
 SOUND = [
@@ -156,7 +165,7 @@ def test_no_cause_is_named_where_the_fit_behind_it_explains_little():
     doubted = said(_pad(explained=0.29))
     assert doubted.causes == ()
     assert "explains only 29%" in doubted.no_cause
-    assert doubted.next_step == ""
+    assert doubted.next_step == "More switches might tell what decides it (pad.points)."
     nothing = said(_pad(explained=-0.7))
     assert "64 computed switches are too few to tell" in nothing.no_cause
     assert nothing.next_step == "Compute more switches next (pad.points)."
@@ -210,6 +219,49 @@ def test_switches_without_answer_are_named_with_the_reason_of_the_first():
     words = _unsolved({"points": 126, "refused": ["asperities merge", "another"]})
     assert words.startswith("Of 128 switches, 2 without an answer are left out.")
     assert words.endswith("The reason of the first: asperities merge.")
+
+
+def test_devices_that_never_close_stand_on_the_first_screen():
+    never = {"value": 0.25, "low": 0.15, "high": 0.4}
+    words = _unsolved({"points": 96, "refused": [], "never_close": never})
+    assert words.startswith("25% of the devices never close at the stated hold voltage")
+    assert "15% to 40%" in words
+    none = {"value": 0.0, "low": 0.0, "high": 0.04}
+    assert _unsolved({"points": 96, "refused": [], "never_close": none}) == ""
+
+
+def test_the_next_step_is_to_measure_pull_in_where_that_tells_most():
+    pad = _pad()
+    pad["answer"]["pull_in_shrinks_by"] = 0.45
+    assert "Measure next the pull-in of the device" in said(pad).next_step
+    assert "shrinks the interval by 45%" in said(pad).next_step
+    pad["measured"] = {"measured": {"pull_in_V": {}}}
+    assert said(pad).next_step.startswith("Control next the bow")
+    pad = _pad(electrode="flat")
+    pad["answer"]["pull_in_shrinks_by"] = 0.45
+    assert said(pad).next_step.startswith("Control next the bow")
+
+
+def test_the_page_says_which_voltage_is_the_release():
+    fallen = [{"release_at": "jump", "release_V": 9.3}, {"release_at": 0.5, "release_V": 31.0}]
+    results = _results({"by_capacitance": fallen})
+    results.record = {"scene": {"device": {}}}
+    assert "jumps open" in _release(results)
+    assert "fallen to half before, at 31.0 V" in _release(results)
+    results.record["scene"]["device"]["release_at"] = 0.5
+    assert _release(results).startswith("Release: where the capacitance has fallen to 50%")
+    assert _release(results).endswith("jumps open at 9.30 V, at central inputs.")
+
+
+def test_the_loop_marks_where_it_lands_loses_half_and_opens():
+    """Lands at 70 V, has 50 of 100 left between 30 and 40 V, opens between 0 and 10 V."""
+    up = [1.0, 1.0, 1.0, 1.0, 1.1, 1.2, 1.4, 95.0, 100.0]
+    down = [1.0, 17.0, 20.0, 45.0, 60.0, 70.0, 80.0, 95.0, 100.0]
+    rows = [
+        {"voltage_V": 10.0 * k, "up_central_fF": u, "down_central_fF": d}
+        for k, (u, d) in enumerate(zip(up, down, strict=True))
+    ]
+    assert marks(rows) == {"lands": (70.0, 95.0), "half": (40.0, 60.0), "opens": (10.0, 17.0)}
 
 
 @pytest.mark.parametrize(

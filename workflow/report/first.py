@@ -1,6 +1,6 @@
 """The first screen: the device, its release with the zone where it sticks, causes and next step."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,10 +11,12 @@ from workflow.report.stages.humidity import begins_to_stick
 from workflow.report.stages.topography import first_map
 from workflow.report.verdict import (
     DECIDED,
+    LITTLE,
     Verdict,
     does,
     in_words,
     interval_of,
+    pull_in_shrinks_by,
     verdict,
     volts,
 )
@@ -37,6 +39,7 @@ class First:
     """Pictures and words of the first screen."""
 
     said: Verdict
+    release: str
     pull_in: str
     conditions: str
     humidity: str
@@ -70,6 +73,7 @@ def first_screen(results: Results, gates: Any) -> First | None:
     bands = _bands(answer) if named else {}
     return First(
         said,
+        release=_release(results),
         pull_in=_pull_in(results.json("answer/pad_switch.json")),
         conditions=_conditions(results),
         humidity=begins_to_stick(results.rows("humidity/humidity.csv")),
@@ -84,6 +88,38 @@ def first_screen(results: Results, gates: Any) -> First | None:
     )
 
 
+def _release(results: Results) -> str:
+    """Which voltage is called release, and what a C-V curve shows beside it."""
+    pad = results.json("answer/pad_switch.json")
+    fallen = {row["release_at"]: row["release_V"] for row in pad.get("by_capacitance", ())}
+    share = _release_at(results)
+    if share != "jump":
+        words = (
+            f"Release: where the capacitance has fallen to {share:.0%} of that while held, as the"
+            " voltage falls. It sticks if it never does."
+        )
+        if not fallen.get("jump"):
+            return words
+        return f"{words} The switch jumps open at {show(fallen['jump'])} V, at central inputs."
+    words = (
+        "Release: where the closed switch jumps open as its voltage falls; it sticks if it never"
+        " does."
+    )
+    if not fallen.get(0.5):
+        return words
+    return (
+        f"{words} Its capacitance has fallen to half before, at {show(fallen[0.5])} V at central"
+        " inputs (device.release_at)."
+    )
+
+
+def _release_at(results: Results) -> Any:
+    """What the scene calls release."""
+    if not results.has("scene.yaml"):
+        return "jump"
+    return results.record["scene"]["device"].get("release_at", "jump")
+
+
 def _pull_in(pad: dict[str, Any]) -> str:
     """The voltage that closes it, in words; empty where it is not known."""
     if not pad.get("answer") and not pad["central"]:
@@ -94,8 +130,19 @@ def _pull_in(pad: dict[str, Any]) -> str:
     if pad.get("answer"):
         quantiles = pad["answer"]["pull_in_V"]["quantiles"]
         low, middle, high = (f"{show(quantiles[q])} V" for q in ("0.05", "0.5", "0.95"))
-        return f"It {does} at {middle} {interval_of(low, high)}.{pressed}"
+        return f"It {does} at {middle} {interval_of(low, high)}.{pressed}{_narrowed(pad)}"
     return f"It {does} at {show(pad['central']['pull_in_V'])} V, at central inputs.{pressed}"
+
+
+def _narrowed(pad: dict[str, Any]) -> str:
+    """By how much a measured pull-in narrows the release, in words; empty where it is measured."""
+    shrinks = pull_in_shrinks_by(pad)
+    if shrinks < LITTLE:
+        return ""
+    return (
+        f" Measured of a device (device.measured), it shrinks the interval of its release by"
+        f" {shrinks:.0%}."
+    )
 
 
 def _conditions(results: Results) -> str:
@@ -178,13 +225,24 @@ def _sticking(answer: dict[str, Any]) -> str:
 
 
 def _unsolved(answer: dict[str, Any]) -> str:
-    """That some switches have no answer, which are no random part of them; the reason of the
-    first.
+    """That some switches never close, or have no answer, which are no random part of them; the
+    reason of the first.
     """
-    if not (refused := answer.get("refused")):
-        return ""
+    words = []
+    never = answer.get("never_close")
+    if never and never["value"] > 0.0:
+        words.append(
+            f"{_rate(never['value'])} of the devices never close at the stated hold voltage (95 %"
+            f" interval {_rate(never['low'])} to {_rate(never['high'])}). They are left out."
+        )
+    if refused := answer.get("refused"):
+        words.append(_without_answer(refused, answer["points"]))
+    return " ".join(words)
+
+
+def _without_answer(refused: Sequence[str], solved: int) -> str:
     return (
-        f"Of {answer['points'] + len(refused)} switches, {len(refused)} without an answer are left"
+        f"Of {solved + len(refused)} switches, {len(refused)} without an answer are left"
         f" out. They may be those that stick. The reason of the first: {refused[0]}."
     )
 

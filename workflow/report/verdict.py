@@ -37,6 +37,8 @@ NAMES = {
 CELLS = "number of cells"
 DECIDED = 0.95
 """Probability from which on a switch is said to stick, or to let go."""
+LITTLE = 0.05
+"""Share of the interval: a measurement that takes off less is not named."""
 
 
 @dataclass(frozen=True)
@@ -207,6 +209,16 @@ def _freedom(pad: dict[str, Any]) -> str:
     return f"At central inputs it is freed by: {in_words(nearest['key'])} {value}."
 
 
+def pull_in_shrinks_by(pad: dict[str, Any]) -> float:
+    """Share by which a measured pull-in shrinks the interval of the release; 0 where it is
+    measured, and of a plate, of which it is not.
+    """
+    measured = (pad.get("measured") or {}).get("measured", {})
+    if "pull_in_V" in measured or pad.get("electrode") == "flat":
+        return 0.0
+    return (pad.get("answer") or {}).get("pull_in_shrinks_by", 0.0)
+
+
 def with_unit(value: float, unit: str) -> str:
     """A property of the device or an input, with its unit."""
     if unit == "1":
@@ -243,18 +255,25 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
     freed = ""
     if pad["central"] and pad["central"]["release_V"] == 0.0 and pad.get("reserve"):
         freed = f"{_freedom(pad)} "
-    return f"{freed}{_narrows(answer, no_cause)}{_fewer_stick(pad)}".strip()
+    return f"{freed}{_narrows(pad, no_cause)}{_fewer_stick(pad)}".strip()
 
 
-def _narrows(answer: dict[str, Any], no_cause: str) -> str:
+def _narrows(pad: dict[str, Any], no_cause: str) -> str:
     """What narrows the interval, in a sentence; empty where nothing is known."""
+    answer = pad["answer"]
     rows = answer["sensitivity"]
     if no_cause and answer["explained"] <= 0:
         return "Compute more switches next (pad.points)."
     if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."
     if no_cause:
-        return ""
+        return "More switches might tell what decides it (pad.points)."
+    by_pull_in = pull_in_shrinks_by(pad)
+    if by_pull_in > max(LITTLE, rows[0]["interval_shrinks_by"]):
+        return (
+            "Measure next the pull-in of the device (device.measured): known exactly, it shrinks"
+            f" the interval by {by_pull_in:.0%}."
+        )
     name = rows[0]["name"]
     shrinks = f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}"
     _, measured_name = NAMES.get(name, ("", f"the {in_words(name)}"))

@@ -22,6 +22,8 @@ from mesoscale.answer.switches import PadModel
 from mesoscale.answer.what_if import with_device
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
+from mesoscale.settings.definitions import BY_NAME
+from mesoscale.settings.device import PLATED_NICKEL
 from workflow.report.available import Results, results_in
 from workflow.report.numbers import show
 from workflow.report.verdict import does, interval_of, volts
@@ -41,6 +43,7 @@ NUMBERS: tuple[str, ...] = (
     "stuck_high",
     "switches",
     "no_answer",
+    "never_close",
     "continued",
     "reason",
 )
@@ -119,17 +122,22 @@ def what_if(scene: PressedScene, words: Sequence[str]) -> Iterator[dict[str, Any
     InputError : no key of the device, a value that it does not accept, or another kind of switch.
     """
     keys = values_of(words)
-    if scene.device.measured and set(keys) != {"hold_voltage_V"}:
+    if scene.device.measured and not set(keys) <= {"hold_voltage_V", "release_at"}:
         raise InputError(
             f"{' '.join(words)}: device.measured tells of the device as it is; another one was not"
             " measured"
         )
     known = scene.device.model_dump(mode="json", include=set(keys))
     rows = [({"device": AS_RUN} | known, scene.device)]
+    departs = scene.device.spread.youngs_modulus_GPa
     for values in product(*keys.values()):
         of_keys = dict(zip(keys, values, strict=True))
         changes = [f"{key}={value}" for key, value in of_keys.items()]
-        device = DeviceSettings(**scene.device.model_dump() | device_of(changes))
+        changed = device_of(changes)
+        stated = scene.device.model_dump() | changed
+        if "youngs_modulus_GPa" in changed and departs == PLATED_NICKEL:
+            stated["spread"].pop("youngs_modulus_GPa")  # another metal is no plated nickel
+        device = DeviceSettings(**stated)
         if device.kind != scene.device.kind:
             raise InputError(
                 f"{' '.join(changes)}: another kind of switch; copy the scene, change it and run it"
@@ -149,9 +157,10 @@ def values_of(words: Sequence[str]) -> dict[str, list[str]]:
     keys: dict[str, list[str]] = {}
     for word in words:
         key, _, values = word.removeprefix("device.").partition("=")
-        if "." in key:
+        if "." in key or key in BY_NAME:
             raise InputError(
-                f"{word}: changes what pads are pressed from; copy the scene, change it and run it"
+                f"{word}: changes what pads are pressed from; change it in a copy of the scene, or"
+                " sweep it (asperity sweep)"
             )
         if key in keys:
             raise InputError(f"{word}: {key} is given twice; write {key}=1,2")
@@ -195,6 +204,7 @@ def numbers_of(answer: Mapping[str, Any]) -> dict[str, float]:
         "stuck_high": answer["stuck"]["high"],
         "switches": answer["points"],
         "no_answer": len(answer["refused"]),
+        "never_close": answer["never_close"]["value"],
         "continued": answer["deepened"],
     }
 
@@ -205,10 +215,12 @@ def line_of(row: dict[str, Any]) -> str:
         return f"{row['device']}: no interval: {row['reason']}"
     ends = volts(row["release_5_V"]), volts(row["release_95_V"])
     interval = interval_of(*ends).replace("\u00a0", " ")
-    words = (
-        f"{row['device']}: closes at {show(row['pull_in_V'])} V and {does(row['release_V'])}"
-        f" {interval}, median ± {show(row['median_error_V'], 1)} V, {row['stuck']:.0%} stick"
-    )
+    words = f"{row['device']}: closes at {show(row['pull_in_V'])} V and {does(row['release_V'])}"
+    if row["release_V"]:
+        words += f" ± {show(row['median_error_V'], 1)} V"
+    words += f" {interval}, {row['stuck']:.0%} stick"
+    if row["never_close"]:
+        words += f"; {row['never_close']:.0%} of the devices never close and are left out"
     if row["continued"]:
         words += f"; {row['continued']} of {row['switches']} press harder than their pads were"
     return words

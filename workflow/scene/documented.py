@@ -19,8 +19,9 @@ SCHEMA = ROOT / "config" / "scene.schema.json"
 
 def value_in_json(model: BaseModel, name: str) -> str:
     """The value of a field as a scene may state it: JSON is valid YAML."""
-    dumped = json.loads(model.model_dump_json(include={name}))  # leaves out what nobody measured
-    return json.dumps(dumped.get(name), ensure_ascii=False)
+    # leaves out what says nothing, as a device that nobody measured
+    dumped = json.loads(model.model_dump_json(include={name}))
+    return json.dumps(dumped.get(name, getattr(model, name)), ensure_ascii=False)
 
 
 def documented_defaults() -> str:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -238,9 +239,13 @@ def _cut(text: str) -> str:
     return text if len(text) <= SHOWN else text[: SHOWN - 3] + "..."
 
 
+BRANCH = re.compile(r"__root__|literal\[.*\]|constrained-float")
+"""Steps of a location that say which branch of a type was tried, and are no key."""
+
+
 def _explain(path: Path, error: Any) -> str:
     """One line for one pydantic error."""
-    location = tuple(step for step in error["loc"] if step != "__root__")
+    location = tuple(step for step in error["loc"] if not BRANCH.fullmatch(str(step)))
     key = ".".join(_cut(str(step)) for step in location)
     if error["type"] == "extra_forbidden":
         owner = model_at(location[:-1])

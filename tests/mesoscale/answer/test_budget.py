@@ -9,13 +9,20 @@ import numpy as np
 import pytest
 
 from asperity.guards.foreign_yaml import load_mapping
-from mesoscale.answer.budget import NUMERICAL, TWIN, budget, effects_of, with_twins
+from mesoscale.answer.budget import (
+    NUMERICAL,
+    TWIN,
+    _moved_V,
+    _Pressed,
+    budget,
+    effects_of,
+    with_twins,
+)
 from mesoscale.answer.points import Point
 from mesoscale.answer.switches import Solved
 from mesoscale.errors import InputError
-from mesoscale.settings import DeviceSettings
 from mesoscale.settings.definitions import BY_NAME
-from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.studies.answer_stability import made_up_pad, published_beam
 from mesoscale.switch import switch_of
 
 SHIPPED = load_mapping(Path(__file__).parents[3] / "config" / "effects.yaml", "table of effects")
@@ -64,7 +71,7 @@ def test_what_the_literature_names_stands_in_the_budget_or_is_small_for_a_reason
     named = load_mapping(path, "effects")["effects"]
     known = {
         *effects_of(SHIPPED),
-        *DeviceSettings().varied,
+        *published_beam().varied,
         *BY_NAME,
         "gap_cutoff_nm",
         "law of attraction",
@@ -78,7 +85,7 @@ def test_what_the_literature_names_stands_in_the_budget_or_is_small_for_a_reason
 
 
 def test_every_number_is_that_of_its_own_calculation():
-    device = DeviceSettings(hold_voltage_V=80.0)
+    device = published_beam(hold_voltage_V=80.0)
     switch = central(device)
     rows = {row["effect"]: row for row in budget(effects_of(SHIPPED), SWITCH_CONTENT, switch)}
     release = switch.states.release_V
@@ -102,7 +109,7 @@ def test_every_number_is_that_of_its_own_calculation():
 
 
 def test_a_plate_has_no_stress_and_a_switch_that_sticks_has_no_budget():
-    plate = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)
+    plate = published_beam(spring_N_per_m=1e3, hold_voltage_V=160.0)
     names = {row["effect"] for row in budget(effects_of(SHIPPED), SWITCH_CONTENT, central(plate))}
     assert "hold voltage" in names
     assert not {"temperature", "stress by the package", "curl of the beam"} & names
@@ -124,7 +131,7 @@ def test_the_factor_of_half_the_energies_is_that_of_the_scenes_twins():
     assert told[TWIN].hardness == 0.52
     assert told[TWIN].about == "0.52 [0.46, 0.58] of the hardness, by twins of this scene"
     assert with_twins(effects, []) == effects
-    switch = central(DeviceSettings(hold_voltage_V=80.0))
+    switch = central(published_beam(hold_voltage_V=80.0))
     rows = {
         row["effect"]: row
         for row in budget(told, SWITCH_CONTENT, switch, {1.0: 7.0, 0.52: 0.0, 1.37: 7.5})
@@ -137,7 +144,7 @@ def test_the_factor_of_half_the_energies_is_that_of_the_scenes_twins():
 
 
 def test_numerical_errors_of_the_scene_stand_in_quadrature():
-    switch = central(DeviceSettings(hold_voltage_V=80.0))
+    switch = central(published_beam(hold_voltage_V=80.0))
     rows = budget(
         {},
         SWITCH_CONTENT,
@@ -150,7 +157,7 @@ def test_numerical_errors_of_the_scene_stand_in_quadrature():
 
 
 def test_an_input_of_the_scene_takes_the_place_of_its_row():
-    switch = central(DeviceSettings(hold_voltage_V=80.0))
+    switch = central(published_beam(hold_voltage_V=80.0))
     humid = Solved(
         Point({"humidity": 0.4}, 0.2, switch.point.device), KnownPad, switch.states, (0.0, 0.0)
     )
@@ -161,10 +168,51 @@ def test_an_input_of_the_scene_takes_the_place_of_its_row():
     assert names[0] - names[1] == {"humid air"}
 
 
-def test_anchors_give_way_by_a_tenth_of_the_default_beam():
-    """The row said a tenth and changed a ten-thousandth: 0.00004 V stood for 0.14 V."""
-    row = SHIPPED["anchors that give way"]
-    beam = DeviceSettings()
-    section_um2 = beam.width_um * beam.thickness_um
-    own_um_per_N = 1e3 * beam.length_um / (beam.youngs_modulus_GPa * section_um2)
-    assert row["step"] == pytest.approx(0.1 * own_um_per_N, rel=0.01)
+def volts_of(effect, switch):
+    """Volts of one shipped effect on a switch."""
+    pressed = _Pressed(switch.point.device, KnownPad.curves, switch.states)
+    return _moved_V(effects_of(SHIPPED)[effect], pressed, {})[0]
+
+
+OTHER = published_beam(length_um=400.0, thickness_um=3.0, gap_um=2.5, hold_voltage_V=110.0)
+
+
+@pytest.mark.parametrize(
+    ("effect", "changes"),
+    [
+        # each change stated in words by `about`, here by hand of another beam than the default
+        ("anchors that give way", {"anchor_um_per_N": 0.1 * 400e3 / (89.3 * 123.0 * 3.0)}),
+        (
+            "anchors that turn",
+            {"anchor_rad_per_uN_m": 0.01 * 400e3 / (89.3 / 0.91 * 123.0 * 3.0**3 / 12.0)},
+        ),
+        ("stress by the package", {"residual_stress_MPa": 5.0 / 0.7}),
+        ("mean stress of the film", {"residual_stress_MPa": 75.0}),
+        # stiffness and the load of its own weight scale by 0.75, area by 1 - pi/4 (10/40)^2
+        ("etch holes", {"youngs_modulus_GPa": 89.3 * 0.75 / (1.0 - np.pi / 64.0)}),
+    ],
+)
+def test_what_a_row_is_about_is_what_its_change_does(effect, changes):
+    """The row of the anchors said a tenth and changed a ten-thousandth."""
+    switch = central(OTHER)
+    changed_V = central(OTHER.model_copy(update=changes)).states.release_V
+    moved_V = abs(changed_V - switch.states.release_V)
+    assert volts_of(effect, switch) == pytest.approx(moved_V, rel=0.03, abs=0.01)
+    assert moved_V > 0.02
+
+
+def test_a_length_may_be_longer_or_shorter():
+    releases = [
+        central(OTHER.model_copy(update={"length_um": length})).states.release_V
+        for length in (395.0, 400.0, 405.0)
+    ]
+    assert volts_of("length and undercut of the beam", central(OTHER)) == pytest.approx(
+        releases[0] - releases[2], rel=1e-6
+    )
+
+
+def test_the_contact_potential_is_the_difference_of_two_work_functions():
+    """Michaelson (1977): aluminium 4.28 eV, gold 5.1 eV. It adds to the voltage as it is."""
+    assert SHIPPED["contact potential of the two metals"]["volts"] == pytest.approx(
+        5.1 - 4.28, 0.05
+    )

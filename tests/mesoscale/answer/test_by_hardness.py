@@ -6,14 +6,15 @@ import pytest
 from mesoscale.answer.other_devices import harder, release_by_hardness
 from mesoscale.answer.points import Point
 from mesoscale.answer.switches import press_pad, surfaces_of
-from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings import ContactSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch import release_or_nan_V
 
 VALUES = {
     "hamaker": 0.1, "e_star": 91.0, "h_macro": 2.0, "h_prime": 8.0, "q0": 0.1, "hurst": 0.8,
     "rms": 2.0,
 }  # fmt: skip
-BODY = Point(VALUES, 0.6, DeviceSettings(hold_voltage_V=90.0))
+BODY = Point(VALUES, 0.6, published_beam(hold_voltage_V=90.0))
 FILM = Point(
     {**VALUES, "h_film": 10.0, "t_film": 5.0, "k_film": 0.3, "m_film": 1.2, "h_prime": 0.0},
     0.3,

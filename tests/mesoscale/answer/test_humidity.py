@@ -9,13 +9,14 @@ from mesoscale.answer.switches import PadModel, press_pad, solve_point, solve_po
 from mesoscale.contact.menisci import menisci_of, reach_nm
 from mesoscale.failure.population import Population
 from mesoscale.inputs.table import input_table
-from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
+from mesoscale.settings import ContactSettings, InputRow
 from mesoscale.settings.contact import AirSettings
+from mesoscale.studies.answer_stability import published_beam
 
 CONTACT = ContactSettings(
     mechanics="coupled", pixels=64, q1_per_nm=0.15, attraction="offset", gap_cutoff_nm=0.3
 )
-SWITCH = DeviceSettings(spring_N_per_m=1000.0)
+SWITCH = published_beam(spring_N_per_m=1000.0)
 
 
 def fixed(value: float) -> InputRow:

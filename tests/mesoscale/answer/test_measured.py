@@ -7,7 +7,7 @@ from mesoscale.answer.departures import departed_properties, with_properties
 from mesoscale.answer.measured import narrowed, observed, over_prior, what_remains
 from mesoscale.answer.spread import departures, properties_at, typical
 from mesoscale.errors import InputError
-from mesoscale.settings import DeviceSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch.beam import beam_of
 from mesoscale.switch.resonance import lowest_kHz
 
@@ -16,7 +16,7 @@ FEW = {"bow_nm": None, "tilt_nm": None, "permittivity": None, "dielectric_nm": N
 
 
 def device(**changes):
-    return DeviceSettings(spread=FEW, density_g_cm3=8.9, **changes)
+    return published_beam(spread=FEW, density_g_cm3=8.9, **changes)
 
 
 def properties(found, settings, count=1000):
@@ -28,16 +28,16 @@ def properties(found, settings, count=1000):
 @pytest.mark.parametrize(("ends", "number"), [("clamped", 1.027911), ("cantilever", 0.161540)])
 def test_the_resonance_is_that_of_euler_and_bernoulli(ends, number):
     """f = 1.027911 sqrt(E / rho) t / L^2 clamped at both ends, 0.161540 at one."""
-    settings = DeviceSettings(ends=ends, bends_as="beam")
+    settings = published_beam(ends=ends, bends_as="beam")
     exact = number * np.sqrt(89.3e9 / 8900.0) * 4e-6 / 510e-6**2 / 1e3
     assert lowest_kHz(beam_of(settings, 32), settings) == pytest.approx(exact, rel=1e-5)
 
 
 def test_a_tense_beam_sounds_like_a_string_and_one_about_to_buckle_hardly():
-    tense = DeviceSettings(residual_stress_MPa=2000.0, thickness_um=0.1)
+    tense = published_beam(residual_stress_MPa=2000.0, thickness_um=0.1)
     string = np.sqrt(0.7 * 2000e6 / 8900.0) / (2.0 * 510e-6) / 1e3
     assert lowest_kHz(beam_of(tense, 32), tense) == pytest.approx(string, rel=0.01)
-    near = DeviceSettings(residual_stress_MPa=-28.4)
+    near = published_beam(residual_stress_MPa=-28.4)
     assert lowest_kHz(beam_of(near, 32), near) < 10.0
 
 
@@ -127,7 +127,7 @@ def test_a_doubtful_measurement_is_said_and_kept():
 )
 def test_a_measurement_that_is_none_is_refused_in_one_line(changes, words):
     with pytest.raises(InputError, match=words) as caught:
-        DeviceSettings(**changes)
+        published_beam(**changes)
     assert "\n" not in str(caught.value)
 
 

@@ -13,20 +13,27 @@ from evidence.pad.closed_form import ClosedForm
 from mesoscale.answer import points, switches
 from mesoscale.answer.other_devices import release_by_key
 from mesoscale.answer.points import central_point, plan_points
-from mesoscale.answer.release import _probability, answer, answered_in_part, switch_on_pad
+from mesoscale.answer.release import (
+    _probability,
+    answer,
+    answered_in_part,
+    shrinks_by,
+    switch_on_pad,
+)
 from mesoscale.answer.switches import PadModel, solve_point, solve_points
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.table import input_table
 from mesoscale.pad.curves import closing_alone
 from mesoscale.pad.grid import PadGrid
 from mesoscale.pad.pressed import Pad
-from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
+from mesoscale.settings import ContactSettings, InputRow
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch import switch_of
 from mesoscale.switch.beam_kernels import solve_beam_matrix
 from mesoscale.switch.switch import EDGE
 
 CONTACT = ContactSettings(mechanics="asperity")
-PLATE = DeviceSettings(spring_N_per_m=170.0)
+PLATE = published_beam(spring_N_per_m=170.0)
 RMS = 9.0
 SEPARATION = np.linspace(0.05, 12.0, 1200) * RMS
 MIDDLE = ClosedForm(
@@ -100,7 +107,7 @@ def model_of(settings, count, cells=2):
 
 
 def test_points_fill_what_varies_and_nothing_else():
-    design = plan_points(table(), CONTACT, DeviceSettings(), 40)
+    design = plan_points(table(), CONTACT, published_beam(), 40)
     varying = {design.names[k] for k in design.varying}
     assert {"hamaker", "rms", "gap_cutoff_nm", "bow_nm"} < varying
     assert not {"q0", "hurst"} & varying
@@ -183,6 +190,37 @@ def test_two_points_have_an_answer_that_explains_nothing(known):
     assert said.stuck["high"] > 0.5
 
 
+def test_devices_that_the_hold_never_closes_are_counted_and_left_out(known):
+    """Their share is that of devices whose pull-in on their own pads exceeds the hold."""
+    free = model_of(PLATE.model_copy(update={"hold_voltage_V": None}), 32)
+    pull_in_V = free.states("pull_in_V")
+    hold_V = float(np.quantile(pull_in_V, 0.6))
+    said = answer(model_of(PLATE.model_copy(update={"hold_voltage_V": hold_V}), 32))
+    never = int((pull_in_V > 1.001 * hold_V).sum())
+    assert never > 8
+    assert said.never_close["value"] == never / 32
+    assert said.points == 32 - never
+    assert said.refused == ()
+    assert said.pull_in_V["quantiles"]["0.95"] <= 1.001 * hold_V
+
+
+def test_devices_of_which_hardly_one_closes_have_no_answer(known):
+    with pytest.raises(InputError, match=r"32 of 32 switches never close: .*largest voltage"):
+        answer(model_of(PLATE.model_copy(update={"hold_voltage_V": 20.0}), 32))
+
+
+@pytest.mark.parametrize(("noise", "expected"), [(0.0, 1.0), (0.5, 0.5), (100.0, 0.0)])
+def test_a_known_number_takes_off_what_it_explains(noise, expected):
+    """Of the variance of x + noise, with x of variance 1: 1 - noise / hypot(1, noise)."""
+    rng = np.random.default_rng(0)
+    pull_in = rng.normal(size=2000)
+    release = pull_in + noise * rng.normal(size=2000)
+    exact = 1.0 - noise / np.hypot(1.0, noise)
+    assert exact == pytest.approx(expected, abs=0.06)
+    assert shrinks_by(pull_in, release) == pytest.approx(exact, abs=0.02)
+    assert shrinks_by(np.full(20, 3.0), release[:20]) == 0.0
+
+
 def test_a_pad_that_one_cell_in_a_hundred_carries_is_undecided(monkeypatch):
     """The half of the cells without it has no pressure, so that it cannot carry the switch."""
     law = known_pad(central_point(TABLE, CONTACT, PLATE)).curves
@@ -231,13 +269,13 @@ def test_the_gate_fails_where_halves_of_the_cells_disagree_on_sticking(known):
 
 def test_pads_are_computed_to_more_than_the_plate_can_press():
     s = np.array([10.0, 20.0])
-    plate, beam = switch_of(PLATE).least_GPa(s), switch_of(DeviceSettings()).least_GPa(s)
+    plate, beam = switch_of(PLATE).least_GPa(s), switch_of(published_beam()).least_GPa(s)
     assert (beam > plate).all()
     assert plate[0] > plate[1]
-    assert DeviceSettings(tilt_nm=50.0).level == DeviceSettings()
+    assert published_beam(tilt_nm=50.0).level == published_beam()
 
 
-@pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
+@pytest.mark.parametrize("settings", [PLATE, published_beam()])
 def test_a_pad_that_is_pressed_harder_than_it_was_computed_is_continued(settings):
     local = switch_of(settings).least_GPa(
         SEPARATION
@@ -254,7 +292,7 @@ def test_a_pad_that_is_pressed_harder_than_it_was_computed_is_continued(settings
 def test_a_pad_that_was_closed_far_too_little_stays_refused():
     smooth = replace(MIDDLE, beta=0.0, hamaker=1e-9)
     with pytest.raises(NotComputed, match="where its curves end"):
-        switch_of(DeviceSettings()).states(
+        switch_of(published_beam()).states(
             smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION)
         )
 
@@ -264,7 +302,7 @@ def test_a_pad_that_was_closed_far_too_little_stays_refused():
 )
 def test_pilots_know_what_the_beam_will_press_with(change):
     """From a closing curve that ends too early, within the 15 % by which pilot cells are off."""
-    settings = DeviceSettings().model_copy(update=change)
+    settings = published_beam().model_copy(update=change)
     local = switch_of(settings).least_GPa(SEPARATION)
     short, long = (MIDDLE.pressed(share * local, SEPARATION) for share in (0.6, 3.0))
     switch = switch_of(settings)
@@ -280,10 +318,10 @@ def test_a_pad_closed_nearly_to_its_mean_plane_asks_for_nothing_deeper():
     """
     separation = np.linspace(0.5, 3.0, 20)
     pad = closing_alone(separation, 1e-6 * np.exp(-(separation - 3.0)))
-    assert switch_of(DeviceSettings()).pressed_GPa(pad) == 0.0
+    assert switch_of(published_beam()).pressed_GPa(pad) == 0.0
 
 
-@pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
+@pytest.mark.parametrize("settings", [PLATE, published_beam()])
 def test_a_hold_voltage_that_never_closes_the_switch_is_refused_in_one_line(settings):
     law = MIDDLE.pressed(2.0 * switch_of(settings).least_GPa(SEPARATION), SEPARATION)
     pull_in = switch_of(settings).states(law).pull_in_V
@@ -333,7 +371,7 @@ def test_the_matrix_of_a_beam_that_stretches_is_solved_where_the_beam_alone_is_s
         np.testing.assert_allclose([right[:, 0].ravel(), right[:, 1].ravel()], wanted, rtol=1e-7)
 
 
-@pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
+@pytest.mark.parametrize("settings", [PLATE, published_beam()])
 def test_release_by_key_is_that_of_the_changed_device_and_ends_with_a_reason(settings):
     law = MIDDLE.pressed(2.0 * switch_of(settings).least_GPa(SEPARATION), SEPARATION)
     rows = release_by_key(settings, law)
@@ -362,7 +400,7 @@ def test_release_by_key_has_no_row_where_the_device_has_no_answer():
     smooth = replace(MIDDLE, beta=0.0, hamaker=1e-9)
     assert (
         release_by_key(
-            DeviceSettings(), smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION)
+            published_beam(), smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION)
         )
         == []
     )

@@ -6,12 +6,12 @@ import pytest
 from mesoscale.answer.reserve import _edge_between, bears_times, freed_by_device, reserve_of
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import attracting
-from mesoscale.settings import DeviceSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch import release_or_nan_V, switch_of
 from mesoscale.switch.plate import PlateStates
 from tests.mesoscale.answer.test_release import MIDDLE, PLATE, SEPARATION
 
-SOFT_BEAM = DeviceSettings(thickness_um=2.5, hold_voltage_V=70.0)
+SOFT_BEAM = published_beam(thickness_um=2.5, hold_voltage_V=70.0)
 SOFT_PLATE = PLATE.model_copy(update={"spring_N_per_m": 40.0, "hold_voltage_V": 60.0})
 """Held at a stated voltage: at its own pull-in a stiffer spring also presses harder."""
 
@@ -21,7 +21,7 @@ def pad_under(settings, times):
     return attracting(pad, times)
 
 
-@pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
+@pytest.mark.parametrize("settings", [PLATE, published_beam()])
 def test_the_switch_sticks_just_beyond_the_attraction_that_it_bears(settings):
     pad = pad_under(settings, 1.0)
     times = bears_times(settings, pad)

@@ -12,7 +12,8 @@ from mesoscale.calibration.posterior import Calibration, Model
 from mesoscale.calibration.summary import predictive_rows
 from mesoscale.calibration.voltages import fit_voltages
 from mesoscale.errors import InputError
-from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings import ContactSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch import States
 from tests.mesoscale.calibration.conftest import MAX_FORCE_NN
 
@@ -23,7 +24,7 @@ def pads(prior, count=200, middle_V=20.0):
     """Releases that fall by 2 V a nanometre of RMS, with scatter by the first property of each
     device and by D0.
     """
-    settings = DeviceSettings()
+    settings = published_beam()
     design = plan_points(prior, ContactSettings(mechanics="asperity"), settings, count)
     each = design.varies.index("each")
     d0 = design.names.index("gap_cutoff_nm")

@@ -7,7 +7,8 @@ from mesoscale.answer.points import Point
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.tables import curves_of_tables, tables_of
 from mesoscale.pad.curves import PadCurves
-from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings import ContactSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.studies.circuit_stability import hard_cases
 from mesoscale.switch.beam import lumped_beam
 from tests.mesoscale.circuit.test_tables import pad
@@ -21,7 +22,7 @@ VALUES = {
     "hurst": 0.75,
     "rms": 8.5,
 }
-POINT = Point(VALUES, 0.2, DeviceSettings())
+POINT = Point(VALUES, 0.2, published_beam())
 
 
 def as_pressed(law):
@@ -53,8 +54,8 @@ def test_a_buckled_beam_of_any_number_of_lumps_comes_to_rest(lumps):
     """Short elements near mid-span leave steps of 2e-4 nm by rounding, with which no beam of 48
     came to rest.
     """
-    beam = lumped_beam(DeviceSettings(residual_stress_MPa=-60.0), lumps)
-    few = lumped_beam(DeviceSettings(residual_stress_MPa=-60.0), 8)
+    beam = lumped_beam(published_beam(residual_stress_MPa=-60.0), lumps)
+    few = lumped_beam(published_beam(residual_stress_MPa=-60.0), 8)
     assert beam.tension_N == pytest.approx(few.tension_N, rel=1e-3)
 
 

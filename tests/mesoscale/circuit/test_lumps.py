@@ -17,8 +17,7 @@ from mesoscale.circuit.spice import LUMP, spice_switch
 from mesoscale.circuit.verilog import verilog_lump
 from mesoscale.errors import InputError
 from mesoscale.pad.local import LocalPad
-from mesoscale.settings import DeviceSettings
-from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.studies.answer_stability import made_up_pad, published_beam
 from mesoscale.switch.beam_switch import BeamSwitch
 from mesoscale.switch.plate import PlateSwitch
 from mesoscale.units import GPA, NM, VACUUM_PERMITTIVITY
@@ -31,8 +30,8 @@ from tests.mesoscale.circuit.simulators import (
 )
 from tests.mesoscale.circuit.test_tables import pad
 
-BEAM = DeviceSettings()
-SPRING = PlateSwitch(DeviceSettings(spring_N_per_m=10.0)).plate
+BEAM = published_beam()
+SPRING = PlateSwitch(published_beam(spring_N_per_m=10.0)).plate
 NONE = np.zeros((1, 1))
 PLATE = Lumps(
     np.array([SPRING.gap_nm]),

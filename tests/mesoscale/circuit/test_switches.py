@@ -11,13 +11,14 @@ from mesoscale.circuit import switches
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.switches import CORNERS, central_switch, loops, spread_switches
 from mesoscale.errors import InputError
-from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings import ContactSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch.beam import beam_of
 from mesoscale.switch.beam_switch import BeamSwitch
 from tests.mesoscale.answer.test_release import TABLE, model_of, pad_of_two
 from tests.mesoscale.circuit.test_tables import pad
 
-BEAM = DeviceSettings()
+BEAM = published_beam()
 
 
 def test_corners_lie_beyond_the_draws_in_their_direction(monkeypatch):
@@ -69,4 +70,4 @@ def test_draws_make_the_band_of_the_slow_loop():
 
 def test_a_plate_on_a_spring_has_no_circuit():
     with pytest.raises(InputError, match="circuits are made of bending electrodes"):
-        central_switch(DeviceSettings(spring_N_per_m=10.0), pad())
+        central_switch(published_beam(spring_N_per_m=10.0), pad())

@@ -11,7 +11,7 @@ from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.tables import tables_of
 from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.pad.curves import Flats, PadCurves
-from mesoscale.settings import DeviceSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch import switch_of
 from tests.mesoscale.circuit.simulators import by_ngspice, needs_ngspice, needs_openvaf
 
@@ -128,8 +128,8 @@ def test_the_switch_releases_on_the_table_as_on_the_curves(tmp_path):
     made = PadCurves(
         s, apart([pressed(at, at) for at in s], 20.0 * well(law)), depths, opening, law.flats
     )
-    by_curves = switch_of(DeviceSettings()).states(law)
-    by_table = switch_of(DeviceSettings()).states(made)
+    by_curves = switch_of(published_beam()).states(law)
+    by_table = switch_of(published_beam()).states(made)
     for name in ("pull_in_V", "release_V"):
         assert getattr(by_table, name) == pytest.approx(getattr(by_curves, name), rel=0.01)
 

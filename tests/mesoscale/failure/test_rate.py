@@ -19,14 +19,14 @@ from mesoscale.failure.rate import (
     least_spring,
 )
 from mesoscale.pad.curves import attracting
-from mesoscale.settings import DeviceSettings, FailureSettings
-from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.settings import FailureSettings
+from mesoscale.studies.answer_stability import made_up_pad, published_beam
 from mesoscale.switch import switch_of
 from mesoscale.switch.beam_switch import BeamSwitch
 from mesoscale.switch.reserve import Attracted
 
-BEAM = DeviceSettings(hold_voltage_V=80.0)
-PLATE = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)
+BEAM = published_beam(hold_voltage_V=80.0)
+PLATE = published_beam(spring_N_per_m=1e3, hold_voltage_V=160.0)
 
 
 def test_a_closed_beam_lets_go_where_the_solved_one_does():

@@ -9,7 +9,8 @@ from mesoscale.answer.switches import PadModel, solve_point, solve_points, surfa
 from mesoscale.contact.surface import random_surface, shared_wave
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
 from mesoscale.pad.grid import DEPTHS, LONGEST_STEP_NM, STEP_RMS, PadGrid
-from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings import ContactSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.studies.pad_accuracy import (
     BY_DEPTHS,
     CELLS,
@@ -38,14 +39,14 @@ TABLE = InputTable(
     np.eye(len(DISTRIBUTIONS)),
 )
 CONTACT = ContactSettings(mechanics="asperity", pixels=64)
-POINT = central_point(TABLE, CONTACT, DeviceSettings())
+POINT = central_point(TABLE, CONTACT, published_beam())
 
 
 @pytest.fixture(scope="module")
 def rows():
     """The table, for pads of two cells."""
     central = solve_point(POINT, CONTACT, 8, surfaces_of(0))
-    design = plan_points(TABLE, CONTACT, DeviceSettings(), 32)
+    design = plan_points(TABLE, CONTACT, published_beam(), 32)
     solved = solve_points(list(enumerate(design.points[:1], 1)), CONTACT, 2)
     return list(accuracy_points(PadModel(central, design, tuple(solved) * 32), CONTACT, 2))
 

@@ -8,8 +8,8 @@ from mesoscale.answer import switches
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE
-from mesoscale.settings import DeviceSettings
 from mesoscale.studies import answer_accuracy, circuit_accuracy, failure_accuracy
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch.beam import ELEMENTS
 from mesoscale.switch.beam_kernels import OPENING_NM
 from mesoscale.switch.beam_switch import RELEASE_TOLERANCE
@@ -32,7 +32,7 @@ def tables():
         pressed_as_known(patched)
         for module in STAGES.values():
             patched.setattr(module, "SWITCHES", 2)
-        model = model_of(DeviceSettings(), 2)
+        model = model_of(published_beam(), 2)
         return {stage: list(module.accuracy_points(model)) for stage, module in STAGES.items()}
 
 

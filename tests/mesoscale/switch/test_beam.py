@@ -8,8 +8,7 @@ from evidence.switch import finite_differences
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.curves import PadCurves
 from mesoscale.pad.local import LocalPad
-from mesoscale.settings import DeviceSettings
-from mesoscale.studies.answer_stability import made_up_pad
+from mesoscale.studies.answer_stability import made_up_pad, published_beam
 from mesoscale.switch import switch_of
 from mesoscale.switch.beam import beam_of, euler_MPa, rests_as_stated
 from mesoscale.switch.beam_kernels import elongation
@@ -17,7 +16,7 @@ from mesoscale.switch.beam_motion import MovingBeam
 from mesoscale.switch.beam_switch import BeamSwitch
 from mesoscale.units import VACUUM_PERMITTIVITY
 
-DEFAULT = DeviceSettings(gap_um=2.3)
+DEFAULT = published_beam(gap_um=2.3)
 
 
 def deflection_of(settings, pressure_Pa):
@@ -106,7 +105,7 @@ TABLE = (
 
 @pytest.mark.parametrize(("down_um", "load", "stress_MPa"), TABLE)
 def test_a_beam_that_stretches_is_von_karmans(down_um, load, stress_MPa):
-    beam = beam_of(DeviceSettings(bends_as="beam"), 64)
+    beam = beam_of(published_beam(bends_as="beam"), 64)
     assert exact_load(1e-6 * down_um, beam)[0] == pytest.approx(load, rel=1e-5)
     middle, nodal = loaded(beam, load)
     assert 1e6 * middle == pytest.approx(down_um, rel=1e-4)
@@ -118,7 +117,7 @@ def test_a_beam_that_stretches_is_von_karmans(down_um, load, stress_MPa):
 
 @pytest.mark.parametrize("stress_MPa", [20.0, 300.0])
 def test_a_tense_beam_that_stretches_is_von_karmans(stress_MPa):
-    beam = beam_of(DeviceSettings(residual_stress_MPa=stress_MPa), 128)
+    beam = beam_of(published_beam(residual_stress_MPa=stress_MPa), 128)
     for down_m in (1e-6, 4e-6):
         assert loaded(beam, exact_load(down_m, beam, beam.tension_N)[0])[0] == pytest.approx(
             down_m, rel=1e-4
@@ -127,7 +126,7 @@ def test_a_tense_beam_that_stretches_is_von_karmans(stress_MPa):
 
 @pytest.mark.parametrize("bow_nm", [-800.0, 300.0, 2000.0])
 def test_a_bowed_beam_stretches_as_finite_differences_say(bow_nm):
-    settings = DeviceSettings(bow_nm=bow_nm, residual_stress_MPa=8.0)
+    settings = published_beam(bow_nm=bow_nm, residual_stress_MPa=8.0)
     beam, twin = beam_of(settings, 64), finite_differences.Beam(settings, 799)
     w = np.zeros_like(twin.gap)
     for _ in range(80):
@@ -136,7 +135,7 @@ def test_a_bowed_beam_stretches_as_finite_differences_say(bow_nm):
 
 
 def test_anchors_that_give_way_soften_the_stretching():
-    rigid, soft = (beam_of(DeviceSettings(anchor_um_per_N=give), 16) for give in (0.0, 20.0))
+    rigid, soft = (beam_of(published_beam(anchor_um_per_N=give), 16) for give in (0.0, 20.0))
     own = 510e-6 / (89.3e9 * 123e-6 * 4e-6)
     assert rigid.stretching_N_m == pytest.approx(1.0 / own)
     assert soft.stretching_N_m == pytest.approx(1.0 / (own + 20e-6))
@@ -149,7 +148,7 @@ def test_a_beam_buckles_to_the_known_height_and_force(stress_MPa, side):
     """h = 2 L / pi sqrt((sigma - sigma_E) / E) at Euler's force, which is -18.1 MPa of the default
     beam.
     """
-    settings = DeviceSettings(
+    settings = published_beam(
         bends_as="beam", residual_stress_MPa=stress_MPa, buckled=side, gap_um=60.0
     )
     euler = np.pi**2 * 89.3e3 * (4.0 / 510.0) ** 2 / 3.0
@@ -167,7 +166,7 @@ def test_a_beam_buckles_to_the_known_height_and_force(stress_MPa, side):
 def test_a_bow_decides_nothing_of_the_side_that_is_stated():
     """(-b +- sqrt(b^2 + 4 h^2)) / 2 of a bow b at rest, by the first mode."""
     for bow, side in ((300.0, "down"), (-300.0, "up")):
-        settings = DeviceSettings(residual_stress_MPa=-60.0, bow_nm=bow, buckled=side, gap_um=20.0)
+        settings = published_beam(residual_stress_MPa=-60.0, bow_nm=bow, buckled=side, gap_um=20.0)
         flat = beam_of(settings.model_copy(update={"bow_nm": 0.0}), 64).rest_nodal[32, 0] * 1e9
         sign = np.sign(flat)
         wanted = 0.5 * (-bow + sign * np.sqrt(bow**2 + 4.0 * flat**2))
@@ -176,15 +175,15 @@ def test_a_bow_decides_nothing_of_the_side_that_is_stated():
 
 def test_heat_is_a_stress_and_moves_a_bow():
     """-E da dT; a bow grows by 1 / (1 - sigma / sigma_E) while it is small."""
-    hot = DeviceSettings(temperature_C=25.0)
+    hot = published_beam(temperature_C=25.0)
     assert hot.heating_MPa == pytest.approx(-89.3e3 * 10.8e-6 * 5.0)
-    stressed = DeviceSettings(residual_stress_MPa=hot.heating_MPa / 0.7)
+    stressed = published_beam(residual_stress_MPa=hot.heating_MPa / 0.7)
     assert switch_of(hot).pull_in_V == pytest.approx(switch_of(stressed).pull_in_V, rel=1e-6)
     bowed = beam_of(hot.model_copy(update={"bow_nm": 10.0}), 64)
     assert 1e9 * bowed.rest_nodal[32, 0] == pytest.approx(
         10.0 / (1.0 + hot.heating_MPa / euler_MPa(hot)), rel=1e-3
     )
-    cantilever = DeviceSettings(ends="cantilever", temperature_C=200.0, residual_stress_MPa=-300.0)
+    cantilever = published_beam(ends="cantilever", temperature_C=200.0, residual_stress_MPa=-300.0)
     cold = cantilever.model_copy(update={"temperature_C": 20.0, "residual_stress_MPa": 0.0})
     assert switch_of(cantilever).pull_in_V == switch_of(cold).pull_in_V
 
@@ -212,7 +211,7 @@ def test_published_bridges_pull_in_within_3_percent(length_um, stress_MPa, volts
     }
     silicon = {"youngs_modulus_GPa": 169.0, "poisson_ratio": 0.06}
     assert switch_of(
-        DeviceSettings(**bridge, **silicon, residual_stress_MPa=stress_MPa)
+        published_beam(**bridge, **silicon, residual_stress_MPa=stress_MPa)
     ).pull_in_V == pytest.approx(volts, rel=0.03)
 
 
@@ -225,7 +224,7 @@ def test_a_published_cantilever_pulls_in_within_1_percent():
         "gap_um": 1.0,
         "dielectric_nm": 0.0,
     }
-    settings = DeviceSettings(
+    settings = published_beam(
         ends="cantilever", youngs_modulus_GPa=169.0, poisson_ratio=0.06, **beam
     )
     assert switch_of(settings).pull_in_V == pytest.approx(37.84, rel=0.01)
@@ -235,7 +234,7 @@ def test_a_short_electrode_pulls_a_cantilever_as_a_force_at_its_place():
     """A narrow electrode at a share a of the length: w = F (aL)^2 (3 x - aL) / (6 EI), F its
     pull.
     """
-    settings = DeviceSettings(
+    settings = published_beam(
         ends="cantilever", electrode=(0.499, 0.501), contact=(0.9, 1.0), fringe=0.0
     )
     beam = beam_of(settings, 64)
@@ -248,7 +247,7 @@ def test_a_short_electrode_pulls_a_cantilever_as_a_force_at_its_place():
 
 
 @pytest.mark.parametrize(
-    "settings", [DeviceSettings(), DeviceSettings(residual_stress_MPa=-8.0, bow_nm=400.0)]
+    "settings", [published_beam(), published_beam(residual_stress_MPa=-8.0, bow_nm=400.0)]
 )
 def test_release_from_the_snap_is_that_of_finite_differences(settings):
     """A plain twin of the whole way: pull-in, snap, landing, memory, release."""
@@ -262,9 +261,9 @@ def test_release_from_the_snap_is_that_of_finite_differences(settings):
 
 def test_a_beam_that_peels_from_few_elements_lets_go_as_one_of_four_times_as_many():
     law = made_up_pad(160.0)
-    release = BeamSwitch(DeviceSettings()).states_on(law).release_V
+    release = BeamSwitch(published_beam()).states_on(law).release_V
     assert release == pytest.approx(
-        BeamSwitch(DeviceSettings(), beam_of(DeviceSettings(), 512)).states_on(law).release_V,
+        BeamSwitch(published_beam(), beam_of(published_beam(), 512)).states_on(law).release_V,
         rel=1e-3,
     )
 
@@ -291,7 +290,7 @@ def test_pull_in_is_the_exact_number():
     1.68084 cantilever.
     """
     for ends, exact in (("clamped", 70.095048), ("cantilever", 1.680841)):
-        settings = DeviceSettings(ends=ends, anchor_um_per_N=1e9, fringe=0.0)
+        settings = published_beam(ends=ends, anchor_um_per_N=1e9, fringe=0.0)
         beam = beam_of(settings, 64)
         gap = settings.gap_um * 1e-6 + settings.dielectric_nm / settings.permittivity * 1e-9
         number = (
@@ -388,8 +387,61 @@ def test_a_pad_that_was_hardly_closed_is_refused_with_what_helps():
 
 def test_a_free_beam_that_does_not_settle_is_refused_with_its_voltage():
     """Beyond pull-in there is no balance; twelve steps ended somewhere, without a word."""
-    switch = BeamSwitch(DeviceSettings())
-    moving = MovingBeam(switch.beam, DeviceSettings())
+    switch = BeamSwitch(published_beam())
+    moving = MovingBeam(switch.beam, published_beam())
     moving.relax(0.5 * switch.pull_in_V)
     with pytest.raises(NotComputed, match="the free beam does not settle at"):
         moving.relax(1.05 * switch.pull_in_V)
+
+
+@pytest.mark.parametrize("share", [0.01, 0.1, 1.0, 1e6])
+@pytest.mark.parametrize("ends", ["clamped", "cantilever"])
+def test_a_beam_with_anchors_that_turn_comes_down_as_far_as_a_sprung_one(share, ends):
+    """Uniform load q, springs of EI / (beta L): clamped M = q L^2 / 12 / (1 + 2 beta) at the ends;
+    a cantilever turns by beta L / EI times q L^2 / 2.
+    """
+    rigid = published_beam(ends=ends, fringe=0.0, gap_um=1000.0, anchor_um_per_N=1e9)
+    length_m = 1e-6 * rigid.length_um
+    stiffness = 1e9 * rigid.bending_GPa * 1e-24 * rigid.width_um * rigid.thickness_um**3 / 12.0
+    turning = share * length_m / stiffness
+    beam = beam_of(rigid.model_copy(update={"anchor_rad_per_uN_m": 1e-6 * turning}), 16)
+    q = 1e-3 / share if ends == "cantilever" else 1e-3
+    nodal = np.zeros((17, 2))
+    for _ in range(5):
+        down = beam.step(nodal, lambda s: (np.full_like(s, -q / beam.width_m), 0.0 * s))[0]
+        nodal = nodal + down
+    if ends == "clamped":
+        moment = q * length_m**2 / 12.0 / (1.0 + 2.0 * share)
+        exact = 5.0 * q * length_m**4 / 384.0 - moment * length_m**2 / 8.0
+        node = 8
+    else:
+        exact = q * length_m**4 * (1.0 / 8.0 + 0.5 * share)
+        node = 16
+    assert -nodal[node, 0] == pytest.approx(exact / stiffness, rel=1e-4)
+
+
+def test_turning_anchors_at_rest_keep_the_shape_of_a_bowed_and_tilted_beam():
+    """Nothing turns while nothing pulls, and pull-in falls smoothly with the turning."""
+    shaped = published_beam(bow_nm=300.0, tilt_nm=200.0)
+    pull_in_V = [
+        switch_of(shaped.model_copy(update={"anchor_rad_per_uN_m": give})).pull_in_V
+        for give in (0.0, 1e-6, 1e-3)
+    ]
+    assert pull_in_V[1] == pytest.approx(pull_in_V[0], rel=1e-5)
+    assert 0.99 * pull_in_V[0] < pull_in_V[2] < pull_in_V[0]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"anchor_rad_per_uN_m": 0.08}, {"anchor_um_per_N": 1.16}, {"length_um": 505.0}],
+)
+def test_rows_of_the_budget_move_pull_in_as_finite_differences_say(changes):
+    """Releases of six rows: `python -m evidence switch.budget`."""
+    moved = []
+    for settings in (published_beam(), published_beam(**changes)):
+        moved.append(
+            (switch_of(settings).pull_in_V, finite_differences.Beam(settings).pull_in()[0])
+        )
+    (before_V, twin_before_V), (after_V, twin_after_V) = moved
+    assert after_V - before_V == pytest.approx(twin_after_V - twin_before_V, rel=0.005)
+    assert abs(after_V - before_V) > 0.2

@@ -7,6 +7,7 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch import switch_of
 from tests.mesoscale.circuit.test_tables import pad
 
@@ -38,7 +39,7 @@ def test_devices_at_the_ends_of_their_ranges_give_an_answer_or_none():
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             try:
-                states = switch_of(DeviceSettings(**chosen)).states(law)
+                states = switch_of(published_beam(**chosen)).states(law)
             except (
                 InputError
             ):  # a beam that stands on the dielectric at rest, or presses beyond the pad
@@ -54,4 +55,4 @@ def test_devices_at_the_ends_of_their_ranges_give_an_answer_or_none():
 def test_a_device_smaller_than_atoms_is_refused(mistake):
     (key,) = mistake
     with pytest.raises(InputError, match=f"{key} = 1e-"):
-        DeviceSettings(**mistake)
+        published_beam(**mistake)

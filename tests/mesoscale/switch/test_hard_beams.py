@@ -6,7 +6,6 @@ import pytest
 
 from mesoscale.answer.spread import check_spread
 from mesoscale.errors import InputError
-from mesoscale.settings import DeviceSettings
 from mesoscale.studies.answer_stability import (
     HIGHER,
     REFUSED,
@@ -14,6 +13,7 @@ from mesoscale.studies.answer_stability import (
     hard_beams,
     hard_cases,
     made_up_pad,
+    published_beam,
     solved_beam,
 )
 from mesoscale.switch.beam import lumped_beam
@@ -33,7 +33,7 @@ def test_no_hard_beam_is_left_out():
 
 
 def test_a_scene_is_tried_with_its_own_device_on_its_own_pad():
-    device = DeviceSettings(gap_um=2.3)
+    device = published_beam(gap_um=2.3)
     own = [
         case for case in hard_cases(device, made_up_pad(2.0)) if case.name.startswith("own device")
     ]
@@ -50,10 +50,10 @@ def test_a_spread_that_leaves_no_device_and_a_beam_without_lumps_are_refused_in_
         InputError,
         match=r"spread\.dielectric_nm: reaches dielectric_nm = -129.1: .*equal to 0; narrow",
     ):
-        check_spread(DeviceSettings(spread=wide))
-    check_spread(DeviceSettings())
+        check_spread(published_beam(spread=wide))
+    check_spread(published_beam())
     with pytest.raises(InputError, match="circuits are made of beams clamped at both ends"):
-        lumped_beam(DeviceSettings(ends="cantilever"), 8)
+        lumped_beam(published_beam(ends="cantilever"), 8)
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def test_a_spread_that_leaves_no_device_and_a_beam_without_lumps_are_refused_in_
 )
 def test_a_device_that_is_none_is_refused_in_one_line(change, words):
     with pytest.raises(InputError, match=words) as caught:
-        DeviceSettings(**change)
+        published_beam(**change)
     assert "\n" not in str(caught.value)
 
 
@@ -99,4 +99,4 @@ def test_a_device_that_is_none_is_refused_in_one_line(change, words):
 def test_an_electrode_beside_its_contact_is_refused_for_a_true_reason(electrode, contact, words):
     """By its place, and not by voltages that nobody has or by a fault of the solver."""
     with pytest.raises(InputError, match=words):
-        solved_beam(DeviceSettings(electrode=electrode, contact=contact), made_up_pad(2.0))
+        solved_beam(published_beam(electrode=electrode, contact=contact), made_up_pad(2.0))

@@ -5,11 +5,11 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import Flats, PadCurves
-from mesoscale.settings import DeviceSettings
+from mesoscale.studies.answer_stability import published_beam
 from mesoscale.switch.plate import PlateSwitch, closed_on_pad
 from mesoscale.units import NM, VACUUM_PERMITTIVITY
 
-PLATE = PlateSwitch(DeviceSettings(spring_N_per_m=170.0)).plate
+PLATE = PlateSwitch(published_beam(spring_N_per_m=170.0)).plate
 DEPTHS = (18.0, 20.0, 22.0, 24.0, 26.0, 28.0)
 
 

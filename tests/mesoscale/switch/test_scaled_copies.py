@@ -7,8 +7,7 @@ from dataclasses import replace
 import pytest
 
 from mesoscale.pad.curves import PadCurves
-from mesoscale.settings import DeviceSettings
-from mesoscale.studies.answer_stability import SOLVED, made_up_pad, solved_beam
+from mesoscale.studies.answer_stability import SOLVED, made_up_pad, published_beam, solved_beam
 
 
 def softer(settings, law, times):
@@ -31,7 +30,7 @@ def softer(settings, law, times):
 @pytest.mark.parametrize("times", [2.0**-14, 1e-4])
 def test_the_solver_knows_no_pressure_but_those_of_beam_and_pad(name, times):
     """Voltages go with the root of all pressures; a power of four scales every number exactly."""
-    settings, law = DeviceSettings(**{**SOLVED[name], "temperature_C": 20.0}), made_up_pad(2.0)
+    settings, law = published_beam(**{**SOLVED[name], "temperature_C": 20.0}), made_up_pad(2.0)
     hold = {
         "hold_voltage_V": times**0.5 * settings.hold_voltage_V if settings.hold_voltage_V else None
     }
@@ -48,7 +47,7 @@ def test_the_solver_knows_no_pressure_but_those_of_beam_and_pad(name, times):
 @pytest.mark.parametrize("adhesion_kPa", [0.0, 2.0, 30.0])
 def test_a_long_thin_cantilever_lands_on_an_ordinary_pad(adhesion_kPa):
     """Its spring pulls with 0.4 Pa, that of the default with 15 kPa."""
-    settings = DeviceSettings(
+    settings = published_beam(
         ends="cantilever",
         length_um=766.0,
         width_um=180.0,

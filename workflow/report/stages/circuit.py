@@ -3,9 +3,10 @@
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
-from workflow.report.available import Results
-from workflow.report.drawing import BLUE, ORANGE, draw
+from workflow.report.available import CsvRow, Results
+from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
 from workflow.report.numbers import cell, column
 from workflow.report.page import Block, Figure, stage, table
 from workflow.report.verdict import volts
@@ -32,8 +33,9 @@ def describe(results: Results) -> Iterator[Block]:
     )
     yield Figure(
         _figure(results),
-        "Left: slow loop; the bands hold 90 % of the draws. Right: share that fails against hold"
-        " voltage.",
+        "Left: slow loop; the bands hold 90 % of the draws. Marks: where it lands, where half of"
+        " the held capacitance is left, and where it jumps open. Right: share that fails against"
+        " hold voltage.",
         wide=True,
     )
     yield table(
@@ -48,6 +50,30 @@ def describe(results: Results) -> Iterator[Block]:
     )
 
 
+def marks(loop: list[CsvRow]) -> dict[str, tuple[float, float]]:
+    """Voltage and capacitance (fF) where the central switch lands, has lost half of its held
+    capacitance, and jumps open; without those that the loop does not reach.
+    """
+    voltage = column(loop, "voltage_V")
+    up_fF = column(loop, "up_central_fF")
+    down_fF = column(loop, "down_central_fF")
+    held_fF = down_fF[-1]
+    reached = {"lands": _first(up_fF > 0.5 * (up_fF[0] + held_fF))}
+    reached["half"] = _first(down_fF > 0.5 * held_fF)
+    reached["opens"] = _first(down_fF > 1.001 * up_fF)
+    curves = {"lands": up_fF, "half": down_fF, "opens": down_fF}
+    return {
+        name: (float(voltage[place]), float(curves[name][place]))
+        for name, place in reached.items()
+        if place > 0
+    }
+
+
+def _first(reached: NDArray[np.bool_]) -> int:
+    """First position from which on a curve has reached something; 0: it always has, or never."""
+    return int(np.argmax(reached))
+
+
 def _figure(results: Results) -> str:
     loop = results.csv("circuit/loop.csv")
     failing = results.csv("failure/failure.csv")
@@ -60,6 +86,9 @@ def _figure(results: Results) -> str:
             slow.plot(
                 voltage, column(loop, f"{direction}_central_fF") / 1e3, color=color, label=direction
             )
+        for name, (volt, held_fF) in marks(loop).items():
+            slow.plot(volt, held_fF / 1e3, "o", color=SOFT, markersize=4)
+            slow.annotate(name, (volt, held_fF / 1e3), (5, 3), textcoords="offset points")
         slow.set(xlabel="voltage (V)", ylabel="capacitance (pF)", title="slow loop")
         slow.legend()
         usual = [row for row in failing if np.isclose(float(row["attraction"]), 1.0)]
