@@ -67,12 +67,10 @@ def central_switch(settings: DeviceSettings, pad: PadCurves) -> tuple[CircuitSwi
 
     Raises
     ------
-    InputError : a plate on a spring, which has no corners; see `choose_lumps`.
+    InputError : a switch that has no circuit; see `choose_lumps`.
     """
-    if settings.kind == "plate":
-        raise InputError(
-            "device.spring_N_per_m: circuits are made of bending electrodes; set it to null"
-        )
+    if settings.without_circuit:
+        raise InputError(settings.without_circuit)
     errors, continued = on_deep_enough(pad, partial(choose_lumps, settings))
     row = {"switch": "central", "pull_in_V": errors.pull_in_V, "release_V": errors.release_V}
     return CircuitSwitch(row, settings.level, continued), errors
