@@ -22,15 +22,15 @@ OTHERS: list[dict[str, float]] = [
     {"spring_N_per_m": 700.0},
     {"spring_N_per_m": 950.0},
     {"gap_um": 3.1},
-    {"gap_um": 4.0},
-    {"width_um": 100.0},
+    {"gap_um": 3.6},
+    {"width_um": 130.0},
     {"width_um": 150.0},
-    {"dielectric_nm": 150.0},
+    {"dielectric_nm": 220.0},
     {"dielectric_nm": 260.0},
-    {"permittivity": 6.0},
-    {"length_um": 450.0},
-    {"gap_um": 3.2, "spring_N_per_m": 900.0},
-    {"dielectric_nm": 170.0, "width_um": 110.0},
+    {"permittivity": 7.0},
+    {"length_um": 540.0},
+    {"gap_um": 3.3, "spring_N_per_m": 850.0},
+    {"dielectric_nm": 210.0, "width_um": 128.0},
 ]
 """What differs from the device of the pads."""
 PLATE = DeviceSettings(spring_N_per_m=800.0)
