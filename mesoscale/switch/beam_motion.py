@@ -211,8 +211,8 @@ class MovingBeam:
         if per_V2[node, 0] >= 0.0:
             raise InputError(
                 "device: a small voltage does not bring the beam down, since it does not rest"
-                " stably where it is; raise thickness_um or residual_stress_MPa, or state its bow_nm"
-                " at rest"
+                " stably where it is; raise thickness_um or residual_stress_MPa, or state its"
+                " bow_nm at rest"
             )
         return node
 
