@@ -143,7 +143,12 @@ def _check_accepted(word: str, values: Sequence[float]) -> None:
     for value in values:
         if not about.accepts(value):
             unit = "" if about.unit == "1" else f" {about.unit}"
-            raise InputError(f"{word}: is {value:g}{unit}; accepted is {about.accepted}{unit}")
+            meant = ""
+            if about.unit == "1" and about.accepts(value / 100.0) and not word.endswith("%"):
+                meant = f"; per cent are written {word}%"
+            raise InputError(
+                f"{word}: is {value:g}{unit}; accepted is {about.accepted}{unit}{meant}"
+            )
 
 
 def _modulus_of_bodies(word: str, names: str) -> InputRow:
@@ -192,7 +197,10 @@ def device_of(words: Sequence[str]) -> dict[str, Any]:
     stated = of_material | keys
     if measured:
         stated["measured"] = measured
-    DeviceSettings(**stated)
+    try:
+        DeviceSettings(**stated)
+    except InputError as error:
+        raise InputError(str(error).replace("DeviceSettings:", "device:")) from None
     return stated
 
 

@@ -54,11 +54,9 @@ def differences(first: Path, second: Path) -> Iterator[str]:
 
 def _result_files(folder: Path) -> set[str]:
     files = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
-    left_out = (
-        "logs",
-        "work",
-        "report.html",
-    )  # and what is hidden: locks and files that are being written
+    # drawn from other results, or none
+    left_out = ("logs", "work", "report.html", "figures")
+    # hidden are locks and files that are being written
     return {
         str(path)
         for path in files

@@ -193,10 +193,12 @@ def _file(crate: Any, path: Path, place: str) -> Any:
 
 
 def _stage_of(place: Path) -> str:
-    """The stage of a result: its folder; files beside the folders bear the name of theirs."""
-    if len(place.parts) > 1:
-        return place.parts[0]
-    return {"inputs.csv": "inputs"}.get(place.name, "report")
+    """The stage of a result: its folder; files beside the folders are of few."""
+    if place.name == "inputs.csv" and len(place.parts) == 1:
+        return "inputs"
+    if len(place.parts) == 1 or place.parts[0] == "figures":
+        return "report"
+    return place.parts[0]
 
 
 def _rules_of(stage: str) -> list[str]:

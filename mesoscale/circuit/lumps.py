@@ -31,6 +31,9 @@ from mesoscale.units import NM
 
 Array = NDArray[np.float64]
 
+CAPACITANCE_ERROR = 0.03
+"""Allowed error of lumps beside the finite elements, of the held capacitance."""
+
 
 @dataclass(frozen=True)
 class Lumps:
@@ -155,7 +158,7 @@ def choose_lumps(settings: DeviceSettings, pad: PadCurves) -> LumpErrors:
     for count in CIRCUIT.lump_counts:
         lumped = BeamSwitch(settings.level, lumped_beam(settings.level, count))
         errors = _errors(lumped.states_on(pad), exact)
-        if max(errors[:2]) <= CIRCUIT.release_error and errors[2] <= CIRCUIT.capacitance_error:
+        if max(errors[:2]) <= CIRCUIT.release_error and errors[2] <= CAPACITANCE_ERROR:
             break
     return LumpErrors(
         count, *errors, exact.pull_in_V, exact.release_V, max(_errors(half, exact)[:2])

@@ -15,7 +15,7 @@ Nodes of `rough_switch`, for lump k:
     moved{k}   m, nm         way down from rest                 dm/dt = v
     speed{k}   v, nm/us      its speed                          rho t dv/dt = sum of pressures (Pa)
     bent{k}    b, nm         m + loss v                         the stiffness acts on it, which damps
-    slope{k}   D (b - z0)    minus the slope of the elongation  in units of `CIRCUIT.slope_per_V`
+    slope{k}   D (b - z0)    minus the slope of the elongation  in units of `SLOPE_PER_V`
     longer     nm            elongation since rest              ((b - z0) D (b - z0) - z0 D z0) / 2
     drawn{k}   Pa            pressure that draws the lump down  from `rough_lump`
     charge     fC            of all lumps
@@ -46,6 +46,23 @@ SPEED_F = 1e-3
 second."""
 FLOW = 1e-24
 """nm3 Pa / (Pa s m2) is 1e-18 nm/s, on a capacitor of 1 uF."""
+FORCE_A = 1e-5
+"""Current of a pressure of 1 Pa on a lump: the `abstol` of a simulator is then small beside what
+moves it."""
+SLOPE_PER_V = 1e-2
+"""Slope of the electrode of 1 V, so that a simulator's `vntol` is small beside slopes, too."""
+BEGINS = 1.5
+"""Closing counts from so many times the separation at which a pad begins to repel."""
+MEMORY_F = 1e-6
+"""Capacitance of the state of a pad, whatever its time constant. With a slow memory a capacitance
+of its conductance drew kiloamperes at the landing, and ngspice shrank its steps to nothing."""
+ONSET_NM = 0.01
+"""Way over which following begins. Where it began with a corner, ngspice ended as soon as a second
+lump came below the start: no step was small enough. A way of 0.1 nm forgets 0.05 nm of an impact."""
+REACH_NM = 20.0
+MOST_FOLDS = 8.0
+"""So far below its deepest closing the repulsion of a pad goes on to grow, by so many e-folds at
+most: wild steps of a simulator stay finite."""
 
 
 def spice_switch(
@@ -57,7 +74,7 @@ def spice_switch(
 * the electrode: {lumps.count} pairs of lumps; beside finite elements pull-in differs by {errors.pull_in:.2%},
 * release by {errors.release:.2%}, capacitance by {errors.capacitance:.2%}; these err by {errors.reference:.2%}
 * top, bottom: the electrodes; middle: by how much (nm) mid-span has come down, 1 V = 1 nm.
-* Inside: nm, nm/us, Pa, fC. What moves a lump: 1 A for {1.0 / CIRCUIT.force_A:g} Pa.
+* Inside: nm, nm/us, Pa, fC. What moves a lump: 1 A for {1.0 / FORCE_A:g} Pa.
 * mass per area in kg/m2, loss in us, viscosity in Pa s, gas in Pa.
 * drag: 0; a large one (3e4 Pa us/nm) lands the electrode softly, for loops so slow that nothing else matters.
 * follow: s, until the pad remembers; 1e-6 for such loops.
@@ -83,12 +100,12 @@ Fcharge top bottom Vcharge 1
 
 def _pair(lumps: Lumps, k: int) -> str:
     """Elements of a pair of lumps in `rough_switch`: its lump, states, and what acts on its speed."""
-    force = CIRCUIT.force_A
+    force = FORCE_A
     area_m2 = lumps.area_m2[k]
     springs = force * lumps.stiffness_N_m[k] * NM / area_m2
     slopes = _slopes(lumps)[k]
     slope_at_rest = -(slopes @ lumps.height_nm)
-    stretch = force * lumps.stretching_N_m * NM * CIRCUIT.slope_per_V / area_m2
+    stretch = force * lumps.stretching_N_m * NM * SLOPE_PER_V / area_m2
     lines = [
         f"Xlump{k} top bottom moved{k} drawn{k} charge rough_lump",
         f"+   rest={lumps.rest_nm[k]:.9g} area={area_m2:.9g}",
@@ -106,21 +123,21 @@ def _pair(lumps: Lumps, k: int) -> str:
         f"Islope{k} 0 slope{k} {slope_at_rest:.12g}",
         f"Rslope{k} slope{k} 0 1",
         f"Bstretch{k} speed{k} 0 I = {stretch:.12g} * V(longer) * V(slope{k})",
-        f"Blonger{k} 0 longer I = {0.5 * CIRCUIT.slope_per_V:g}"
+        f"Blonger{k} 0 longer I = {0.5 * SLOPE_PER_V:g}"
         f" * (V(bent{k}) + {-lumps.height_nm[k]:.9g}) * V(slope{k})",
     ]
     return "\n".join(lines)
 
 
 def _slopes(lumps: Lumps) -> np.ndarray:
-    """D in units of `CIRCUIT.slope_per_V` and nm."""
-    return lumps.drawn_m * NM / CIRCUIT.slope_per_V
+    """D in units of `SLOPE_PER_V` and nm."""
+    return lumps.drawn_m * NM / SLOPE_PER_V
 
 
 def _elongation(lumps: Lumps) -> str:
     """Node `longer`, to which each pair adds, less what the beam at rest has."""
     heights = lumps.height_nm
-    at_rest = 0.5 * CIRCUIT.slope_per_V * heights @ _slopes(lumps) @ heights
+    at_rest = 0.5 * SLOPE_PER_V * heights @ _slopes(lumps) @ heights
     return f"Rlonger longer 0 1\nIlonger longer 0 {at_rest:.12g}"
 
 
@@ -159,17 +176,17 @@ def spice_pad(pad: PadCurves, cells: int) -> str:
     # closing counts from a little farther out than the pad repels: a lump that begins to count is a
     # corner for ngspice
     repels = pad.separation_nm[pad.closing[0] > 0.0]
-    start = CIRCUIT.begins * float(repels.max(initial=tables.depth_nm[-1] + CIRCUIT.fade_nm))
+    start = BEGINS * float(repels.max(initial=tables.depth_nm[-1] + CIRCUIT.fade_nm))
     deepest = f"{start:g} - V(near)"
     far = [piece.y[-1] for piece in tables.closing]
     push, pull = (Piece(piece.x, piece.y - piece.y[-1]) for piece in tables.closing)
     weights = _weights(tables, deepest)
     pushes = [_pwl("V(risen)", push_change) for push_change, _ in tables.opening]
     pulls = [_pwl("V(risen)", pull_change) for _, pull_change in tables.opening]
-    push_sum = _weighted(_pwl(deepest, push, CIRCUIT.reach_nm), weights, pushes)
+    push_sum = _weighted(_pwl(deepest, push, REACH_NM), weights, pushes)
     pull_sum = _weighted(_pwl(deepest, pull), weights, pulls)
     # wild steps of a simulator stay finite
-    largest = [piece.y.max() + CIRCUIT.most_folds for piece in tables.closing]
+    largest = [piece.y.max() + MOST_FOLDS for piece in tables.closing]
     return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
 * {note(tables, cells)}
 * nodes     s      mean separation less rest, 1 V = 1 nm
@@ -180,13 +197,13 @@ def spice_pad(pad: PadCurves, cells: int) -> str:
 * Nodes are 0 for a pad that is far away, where simulators begin.
 .subckt rough_pad s force params: area=1e+12 follow={CIRCUIT.follow_s:g}
 +   hamaker={pad.flats.hamaker:.12g} offset_nm={pad.flats.offset_nm:.12g} rest=0
-Cclosed closed 0 {CIRCUIT.memory_F:g}
-Rleak closed 0 {{follow/{CIRCUIT.memory_F * CIRCUIT.leak:g}}}
+Cclosed closed 0 {MEMORY_F:g}
+Rleak closed 0 {{follow/{MEMORY_F * CIRCUIT.leak:g}}}
 Rdeeper deeper 0 1
 Bdeeper 0 deeper I = {{{start:g}-rest}} - V(s) - V(closed)
 Rbegun begun 0 1
-Bbegun 0 begun I = min(max(V(deeper), 0), {CIRCUIT.onset_nm:g})
-Bclosed 0 closed I = {{{CIRCUIT.memory_F / CIRCUIT.onset_nm:g}/follow}} * V(begun) * (V(deeper) - 0.5*V(begun))
+Bbegun 0 begun I = min(max(V(deeper), 0), {ONSET_NM:g})
+Bclosed 0 closed I = {{{MEMORY_F / ONSET_NM:g}/follow}} * V(begun) * (V(deeper) - 0.5*V(begun))
 Rnear near 0 1
 Bnear 0 near I = max(V(closed), {{{start:g}-rest}} - V(s))
 Rrisen risen 0 1

@@ -37,6 +37,14 @@ CORNERS = {
     "slow": ("pull_in_V", 1.0),
     "fast": ("pull_in_V", -1.0),
 }
+CORNER_DEVIATIONS = (2.0, 1.5, 1.0, 0.5)
+"""Of the inputs at a corner: the first with which it can be solved."""
+CORNER_CELLS = 64
+"""Cells of the pad of a corner, which stands alone."""
+LOOP_VOLTAGES = 61
+"""Of the slow loop."""
+LOOP_ELEMENTS = (128, 96, 160)
+"""Finite elements of the slow loop: the first with which all its balances are found."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +67,10 @@ def central_switch(settings: DeviceSettings, pad: PadCurves) -> tuple[CircuitSwi
 
     Raises
     ------
-    InputError : a plate on a spring, which has no corners; see `choose_lumps`.
+    InputError : a switch that has no circuit; see `choose_lumps`.
     """
-    if settings.kind == "plate":
-        raise InputError(
-            "device.spring_N_per_m: circuits are made of bending electrodes; set it to null"
-        )
+    if settings.without_circuit:
+        raise InputError(settings.without_circuit)
     errors, continued = on_deep_enough(pad, partial(choose_lumps, settings))
     row = {"switch": "central", "pull_in_V": errors.pull_in_V, "release_V": errors.release_V}
     return CircuitSwitch(row, settings.level, continued), errors
@@ -94,11 +100,11 @@ def spread_switches(
     for number, (name, (state, sign)) in enumerate(CORNERS.items()):
         slope = np.linalg.lstsq(plane, model.states(state), rcond=None)[0][1:]
         out = sign * slope / (np.linalg.norm(slope) or 1.0)
-        for deviations in CIRCUIT.corner_deviations:
+        for deviations in CORNER_DEVIATIONS:
             values = values_at(ndtr(deviations * out)[None], table, settings, cutoffs_nm)[0]
             point = point_of(values, table.names, settings)
             with suppress(InputError):
-                pad = press_pad(point, contact, CIRCUIT.corner_cells, FIRST_SEED + number)
+                pad = press_pad(point, contact, CORNER_CELLS, FIRST_SEED + number)
                 corners.append(_by_lumps(name, point, pad.curves, lumps, deviations))
                 break
         else:
@@ -137,7 +143,7 @@ def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, 
     draws.
     """
     top = CIRCUIT.loop_top * max(switch.row["pull_in_V"] for switch in (central, *drawn))
-    volts = np.linspace(0.0, top, CIRCUIT.loop_voltages)
+    volts = np.linspace(0.0, top, LOOP_VOLTAGES)
     curves = [_loop_fF(central, volts)]
     for switch in drawn:
         with suppress(InputError):  # a beam that finds no balance on any mesh
@@ -164,12 +170,12 @@ def _loop_fF(switch: CircuitSwitch, volts: Array) -> Array:
     """The loop of one switch, shape (2, volts), by the first mesh on which the beam finds all its
     balances.
     """
-    for elements in CIRCUIT.loop_elements:
+    for elements in LOOP_ELEMENTS:
         beam = BeamSwitch(switch.settings, beam_of(switch.settings, elements))
         try:
             loop, _ = on_deep_enough(switch.pad, partial(beam.loop_fF, volts=volts))
         except InputError:  # between straight pieces of the pad's curves, steps may cycle
-            if elements == CIRCUIT.loop_elements[-1]:
+            if elements == LOOP_ELEMENTS[-1]:
                 raise
         else:
             return np.stack(loop)

@@ -23,6 +23,12 @@ from mesoscale.pad.curves import FLOOR, Flats, PadCurves, rows_at
 
 Array = NDArray[np.float64]
 
+OF_PULL = 0.05
+"""Error that tables may have beside the curves far out, of the pull."""
+FAINT = 1e-3
+"""A push of this share of the shallowest well counts as none, so that its logarithm stays
+finite."""
+
 
 @dataclass(frozen=True)
 class Piece:
@@ -64,7 +70,7 @@ def tables_of(pad: PadCurves, cubic: bool, looser: float = 1.0) -> Tables:
     wells = np.array([-min(np.nanmin(opened.sum(axis=0)), 0.0) for opened in pad.opening])
     shallowest_well = float(wells.min())
     floor = pad.floor_GPa
-    faint = max(CIRCUIT.faint * shallowest_well, 1e2 * floor)
+    faint = max(FAINT * shallowest_well, 1e2 * floor)
     s = pad.separation_nm
     closing = _Curve(pad.flats, s, pad.closing, floor, faint, shallowest_well or faint)
     at_depths = [int(abs(s - depth).argmin()) for depth in pad.depth_nm]
@@ -128,7 +134,7 @@ class _Curve:
         pull = self.flats * np.exp(self.logarithms[1])
         self.net = np.exp(self.logarithms[0]) - faint_GPa - pull
         self.allowed = (
-            np.minimum(CIRCUIT.of_well * well_GPa, CIRCUIT.of_pull * pull)
+            np.minimum(CIRCUIT.of_well * well_GPa, OF_PULL * pull)
             + CIRCUIT.of_net * abs(self.net)
             + floor_GPa
         )

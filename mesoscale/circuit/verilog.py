@@ -11,6 +11,9 @@ from mesoscale.pad.curves import PadCurves
 from mesoscale.switch.beam_kernels import least_gap_nm
 from mesoscale.units import VACUUM_PERMITTIVITY
 
+FOLLOWING_S = 1e3
+"""Conductance of following: large beside the 1e-12 S that simulators add to every node."""
+
 
 def verilog_pad(pad: PadCurves, cells: int) -> str:
     """Verilog-A module `rough_pad` on a kinematic node."""
@@ -38,7 +41,7 @@ module rough_pad(s, ref);
     analog begin
         separation = Pos(s, ref) * 1.0e9;
         further = {CIRCUIT.start_nm:.1f} - separation - V(closed);
-        I(closed) <+ {CIRCUIT.following_S:.1f} * (follow * ddt(V(closed)) + {CIRCUIT.leak:g} * V(closed)
+        I(closed) <+ {FOLLOWING_S:.1f} * (follow * ddt(V(closed)) + {CIRCUIT.leak:g} * V(closed)
             - max(further, 0.0));
 
         deepest = min({CIRCUIT.start_nm:.1f} - V(closed), separation);
@@ -163,7 +166,7 @@ module rough_lump({names});
         excess = (rest - V(lost)) / film - 1.0;
         dense = max(1.0 + excess, {CIRCUIT.least_density:g});
         thinner = 1.0 + 9.638 * pow({CIRCUIT.free_path_nm_Pa:.9g} / (gas * dense * film), 1.159);
-        I(closed) <+ {CIRCUIT.following_S:.1f} * (follow * ddt(V(closed)) + {CIRCUIT.leak:g} * V(closed)
+        I(closed) <+ {FOLLOWING_S:.1f} * (follow * ddt(V(closed)) + {CIRCUIT.leak:g} * V(closed)
             - max({CIRCUIT.start_nm:.1f} - s - V(closed), 0.0));
         I(lost) <+ 1.0e-6 * ddt(V(lost)) - 1.0e-24 * gas * dense * excess * film * film * film
             * thinner / (viscosity * {lumps.width_m**2:.9g});

@@ -42,53 +42,66 @@ Press = Callable[[Point, int, int], Pressed]
 
 @dataclass(frozen=True)
 class FailureNumerics:
-    """How rare failures are looked for; no scene sets these choices.
-
-    Attributes
-    ----------
-    first, fewest : switches of the first response beside those of the answer, and the fewest that
-        may be solved.
-    rounds, batch : switches are added so often, so many at once, where a failure is likely.
-    runs : switches that correct a probability.
-    wide : half of the first switches have this many times the deviations of the inputs: rare events
-        are far out.
-    surer_cells : times as many cells has a pad whose halves disagree on whether the switch fails.
-    surfaces : numbers of surfaces.
-    least_times, most_times, step : factors on the attraction that are tried, and the difference of
-        their logarithms to
-        which the reserve is known.
-    span, voltages : largest hold voltage of the curve, over that of the scene, and the number of
-        voltages.
-    rough : probabilities of the RMS heights among which the least is sought, from the roughest.
-    springs : springs among which the least is sought, over that of the scene.
-    spring_runs : switches that are solved with each spring. They know a probability to some 25 %,
-        and a spring to 1 or
-        2 %.
-    confidence : that no more fail than allowed, by what is common to all devices and not known.
-    near : difference of logarithms to which attractions and springs are sought.
-    far : deviations beyond which a probability is 1 in double precision, so that a number would be
-        endless.
-    """
+    """How rare failures are looked for; no scene sets these choices."""
 
     first: int = 48
+    """Switches of the first response beside those of the answer."""
+
     fewest: int = 32
+    """Of these may be solved at least."""
+
     rounds: int = 5
+    """Switches are added so often where a failure is likely."""
+
     batch: int = 16
+    """So many at once."""
+
     runs: int = 64
+    """Switches that correct a probability."""
+
     wide: float = 2.0
+    """Half of the first switches have this many times the deviations of the inputs: rare events are
+    far out."""
+
     surer_cells: int = 4
+    """Times as many cells has a pad whose halves disagree on whether the switch fails."""
+
     surfaces: int = 4000
+    """Numbers of surfaces."""
+
     least_times: float = LEAST_TIMES
+    """Least factor on the attraction that is tried."""
+
     most_times: float = MOST_TIMES
+    """Largest factor on the attraction that is tried."""
+
     step: float = STEP
+    """Difference of their logarithms to which the reserve is known."""
+
     span: float = 1.5
+    """Largest hold voltage of the curve over that of the scene."""
+
     voltages: int = 5
+    """Of the curve."""
+
     rough: tuple[float, ...] = (0.98, 0.84, 0.5, 0.16, 0.02)
+    """Probabilities of the RMS heights among which the least is sought, from the roughest."""
+
     springs: tuple[float, float] = (0.5, 2.0)
+    """Springs among which the least is sought, over that of the scene."""
+
     spring_runs: int = 32
+    """Switches that are solved with each spring. They know a probability to some 25 %, and a spring
+    to 1 or 2 %."""
+
     confidence: float = 0.9
+    """That no more fail than allowed, by what is common to all devices and not known."""
+
     near: float = 0.02
+    """Difference of logarithms to which attractions and springs are sought."""
+
     far: float = 8.0
+    """Deviations beyond which a probability is 1 in double precision: a number would be endless."""
 
 
 FAILURE = FailureNumerics()

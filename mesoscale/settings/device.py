@@ -383,16 +383,18 @@ class DeviceSettings(Settings):
         return [name for name in names if getattr(self.spread, name) is not None]
 
     @property
-    def without_lumps(self) -> str:
-        """One line on a beam that has no lumps, which are those of a symmetric one; empty where it
-        has.
+    def without_circuit(self) -> str:
+        """One line on a switch that has no circuit, whose lumps are those of a symmetric beam;
+        empty where it has one.
         """
+        if self.kind != "beam":
+            return "device.spring_N_per_m: circuits are made of bending electrodes; set it to null"
         if self.ends == "clamped" and self.electrode == self.contact == (0.0, 1.0):
             return ""
         return (
             "device.ends, electrode, contact: circuits are made of beams clamped at both ends, with"
-            " electrode and pad all along; take clamped, [0, 1] and [0, 1], or leave the"
-            " circuit out"
+            " electrode and pad all along; take clamped, [0, 1] and [0, 1], or leave the circuit"
+            " out"
         )
 
 

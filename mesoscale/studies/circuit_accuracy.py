@@ -50,7 +50,7 @@ def accuracy_points(model: PadModel, progress: Progress | None = None) -> Iterat
     InputError : the switch at central inputs cannot be solved.
     """
     device = model.central.point.device
-    if device.kind != "beam" or device.without_lumps:
+    if device.without_circuit:
         return
     switches = samples_of(model, SWITCHES)
     samples = f"{len(switches)} switches of the scene"

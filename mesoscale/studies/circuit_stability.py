@@ -58,7 +58,7 @@ def hard_lumps() -> Iterator[HardCase]:
     """Beams with electrode and pad all along, and such as have no lumps."""
     for name, changes in SOLVED.items():
         settings = published_beam(**changes)
-        if not settings.without_lumps:
+        if not settings.without_circuit:
             yield HardCase(
                 name,
                 "as a beam of the stage answer",

@@ -277,8 +277,8 @@ def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
         raise InputError(
             f"a bending electrode needs an even number of lumps, at least 4, not {lumps}"
         )
-    if settings.without_lumps:
-        raise InputError(settings.without_lumps)
+    if settings.without_circuit:
+        raise InputError(settings.without_circuit)
     half_m = settings.length_um * UM / 2.0
     shares = np.linspace(0.0, LANDING_SHARE, 10001)
     parts_within = np.log1p(shares / LAST_CONTACT_SHARE) + 2.0 * shares / LANDING_SHARE

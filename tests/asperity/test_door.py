@@ -49,6 +49,7 @@ def test_words_of_an_engineer_are_keys_of_the_device():
         ("gap_um=two", "'two' is no number; write for instance gap_um=2.5"),
         ("gap_um=", "'' is no number"),
         ("gap_u=2", "gap_u is no key of the device; did you mean gap_um?"),
+        ("hold_voltage_V=-5", "device: hold_voltage_V = -5.0: "),
         ("colour=2", "accepted is KEY=VALUE, with a key of material, ends"),
         ("pull_in_V=72", "value and standard error, pull_in_V=72+-2"),
         ("pull_in_V=72+-2%", "pull_in_V is in V, not in %"),

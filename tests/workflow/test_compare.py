@@ -47,6 +47,7 @@ def test_what_says_who_made_it_and_how_fast_does_not_count(folders):
         second / "scene.yaml", "scene: {name: ci}\nversions: {numpy: '3'}\ngit_commit: def\n"
     )
     write_text(second / "logs/fit_law.log", "took 7 s")
+    write_text(second / "figures/law.svg", "<svg></svg>")  # drawn by a newer version, say
     (second / ".lock").touch()
     assert list(differences(first, second)) == []
 

@@ -11,7 +11,7 @@ import pytest
 
 from asperity.guards.bundle import ROOT
 from tests.workflow.made_up_results import write_all
-from workflow.crate import main
+from workflow.crate import _stage_of, main
 from workflow.files.checksums import file_checksum, record_of
 
 pytest.importorskip("rocrate", reason="optional extra crate is not installed")
@@ -96,6 +96,20 @@ def test_each_stage_is_a_step_with_its_results_and_its_time(packed):
     steps = [reference["@id"] for reference in entities["workflow/Snakefile"]["step"]]
     assert "#step-pad" in steps
     assert entities["#numpy"]["softwareVersion"] == "2.4"
+
+
+@pytest.mark.parametrize(
+    ("place", "stage"),
+    [
+        ("inputs.csv", "inputs"),
+        ("pad/inputs.csv", "pad"),
+        ("report.html", "report"),
+        ("figures/law.svg", "report"),
+        ("scene.yaml", "report"),
+    ],
+)
+def test_a_result_belongs_to_its_stage(place, stage):
+    assert _stage_of(Path(place)) == stage
 
 
 def test_a_crate_as_it_was_written_passes(packed, capsys):

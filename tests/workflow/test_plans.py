@@ -79,6 +79,19 @@ def test_humidity_is_swept_where_a_scene_has_humid_air(plan):
     assert "humidity" in plan("humid") & plan("humid", "humidity")
 
 
+def test_failures_of_a_plate_are_planned_without_the_circuit_that_it_has_not(workflow_in):
+    path = workflow_in.folder / "plate.yaml"
+    path.write_text(
+        "extends: ci\ndevice: {spring_N_per_m: 170}\nfailure: {probability: 1.0e-3}\n"
+    )
+    planned = workflow_in.planned(str(path))
+    assert "failure" in planned
+    assert "circuit" not in planned
+    asked = workflow_in.run(str(path), "circuit", options=("--dry-run",))
+    assert asked.returncode == 1
+    assert "device.spring_N_per_m: circuits are made of bending electrodes" in asked.stderr
+
+
 @pytest.fixture(scope="module")
 def every_plan(tmp_path_factory):
     """Words by scene and target: none of a plan that stands, else the last line of its refusal."""

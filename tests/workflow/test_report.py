@@ -7,6 +7,8 @@ import re
 import shutil
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 from xml.etree import ElementTree
 
 import matplotlib
@@ -28,6 +30,7 @@ from workflow.report.stages import pad
 from workflow.report.stages.humidity import OPENINGS, against_humidity, begins_to_stick
 from workflow.report.stages.humidity import describe as describe_humidity
 from workflow.report.stages.inputs import _distribution, stated_beside_computed
+from workflow.report.stages.topography import first_map
 from workflow.report.studies import Error, KnobTable, Value, pareto_front, recommended, tables_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -467,3 +470,19 @@ def test_a_switch_that_sticks_in_any_air_has_no_empty_axes(tmp_path):
         shown = describe_humidity(results)
         assert shown is not None
         assert sum(isinstance(block, Figure) for block in shown.blocks) == drawn
+
+
+def test_the_first_map_of_measured_scans_is_in_view_and_no_made_up_one():
+    scans = {"scans/02_line": {"line": np.zeros(8)}, "scans/03_film": {"heights": np.eye(8)}}
+    attributes = {name: {"length_x_nm": 2000.0, "rms_nm": 3.96} for name in scans}
+    parameters: dict[str, Any] = {}
+    results = SimpleNamespace(
+        has=lambda *names: True,
+        json=lambda name: parameters,
+        h5=lambda name: (scans, {}, attributes),
+    )
+    picture, words = first_map(results)
+    assert words == "Your surface: 03_film, RMS 3.96 nm; 1 more below."
+    assert "data:image/png" in picture
+    parameters["synthetic"] = True
+    assert first_map(results) is None

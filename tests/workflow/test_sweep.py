@@ -26,9 +26,17 @@ def test_a_key_of_any_section_is_swept(here):
         assert scene.device.gap_um == 3.0
 
 
+def test_a_key_of_the_device_is_written_as_on_the_command_line(here):
+    files = scenes_of("mine.yaml", "gap_um=1.5um,2")
+    assert [load_scene(str(file)).device.gap_um for file in files.values()] == [1.5, 2.0]
+    (gold,) = scenes_of("mine.yaml", "device.material=gold").values()
+    assert load_scene(str(gold)).device.density_g_cm3 == 19.3
+
+
 @pytest.mark.parametrize(
     ("word", "message"),
     [
+        ("gap_um=1,wide", "'wide' is no number"),
         ("contact.pixels", "a key and its values"),
         ("contact.pixels=128,,256", "a key and its values"),
         ("contact.pixel=128", "pixels"),

@@ -165,7 +165,7 @@ def test_no_cause_is_named_where_the_fit_behind_it_explains_little():
     doubted = said(_pad(explained=0.29))
     assert doubted.causes == ()
     assert "explains only 29%" in doubted.no_cause
-    assert doubted.next_step == ""
+    assert doubted.next_step == "More switches might tell what decides it (pad.points)."
     nothing = said(_pad(explained=-0.7))
     assert "64 computed switches are too few to tell" in nothing.no_cause
     assert nothing.next_step == "Compute more switches next (pad.points)."

@@ -108,7 +108,8 @@ def test_a_voltage_below_pull_in_closes_some_of_the_devices(here):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ("contact.pixels=128", "copy the scene, change it and run it"),
+        ("contact.pixels=128", "change it in a copy of the scene, or sweep it"),
+        ("humidity=40%", "changes what pads are pressed from"),
         ("gap=3", "gap_um"),
         ("gap_um=wide", "is no number"),
         ("gap_um=-1", "gap_um"),

@@ -271,7 +271,7 @@ def _narrows(pad: dict[str, Any], no_cause: str) -> str:
     if not rows or answer["causes"]["cells"] > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."
     if no_cause:
-        return ""
+        return "More switches might tell what decides it (pad.points)."
     by_pull_in = pull_in_shrinks_by(pad)
     if by_pull_in > max(LITTLE, rows[0]["interval_shrinks_by"]):
         return (

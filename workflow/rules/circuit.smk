@@ -4,6 +4,7 @@
 rule circuit:
     """the switch for simulators: corners, draws, C-V loop"""
     input:
+        required(not SCENE.device.without_circuit, SCENE.device.without_circuit),
         **PRESSED,
     output:
         models=directory(f"{RESULTS}/circuit/models"),
@@ -20,5 +21,6 @@ rule circuit:
         "../scripts/make_circuit.py"
 
 
-if SCENE.failure.probability is not None and "switch" in SCENE.tails:
+FAILURE_IS_SHOWN = SCENE.failure.probability is not None and "switch" in SCENE.tails
+if FAILURE_IS_SHOWN and not SCENE.device.without_circuit:
     SHOWN += rules.circuit.output[1:]

@@ -14,6 +14,7 @@ import yaml
 
 from asperity.guards.foreign_text import shown, wrapped
 from asperity.guards.foreign_yaml import MistakenYaml
+from asperity.words import SCALAR_KEYS, device_of
 from mesoscale.errors import InputError
 from workflow.files.results import load_json
 from workflow.run.what_if import line_of, numbers_of, write_answers
@@ -29,7 +30,8 @@ def scenes_of(given: str, word: str) -> dict[str, Path]:
     Parameters
     ----------
     given : name or file of the scene.
-    word : the key with its sections, and the values, such as contact.pixels=128,256.
+    word : the key with its sections, and the values, such as contact.pixels=128,256. Keys of the
+        device need no section, and are written as on the command line.
 
     Returns
     -------
@@ -49,11 +51,9 @@ def scenes_of(given: str, word: str) -> dict[str, Path]:
     parent = given
     if Path(given).suffix:
         parent = str(find_scene(given).resolve())
+    contents = {value: _content(key, value) for value in values.split(",")}
     files = {}
-    for value in values.split(","):
-        content: Any = yaml.safe_load(value)
-        for section in reversed(key.split(".")):
-            content = {section: content}
+    for value, content in contents.items():
         file = Path(f"{base.name}_{key.rpartition('.')[2]}_{value}.yaml")
         head = {"extends": parent, "name": file.stem}
         file.write_text(yaml.safe_dump(head | content, sort_keys=False), encoding="utf-8")
@@ -66,6 +66,17 @@ def scenes_of(given: str, word: str) -> dict[str, Path]:
             file.unlink()
         raise
     return files
+
+
+def _content(key: str, value: str) -> Any:
+    """What a scene says for the value of a key."""
+    of_device = key.removeprefix("device.")
+    if of_device == "material" or of_device in SCALAR_KEYS:
+        return {"device": device_of([f"{of_device}={value}"])}
+    content = yaml.safe_load(value)
+    for section in reversed(key.split(".")):
+        content = {section: content}
+    return content
 
 
 def row_of(key: str, value: str, name: str) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from mesoscale.answer.switches import PadModel
 from mesoscale.answer.what_if import with_device
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
+from mesoscale.settings.definitions import BY_NAME
 from mesoscale.settings.device import PLATED_NICKEL
 from workflow.report.available import Results, results_in
 from workflow.report.numbers import show
@@ -159,9 +160,10 @@ def values_of(words: Sequence[str]) -> dict[str, list[str]]:
     keys: dict[str, list[str]] = {}
     for word in words:
         key, _, values = word.removeprefix("device.").partition("=")
-        if "." in key:
+        if "." in key or key in BY_NAME:
             raise InputError(
-                f"{word}: changes what pads are pressed from; copy the scene, change it and run it"
+                f"{word}: changes what pads are pressed from; change it in a copy of the scene, or"
+                " sweep it (asperity sweep)"
             )
         if key in keys:
             raise InputError(f"{word}: {key} is given twice; write {key}=1,2")
@@ -216,10 +218,10 @@ def line_of(row: dict[str, Any]) -> str:
         return f"{row['device']}: no interval: {row['reason']}"
     ends = volts(row["release_5_V"]), volts(row["release_95_V"])
     interval = interval_of(*ends).replace("\u00a0", " ")
-    words = (
-        f"{row['device']}: closes at {show(row['pull_in_V'])} V and {does(row['release_V'])}"
-        f" {interval}, median ± {show(row['median_error_V'], 1)} V, {row['stuck']:.0%} stick"
-    )
+    words = f"{row['device']}: closes at {show(row['pull_in_V'])} V and {does(row['release_V'])}"
+    if row["release_V"]:
+        words += f" ± {show(row['median_error_V'], 1)} V"
+    words += f" {interval}, {row['stuck']:.0%} stick"
     if row["never_close"]:
         words += f"; {row['never_close']:.0%} of the devices never close and are left out"
     if row["continued"]:

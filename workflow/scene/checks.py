@@ -123,8 +123,6 @@ def _stages(scene: Scene) -> Iterator[str]:
         )
     if line := _no_switch(device):
         yield line
-    elif scene.failure.probability is not None and device.without_lumps:
-        yield device.without_lumps
     synthetic = scene.topography.synthetic
     if "topography" in scene.stages() and not (
         scene.topography.scans or synthetic.small_scans or synthetic.large_scans

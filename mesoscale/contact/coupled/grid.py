@@ -188,76 +188,89 @@ def solve(
     Newton steps, and whether they settled. `grid.field` has the displacements of all sites.
     """
     stiffness = 1.0 / (grid.scale * grid.table[0, 0])
-    stencil = grid.stencil
     state = np.full(gap.size, 1, np.int8)
-    numbers = np.arange(gap.size)
-    aim = tolerance
+    all_sites = np.arange(gap.size)
+    change = np.zeros(gap.size)
+    direct = min(max(DIRECT, DIRECT_PER_PIXEL * grid.shape[0]), grid.field.size - 1)
     coarse = tolerance > COARSE
     error = SPLIT_ERROR if grid.split.open else 0.0
-    direct = min(max(DIRECT, DIRECT_PER_PIXEL * grid.shape[0]), grid.field.size - 1)
-    change = np.zeros(gap.size)
-    around = np.empty((0, 9), np.int32)
+    aim = tolerance
+    # displacements are those of the pressures, or near enough
     exact = coarse
+    # the last step has made them so
     corrected = True
+    # the last step has solved for all free sites
     solved = False
     if grid.drifted and not coarse:
         displacement[:] = grid.follow(sites, place, pressure, False)
     for step in range(NEWTON_STEPS):
-        moved = (
-            dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0
-            or step == 0
-        )
+        changed = dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state)
+        sets_moved = changed > 0 or step == 0
         worst = dense.residual(gap, pressure, displacement, limit, stiffness, gap.size)
         if corrected and not coarse:
             aim = max(tolerance, error * worst)
-        settled = worst <= (aim if grid.drifted else tolerance) or (solved and not moved)
+        allowed = aim if grid.drifted else tolerance
+        settled = worst <= allowed or (solved and not sets_moved)
         if settled and exact:
             return step, True
         bound = dense.bind(pressure, limit, state, change, gap.size)
         if settled:
             exact = aim <= tolerance or solved or not grid.drifted
             displacement[:] = grid.follow(sites, place, pressure, exact)
-            corrected, solved = True, False
+            corrected = True
+            solved = False
             continue
-        places = np.flatnonzero(state == 1)
         exact = coarse
         corrected = False
-        solved = 0 < places.size <= direct
+        free = np.flatnonzero(state == 1)
+        solved = 0 < free.size <= direct
         if solved:
-            if not np.array_equal(grid.block_sites, sites[places]):
-                grid.block_sites = sites[places]
-                grid.block = dense.block(grid.table, grid.scale, grid.block_sites, grid.shape[0])
-            row_of_block = np.full(gap.size, -1)
-            row_of_block[places] = np.arange(places.size)
-            around = dense.neighbours(sites, place, grid.shape[0], places, row_of_block)
-            open_gap = gap[places] + displacement[places]
-            _follow(grid, sites, (pressure, change), places, open_gap)
-            closed = dense.close_gaps(grid.block, around, stencil, open_gap, 0.0, SINGLE_SHARE)
-            change[places] += closed
-            pressure[places] += closed
-            _follow(grid, sites, (pressure, change), numbers, displacement)
+            _solve_few(grid, sites, place, free, gap, (pressure, change), displacement)
+            _follow(grid, sites, (pressure, change), all_sites, displacement)
             continue
         if bound:
-            _follow(grid, sites, (pressure, change), numbers, displacement)
-        if places.size:
+            _follow(grid, sites, (pressure, change), all_sites, displacement)
+        if free.size:
             goal = 0.3 * aim * float(pressure.max()) / stiffness
-            around = dense.neighbours(sites, place, grid.shape[0], places, numbers)
-            share = FACE_SHARE if moved else 0.0
-            _close_gaps(
-                grid,
-                sites,
-                state == 1,
-                (around, stencil),
-                gap,
-                (pressure, displacement),
-                goal,
-                share,
+            near = (
+                dense.neighbours(sites, place, grid.shape[0], free, all_sites),
+                grid.stencil,
             )
+            share = FACE_SHARE if sets_moved else 0.0
+            solution = (pressure, displacement)
+            _close_gaps(grid, sites, state == 1, near, gap, solution, goal, share)
             # a uniform pressure moves nothing: take the least, so that sets change
-            if places.size == grid.field.size:
+            if free.size == grid.field.size:
                 pressure -= pressure.min()
     displacement[:] = grid.displace(sites, pressure)
     return NEWTON_STEPS, False
+
+
+def _solve_few(
+    grid: Grid,
+    sites: Array,
+    place: Array,
+    free: Array,
+    gap: Array,
+    pressed: tuple[Array, Array],
+    displacement: Array,
+) -> None:
+    """Close the gaps of the free sites by the matrix of their influences, which is kept.
+
+    Pressures and their change are changed in place; displacements do not follow yet.
+    """
+    pressure, change = pressed
+    if not np.array_equal(grid.block_sites, sites[free]):
+        grid.block_sites = sites[free]
+        grid.block = dense.block(grid.table, grid.scale, grid.block_sites, grid.shape[0])
+    row_of_block = np.full(gap.size, -1)
+    row_of_block[free] = np.arange(free.size)
+    around = dense.neighbours(sites, place, grid.shape[0], free, row_of_block)
+    open_gap = gap[free] + displacement[free]
+    _follow(grid, sites, pressed, free, open_gap)
+    closed = dense.close_gaps(grid.block, around, grid.stencil, open_gap, 0.0, SINGLE_SHARE)
+    change[free] += closed
+    pressure[free] += closed
 
 
 def _follow(
