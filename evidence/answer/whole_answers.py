@@ -73,7 +73,7 @@ def whole(device: DeviceSettings) -> tuple[PadModel, float]:
     """All pads and switches of a device, and their processor time (s)."""
     began = time.process_time()
     table = film_table(input_table(hamaker=WEAK), {}, (0.0, 0.1))
-    design = plan_points(table, CONTACT, device, POINTS)
+    design = plan_points(table, CONTACT, device, count=POINTS)
     central = solve_point(central_point(table, CONTACT, device), CONTACT, CELLS, surfaces_of(0))
     solved = solve_points(list(enumerate(design.points, 1)), CONTACT, CELLS)
     return PadModel(central, design, tuple(solved)), time.process_time() - began
