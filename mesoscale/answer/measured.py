@@ -122,15 +122,47 @@ def narrowed(settings: DeviceSettings) -> Narrowed:
     ------
     InputError : the measurements contradict the stated device, or each other.
     """
+    device, measured = _asked(settings)
+    return _REMEMBERED.get((device, measured)) or _narrowed(device, measured)
+
+
+def remember(settings: DeviceSettings, posterior: Narrowed) -> None:
+    """Take a posterior that another process has found for the device."""
+    _REMEMBERED[_asked(settings)] = posterior
+
+
+def of_draws(
+    settings: DeviceSettings,
+    z: Array,
+    stated: dict[str, tuple[float, float]],
+    doubt: str,
+    missed: dict[str, float],
+) -> Narrowed:
+    """What is known of a device by draws of its posterior; see `Narrowed`."""
+    table = stated_departures(settings)
+    rng = np.random.default_rng(np.random.SeedSequence([0, 0xB4]))
+    before = _departures(table, rng.standard_normal((KEPT, z.shape[1]))).std(axis=0)
+    after = _departures(table, z)
+    names = list(stated)
+    return Narrowed(
+        _as_table(table, after, names), before, after.std(axis=0), stated, doubt, missed, z
+    )
+
+
+Measured = tuple[tuple[str, tuple[float, float]], ...]
+"""Values and errors by name, in the order of `MEASURABLE`."""
+_REMEMBERED: dict[tuple[DeviceSettings, Measured], Narrowed] = {}
+
+
+def _asked(settings: DeviceSettings) -> tuple[DeviceSettings, Measured]:
+    """A device without what does not change its posterior, and what was measured of it."""
     assert settings.measured is not None
-    unmeasured = settings.model_copy(update={"measured": None, "hold_voltage_V": None})
-    return _narrowed(unmeasured, tuple(settings.measured.stated.items()))
+    closed = {"measured": None, "hold_voltage_V": None, "release_at": "jump"}
+    return settings.model_copy(update=closed), tuple(settings.measured.stated.items())
 
 
 @lru_cache(maxsize=8)
-def _narrowed(
-    settings: DeviceSettings, measured: tuple[tuple[str, tuple[float, float]], ...]
-) -> Narrowed:
+def _narrowed(settings: DeviceSettings, measured: Measured) -> Narrowed:
     beams = over_prior(settings)
     names = [name for name, _ in measured]
     values = np.array([value for _, (value, _) in measured])
@@ -148,20 +180,15 @@ def _narrowed(
         near = solved_at(settings, z[:NEAR_BEAMS])
         missed = _missed_near(beams, near, columns)
         beams = beams + near
-    table = stated_departures(settings)
-    before = _departures(table, rng.standard_normal((KEPT, z.shape[1]))).std(axis=0)
-    after = _departures(table, z)
-    return Narrowed(
-        _as_table(table, after, names),
-        before,
-        after.std(axis=0),
+    return of_draws(
+        settings,
+        z,
         {
             name: (float(column.mean()), float(column.std()))
             for name, column in zip(names, stated.T, strict=True)
         },
         doubt,
         dict(zip(names, missed.tolist(), strict=True)),
-        z,
     )
 
 

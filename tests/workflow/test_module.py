@@ -145,6 +145,8 @@ def test_a_host_workflow_runs_the_module_in_its_own_folder(host, tmp_path):
     assert "the host starts" in said
     assert "the host is done" in said
     assert "results are in" not in said  # Asperity's own last line
+    again = host("mine.yaml", "results/mine/inputs.csv", "all", "--dry-run")
+    assert "Nothing to be done" in again
 
 
 def test_a_sweep_of_twelve_scenes_makes_the_atoms_once(run_host, tmp_path):

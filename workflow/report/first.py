@@ -16,6 +16,7 @@ from workflow.report.verdict import (
     does,
     in_words,
     interval_of,
+    measured_of,
     pull_in_shrinks_by,
     verdict,
     volts,
@@ -127,22 +128,23 @@ def _pull_in(pad: dict[str, Any]) -> str:
     touches = "touches" in (pad["central"] or {})
     does = "touches before it would snap," if touches else "closes"
     pressed = " What its hold voltage has above that presses it." if touches else ""
-    if pad.get("answer"):
+    if not pad.get("answer"):
+        closes = f"{does} at {show(pad['central']['pull_in_V'])} V, at central inputs"
+    else:
         quantiles = pad["answer"]["pull_in_V"]["quantiles"]
         low, middle, high = (f"{show(quantiles[q])} V" for q in ("0.05", "0.5", "0.95"))
-        return f"It {does} at {middle} {interval_of(low, high)}.{pressed}{_narrowed(pad)}"
-    return f"It {does} at {show(pad['central']['pull_in_V'])} V, at central inputs.{pressed}"
+        closes = f"{does} at {middle} {interval_of(low, high)}"
+    return f"It {closes}.{pressed} {_check(pad)}"
 
 
-def _narrowed(pad: dict[str, Any]) -> str:
-    """By how much a measured pull-in narrows the release, in words; empty where it is measured."""
+def _check(pad: dict[str, Any]) -> str:
+    """What to do with this pull-in, and by how much that narrows the release."""
+    if row := measured_of(pad).get("pull_in_V"):
+        return f"Measured: {show(row['value'])} ± {show(row['error'], 2)} V."
     shrinks = pull_in_shrinks_by(pad)
     if shrinks < LITTLE:
-        return ""
-    return (
-        f" Measured of a device (device.measured), it shrinks the interval of its release by"
-        f" {shrinks:.0%}."
-    )
+        return "Check this against a wafer first."
+    return f"Measure this first (device.measured): it shrinks the interval by {shrinks:.0%}."
 
 
 def _conditions(results: Results) -> str:

@@ -209,12 +209,16 @@ def _freedom(pad: dict[str, Any]) -> str:
     return f"At central inputs it is freed by: {in_words(nearest['key'])} {value}."
 
 
+def measured_of(pad: dict[str, Any]) -> dict[str, Any]:
+    """What was measured of the device, by name."""
+    return (pad.get("measured") or {}).get("measured", {})
+
+
 def pull_in_shrinks_by(pad: dict[str, Any]) -> float:
     """Share by which a measured pull-in shrinks the interval of the release; 0 where it is
     measured, and of a plate, of which it is not.
     """
-    measured = (pad.get("measured") or {}).get("measured", {})
-    if "pull_in_V" in measured or pad.get("electrode") == "flat":
+    if "pull_in_V" in measured_of(pad) or pad.get("electrode") == "flat":
         return 0.0
     return (pad.get("answer") or {}).get("pull_in_shrinks_by", 0.0)
 

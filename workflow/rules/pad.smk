@@ -11,16 +11,40 @@ POINT_CHUNKS = {"central": (0, 1)} | {
 ALL_CHUNKS = f"central, 000 to {len(POINT_CHUNKS) - 2:03}"
 
 
+# the posterior of a measured device, made once
+MEASURED = {"measured": f"{RESULTS}/pad/measured.h5"} if SCENE.device.measured else {}
 # what jobs that use the pad read, and the settings that they have
-PRESSED = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv", "model": f"{RESULTS}/pad/model.h5"}
+PRESSED = {
+    **SURFACE,
+    **MEASURED,
+    "inputs": f"{RESULTS}/inputs.csv",
+    "model": f"{RESULTS}/pad/model.h5",
+}
 ON_PADS = {section: settings(section) for section in ("contact", "device", "pad")}
 if SPREAD_FILES:
     ON_PADS["departures"] = contents(*SPREAD_FILES)
 
 
+if MEASURED:
+
+    rule narrow_device:
+        output:
+            MEASURED["measured"],
+        log:
+            f"{RESULTS}/logs/narrow_device.log",
+        priority: 3
+        params:
+            **{name: of for name, of in ON_PADS.items() if name in ("device", "departures")},
+        message:
+            "narrow the device by what was measured"
+        script:
+            "../scripts/narrow_device.py"
+
+
 rule press_pads:
     input:
         **SURFACE,
+        **MEASURED,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/pad/points/chunk_{{chunk}}.h5",
@@ -44,6 +68,7 @@ rule pad:
     """pads at points of all that is uncertain"""
     input:
         **SURFACE,
+        **MEASURED,
         inputs=f"{RESULTS}/inputs.csv",
         chunks=[f"{RESULTS}/pad/points/chunk_{chunk}.h5" for chunk in POINT_CHUNKS],
     output:
@@ -63,4 +88,5 @@ rule pad:
 
 if "switch" in SCENE.tails:
     SHOWN += rules.pad.output
+    SHOWN += MEASURED.values()
     KEPT += rules.pad.input.chunks

@@ -148,7 +148,7 @@ def _wait_for_jobs(results: Path) -> None:
         os.close(jobs)
 
 
-def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
+def claim(results: Path, scene: Path, shipped: Path, write: bool, hosted: bool = False) -> None:
     """See that the folder's results are those of this scene, and say so in the folder if `write`.
 
     Parameters
@@ -156,6 +156,7 @@ def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
     scene : the scene's file.
     shipped : folder of the scenes that come with the project; they are known by name, wherever the
         project lies.
+    hosted : a workflow that has Asperity as a module makes them. Its runs leave no file `.scene`.
 
     Raises
     ------
@@ -174,7 +175,8 @@ def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
             f"{results}: these are results of {known}, not of {owner}; give one of them another"
             f" name (key `name`), or empty the file {note} if the scene has moved"
         )
-    if not note.is_file() and (strangers := sorted(set(os.listdir(results)) - {".lock", ".jobs"})):
+    strangers = sorted(set(os.listdir(results)) - {".lock", ".jobs"})
+    if strangers and not note.is_file() and not hosted:
         raise Refused(
             f"{results}: holds {strangers[0]}, but no file .scene, so that no run made it; give the"
             " scene another name (key `name`), or move the folder or its link away"

@@ -140,6 +140,10 @@ def points_of_job(snakemake: Any) -> tuple[ScenePoints, PadSettings]:
     contact = contact_settings(snakemake.params.contact, snakemake)
     device = settings_from_job(DeviceSettings, snakemake.params.device)
     pad = settings_from_job(PadSettings, snakemake.params.pad)
+    if measured := snakemake.input.get("measured"):
+        from workflow.run.measured_device import remember_measured  # compiles
+
+        remember_measured(measured, device)
     path = snakemake.input.get("topography")
     film = load_json(path)["film"] if path else {}
     table = film_table(from_rows(load_csv(snakemake.input.inputs)), film, pad.rms_scatter)

@@ -28,6 +28,7 @@ from workflow.report.available import Results, results_in
 from workflow.report.numbers import show
 from workflow.report.verdict import does, interval_of, volts
 from workflow.run.contact_settings import contact_on
+from workflow.run.measured_device import remember_measured
 from workflow.run.pads import ScenePoints, load_model, points_of
 from workflow.scene import SceneError, load_scene
 from workflow.schemas import UnfitTable
@@ -72,6 +73,8 @@ class PressedScene:
             described = results.json("topography/parameters.json")
         self._contact = contact_on(scene.contact, described)
         self._inputs = str(folder / "pad/inputs.csv")
+        if results.has("pad/measured.h5"):
+            remember_measured(str(folder / "pad/measured.h5"), scene.device)
         self._model = load_model([str(folder / "pad/model.h5")], self.points_of(self.device))
         _check_unchanged(results, self._model, given)
 

@@ -77,8 +77,7 @@ class Run:
         studies : tables of studies of this scene.
         """
         self._studies = studies
-        is_ours = Path(self._workflow.main_snakefile) in OWN_SNAKEFILES
-        if not (self._workflow.is_main_process and is_ours) or missing_packages():
+        if not self._workflow.is_main_process or self._is_hosted or missing_packages():
             return
         from workflow.run.cost import LONGEST_RUN_H, Costs  # takes a second: not in every job
         from workflow.run.progress import speak
@@ -125,6 +124,11 @@ class Run:
         lines = map(shown, failures(self._results / "logs", self._started))
         print("\n".join(["", *lines]), file=sys.stderr)
 
+    @property
+    def _is_hosted(self) -> bool:
+        """Whether this is a module of another workflow."""
+        return Path(self._workflow.main_snakefile) not in OWN_SNAKEFILES
+
     def _has_results(self) -> bool:
         return self._workflow.is_main_process and self._results.is_dir()
 
@@ -139,7 +143,8 @@ class Run:
         while a run works.
         """
         try:
-            ownership.claim(self._results, find_scene(self._scene_given), SCENES, write)
+            scene = find_scene(self._scene_given)
+            ownership.claim(self._results, scene, SCENES, write, self._is_hosted)
             if self._lock is None and not self._workflow.output_settings.dryrun:
                 self._lock = ownership.take(self._results)
         except ownership.Refused as error:

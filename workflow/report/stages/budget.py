@@ -50,12 +50,22 @@ def describe(results: Results) -> Iterator[Block]:
             front=True,
         )
         yield table(_caption(results, rows), held, HELD, front=True)
-    left_out = "What the interval leaves out, by the volts that the release moves"
-    yield table(left_out, [row for row in large if row["held"] != "True"], LEFT_OUT, front=True)
+    unknown = [row for row in large if row["how"] == "unknown"]
+    left_out = [row for row in large if row["held"] != "True" and row not in unknown]
+    yield table(_left_out(unknown), left_out, LEFT_OUT, front=True)
+    yield table("Effects whose volts nobody knows", unknown, LEFT_OUT)
     yield table(
         "Effects below 0.1 V", [row for row in rows if number(row["volts"]) < LITTLE_V], LEFT_OUT
     )
     yield table("Sources", rows, {"effect": _effect, "source": "source"})
+
+
+def _left_out(unknown: list[CsvRow]) -> str:
+    """Caption of what the interval leaves out; names what has no volts."""
+    words = "What the interval leaves out, by the volts that the release moves"
+    if not unknown:
+        return words
+    return f"{words}. Nobody knows the volts of: {'; '.join(row['effect'] for row in unknown)}"
 
 
 def _of_sticking(reserve: dict[str, Any]) -> Iterator[Block]:

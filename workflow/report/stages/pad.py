@@ -9,7 +9,7 @@ from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import cell, column, show, spread
 from workflow.report.page import Block, DoubtNote, Figure, PageTable, stage, table
-from workflow.report.verdict import causes_of, in_words
+from workflow.report.verdict import causes_of, in_words, labelled
 
 QUANTILES = ("0.5", "0.05", "0.95")
 """Median and ends, in the order of `spread`."""
@@ -77,7 +77,7 @@ def _measured(measured: dict[str, Any]) -> Iterator[Block]:
         "Properties of the device after what was measured",
         measured["properties"],
         {
-            "property": "name",
+            "property": lambda row: labelled(row["name"]),
             "stated": cell("stated"),
             "after": cell("typical"),
             "of its spread remains": lambda row: f"{row['remains']:.0%}",
