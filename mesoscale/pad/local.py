@@ -23,7 +23,7 @@ MEMORY_DEPTHS = 96
 MEMORY_RISES = 1200
 """Rises above a deepest closing in the table."""
 HIGHEST_RISE_NM = 60.0
-"""Largest rise in the table. Beyond it closing and opening are the same attraction, except on coarse
+"""Largest rise in the table. Beyond it closing and opening are the same attraction, but for coarse
 films."""
 COARSE_NM = 120.0
 """Shallowest computed depth from which a film counts as coarse: its table goes on for as long as
