@@ -81,9 +81,7 @@ def test_humidity_is_swept_where_a_scene_has_humid_air(plan):
 
 def test_failures_of_a_plate_are_planned_without_the_circuit_that_it_has_not(workflow_in):
     path = workflow_in.folder / "plate.yaml"
-    path.write_text(
-        "extends: ci\ndevice: {spring_N_per_m: 170}\nfailure: {probability: 1.0e-3}\n"
-    )
+    path.write_text("extends: ci\ndevice: {spring_N_per_m: 170}\nfailure: {probability: 1.0e-3}\n")
     planned = workflow_in.planned(str(path))
     assert "failure" in planned
     assert "circuit" not in planned
