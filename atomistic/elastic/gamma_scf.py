@@ -181,22 +181,27 @@ class CachedGrid(MultiGridNumInt2):
         return float(rho.sum() * self.weight), exc, veff
 
     def _matrix_of(self, density_matrix: Any, rho: np.ndarray, potential: np.ndarray) -> np.ndarray:
-        """`matrix` of a potential, which lags behind between empty orbitals after the first one.
+        """`matrix` of a potential; after the first one only what touches occupied orbitals is new.
 
-        With δ the change since the last full matrix and Q the projector onto empty orbitals, δ − Qᵀ
-        δ Q is added to it: half the work or less.  The gradient of the orbitals is exact, so the
-        SCF ends at the same solution.
+        With c the occupied orbitals, S the overlap, P = c cᵀ S and Q = 1 - P, the change δ of the
+        matrix is replaced by
+
+            δ - Qᵀ δ Q = U + Uᵀ,   U = (δ c - S c cᵀ δ c / 2) (S c)ᵀ,
+
+        which is half the work or less. What lies between empty orbitals stays as it was in the last
+        full matrix. The gradient of the orbitals is exact, so the SCF ends at the same solution.
         """
         has_orbitals = getattr(density_matrix, "mo_coeff", None) is not None
         if self.basis_overlap is not None and has_orbitals and self._full:
             full_matrix, old_rho, old_potential = self._full
             moved_electrons = self.weight * float(abs(rho - old_rho).sum())
             if moved_electrons < LAG * self.cell.nelectron:
+                # orbitals and waves are of two electrons each
                 orbitals, _ = self.occupied_orbitals(density_matrix)
-                c = orbitals * np.sqrt(0.5)
-                change = np.sqrt(0.5) * self._onto_waves(potential - old_potential)
-                s_c = self.basis_overlap @ c
-                update = (change - 0.5 * s_c @ (c.T @ change)) @ s_c.T
+                occupied = orbitals * np.sqrt(0.5)
+                delta_c = np.sqrt(0.5) * self._onto_waves(potential - old_potential)
+                overlap_c = self.basis_overlap @ occupied
+                update = (delta_c - 0.5 * overlap_c @ (occupied.T @ delta_c)) @ overlap_c.T
                 return full_matrix + update + update.T
         matrix = self.matrix(potential)
         self._full = (matrix, rho, potential)

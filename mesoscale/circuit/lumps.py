@@ -111,9 +111,8 @@ def _paired_stiffness(beam: Beam) -> tuple[Array, Array]:
 
     Slopes follow the displacements as they do at rest, without what stretches the beam.
     """
-    _, bends, pulled, *_ = beam.mechanics
-    drawn = assembled(pulled)[2:-2, 2:-2]
-    free = assembled(bends)[2:-2, 2:-2]
+    drawn = assembled(beam.mechanics.pulled)[2:-2, 2:-2]
+    free = assembled(beam.mechanics.bending_N_m)[2:-2, 2:-2]
     free = free + beam.tension_N * drawn
     follow = -np.linalg.solve(free[1::2, 1::2], free[1::2, ::2])
     joined = np.empty((len(free), len(follow)))

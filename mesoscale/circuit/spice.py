@@ -60,9 +60,9 @@ ONSET_NM = 0.01
 """Way over which following begins. Where it began with a corner, ngspice ended as soon as a second
 lump came below the start: no step was small enough. A way of 0.1 nm forgets 0.05 nm of an impact."""
 REACH_NM = 20.0
+"""Way below the deepest computed closing over which the repulsion of a pad goes on to grow."""
 MOST_FOLDS = 8.0
-"""So far below its deepest closing the repulsion of a pad goes on to grow, by so many e-folds at
-most: wild steps of a simulator stay finite."""
+"""It grows by so many e-folds at most: wild steps of a simulator stay finite."""
 
 
 def spice_switch(
@@ -146,6 +146,7 @@ def _lump(lumps: Lumps) -> str:
     width = lumps.width_m
     dielectric = lumps.dielectric_nm
     # electric gap (m), thickness of the gas (nm), its density over that around
+    # viscosity in a narrow gap is lower by 1 + 9.638 Kn^1.159 (Veijola, see `lumps`)
     electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
     film = f"max({{rest}} - V(moved), {CIRCUIT.least_film_nm:g})"
     dense = f"max(1 + V(excess), {CIRCUIT.least_density:g})"
@@ -171,6 +172,14 @@ Bdrawn 0 drawn I = {0.5 * VACUUM_PERMITTIVITY} * V(top,bottom)^2 * (1 + {{fringe
 def spice_pad(pad: PadCurves, cells: int) -> str:
     """SPICE subcircuit `rough_pad` (ngspice): node s 1 V = 1 nm, node force 1 V = 1 nN, positive =
     pushed away.
+
+    The pressure of a pad at a separation s is
+
+        p = exp(push) - faint - (A / (6 pi (s + offset)^3) + floor) exp(pull),
+
+    with A the Hamaker constant of the flats. `push` and `pull` are pieces over the deepest
+    separation and, of what they change by while the pad opens, over the rise above it. Nodes hold
+    them less their values far out (`far`), so that they are zero where simulators begin.
     """
     tables = tables_of(pad, cubic=False)
     # closing counts from a little farther out than the pad repels: a lump that begins to count is a
@@ -185,7 +194,6 @@ def spice_pad(pad: PadCurves, cells: int) -> str:
     pulls = [_pwl("V(risen)", pull_change) for _, pull_change in tables.opening]
     push_sum = _weighted(_pwl(deepest, push, REACH_NM), weights, pushes)
     pull_sum = _weighted(_pwl(deepest, pull), weights, pulls)
-    # wild steps of a simulator stay finite
     largest = [piece.y.max() + MOST_FOLDS for piece in tables.closing]
     return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
 * {note(tables, cells)}

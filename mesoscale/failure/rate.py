@@ -2,13 +2,14 @@
 million.
 
 Sticking is a yes or no, from which no rare event can be learned. So a response is learned of the
-reserve of switches (`mesoscale.failure.population`). One fails by itself where its reserve is below
-zero, and with k times the attraction where it is below ln k: one response serves all laws of
-attraction and hold voltages. It is learned from switches on pads that are pressed for them: those
-of the answer, and further ones where a failure is likely. Such switches also correct it.
+reserve. The reserve of a switch is the logarithm of the factor on its attraction with which it just
+fails (`mesoscale.failure.population`). With k times the attraction a switch fails where its reserve
+is below ln k. So one response serves all laws of attraction and hold voltages. It is learned from
+switches on pads that are pressed for them: those of the answer, and further ones where a failure is
+likely. Such switches also correct it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -37,6 +38,8 @@ from mesoscale.uncertainty.rare_events import (
 Array = NDArray[np.float64]
 Known = tuple[int, float]
 """A number of the population that is known, and its value."""
+Tell = Callable[[float, str], None]
+"""Is told which share of the work is done, and what comes next."""
 
 
 def _with(z: Array, known: Known | None) -> Array:
@@ -111,9 +114,7 @@ def voltages(population: Population) -> Array:
     )
 
 
-def learn(
-    population: Population, tell: Callable[[float, str], None], seed: int = 0
-) -> ReserveResponse:
+def learn(population: Population, tell: Tell, seed: int = 0) -> ReserveResponse:
     """The response of the reserve, from switches of the whole population and then from such as
     nearly fail.
 
@@ -124,34 +125,34 @@ def learn(
     from scipy.stats import qmc  # slow to import
 
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0xFA11]))
-    volts = voltages(population).tolist()
+    curve_V = voltages(population).tolist()
     # switches that the answer has solved, and others over all voltages: every second one farther
     # out than devices are
     units, pads = population.solved
     solved_z = ndtri(units)
-    hold_V = population.hold_V
-    columns = population.columns(solved_z, np.full(len(solved_z), hold_V))
-    reserves = population.reserves(solved_z, hold_V, pads)
+    scene_V = population.hold_V
+    columns = population.columns(solved_z, np.full(len(solved_z), scene_V))
+    reserves = population.reserves(solved_z, scene_V, pads)
     first = qmc.LatinHypercube(population.dimension, rng=rng).random(FAILURE.first)
     farther = np.where(np.arange(FAILURE.first) % 2, 1.0, FAILURE.wide)
     z = ndtri(first) * farther[:, None]
-    batches = [(z[k :: FAILURE.voltages], hold_V) for k, hold_V in enumerate(volts)]
+    batches = [(z[k :: FAILURE.voltages], batch_V) for k, batch_V in enumerate(curve_V)]
     rounds = 0
     while True:
-        for batch_z, hold_V in batches:
+        for batch_z, batch_V in batches:
             tell(0.2 * rounds / FAILURE.rounds, f"{len(reserves)} switches")
-            of_batch = population.columns(batch_z, np.full(len(batch_z), hold_V))
+            of_batch = population.columns(batch_z, np.full(len(batch_z), batch_V))
             columns = np.concatenate([columns, of_batch])
-            reserves = np.concatenate([reserves, population.reserves(batch_z, hold_V)])
+            reserves = np.concatenate([reserves, population.reserves(batch_z, batch_V)])
         response = _learned(population, columns, reserves)
         if rounds == FAILURE.rounds:
             return response
         # then such as nearly fail by the response so far
-        hold_V = float(rng.uniform(volts[0], volts[-1]))
+        drawn_V = float(rng.uniform(curve_V[0], curve_V[-1]))
         times = WORKS[rounds % len(WORKS)]
-        likely = response.sample(times, hold_V, seed + rounds).points
+        likely = response.sample(times, drawn_V, seed + rounds).points
         chosen = rng.permutation(len(likely))[: FAILURE.batch]
-        batches = [(likely[chosen], hold_V)]
+        batches = [(likely[chosen], drawn_V)]
         rounds += 1
 
 
@@ -164,20 +165,20 @@ def _learned(population: Population, columns: Array, reserves: Array) -> Reserve
     """
     solved = np.isfinite(reserves)
     # a switch that fails with the least attraction says nothing of where others begin to
-    known = reserves > np.log(FAILURE.least_times) + FAILURE.step
+    tells = reserves > np.log(FAILURE.least_times) + FAILURE.step
     if solved.sum() < FAILURE.fewest:
         raise InputError(
             f"failure: {solved.sum()} of {len(reserves)} switches can be solved; accepted are"
             f" at least {FAILURE.fewest}; lower device.hold_voltage_V, or narrow the inputs"
         )
-    if known.sum() < FAILURE.fewest:
+    if tells.sum() < FAILURE.fewest:
         raise InputError(
-            f"failure.release_V = {population.release_V:.4g}: {known.sum()} of {solved.sum()}"
+            f"failure.release_V = {population.release_V:.4g}: {tells.sum()} of {solved.sum()}"
             f" switches release above it; accepted are at least {FAILURE.fewest}; lower it, or"
             " device.hold_voltage_V"
         )
-    process = Process(columns[known], reserves[known])
-    return ReserveResponse(population, process, len(reserves), columns[known], reserves[known])
+    process = Process(columns[tells], reserves[tells])
+    return ReserveResponse(population, process, len(reserves), columns[tells], reserves[tells])
 
 
 def corrected(
@@ -285,7 +286,7 @@ def least_spring(
 
 
 def failure_rate(
-    population: Population, allowed: float, tell: Callable[[float, str], None]
+    population: Population, allowed: float, tell: Tell
 ) -> tuple[dict[str, Any], list[dict[str, float]]]:
     """Content of failure/failure.json and rows of failure/failure.csv.
 
@@ -297,73 +298,114 @@ def failure_rate(
     ------
     InputError : no switch of the population can be solved, or none lets go above the asked voltage.
     """
-    hold = population.hold_V
     response = learn(population, tell)
-    given = {
-        (volts, times): response.rates(times, volts)
-        for volts in voltages(population).tolist()
-        for times in WORKS
-    }
-    rows = [
-        {
-            "hold_V": volts,
-            "attraction": times,
-            "failing": response.sample(times, volts, 0).probability,
-            "failing_q95": float(np.quantile(rates, 0.95)),
-            "failing_sure": float(np.quantile(rates, FAILURE.confidence)),
-        }
-        for (volts, times), rates in given.items()
-    ]
-    laws = []
-    likely = response.sample(just_allowed(response, hold, allowed), hold, 0)
-    for number, times in enumerate(WORKS):
-        law = f"{times:.2g} times the attraction"
-        step = 0.8 / len(WORKS)
-        tell(0.2 + number * step, law)
-        share = np.array([row["failing_sure"] for row in rows if row["attraction"] == times])
-        allowed_V = furthest_allowed(voltages(population), share, allowed)
-        rates = response.rates(times, hold)
-        failing = asdict(corrected(response, times, hold))
-        tell(0.2 + (number + 0.2) * step, f"{law}, least spring")
-        spring = least_spring(response, likely, times, hold, allowed)
-        tell(0.2 + (number + 0.8) * step, f"{law}, largest hold voltage")
-        laws.append(
-            {
-                "attraction": times,
-                "failing": failing,
-                "given_common": quantiles_of(rates),
-                "sure": float(np.mean(rates <= allowed)),
-                "largest_hold_V": allowed_V,
-                "least_rms_nm": least_rms_nm(response, times, hold, allowed),
-                "least_spring": spring,
-                "there": (
-                    None if allowed_V is None else asdict(corrected(response, times, allowed_V))
-                ),
-            }
-        )
-    # with the scene's own attraction, or where that never fails with the largest
-    judged = next(
-        (times for times in (1.0, WORKS[-1]) if response.sample(times, hold, 0).probability > 0.0),
-        None,
+    rows = _curve(response)
+    likely = response.sample(
+        just_allowed(response, population.hold_V, allowed), population.hold_V, 0
     )
+    step = 0.8 / len(WORKS)
+    laws = []
+    for number, times in enumerate(WORKS):
+        curve = [row for row in rows if row["attraction"] == times]
+        tell_of_law = _within(tell, 0.2 + number * step, step)
+        laws.append(_of_law(response, times, allowed, likely, curve, tell_of_law))
     return {
         "release_V": population.release_V,
         "allowed": allowed,
         "confidence": FAILURE.confidence,
-        "hold_V": hold,
+        "hold_V": population.hold_V,
         "spring": population.spring,
         "laws": laws,
-        "control_attraction": judged,
-        "control": sorted(
-            (
-                {
-                    "name": name,
-                    "failing_if_known": response.sample(judged, hold, 0, (k, 0.0)).probability,
-                }
-                for k, name in enumerate(population.names)
-                if judged is not None
-            ),
-            key=lambda row: row["failing_if_known"],
-        ),
+        **_control(response),
         "switches": response.switches,
     }, rows
+
+
+def _within(tell: Tell, begun: float, step: float) -> Tell:
+    """Told the share of a step, tells that of the whole."""
+
+    def tell_of_step(share: float, words: str) -> None:
+        tell(begun + share * step, words)
+
+    return tell_of_step
+
+
+def _curve(response: ReserveResponse) -> list[dict[str, float]]:
+    """Shares that fail by hold voltage and attraction: of all devices, and as far as what is common
+    to them is known, with 95 % and `FAILURE.confidence`.
+    """
+    rows = []
+    for hold_V in voltages(response.population).tolist():
+        for times in WORKS:
+            rates = response.rates(times, hold_V)
+            rows.append(
+                {
+                    "hold_V": hold_V,
+                    "attraction": times,
+                    "failing": response.sample(times, hold_V, 0).probability,
+                    "failing_q95": float(np.quantile(rates, 0.95)),
+                    "failing_sure": float(np.quantile(rates, FAILURE.confidence)),
+                }
+            )
+    return rows
+
+
+def _of_law(
+    response: ReserveResponse,
+    times: float,
+    allowed: float,
+    likely: Sampled,
+    curve: Sequence[dict[str, float]],
+    tell: Tell,
+) -> dict[str, Any]:
+    """What `times` the attraction does at the scene's hold voltage, and what would be allowed.
+
+    Parameters
+    ----------
+    likely : the failures with about the allowed probability; see `just_allowed`.
+    curve : rows of this attraction.
+    tell : of this law alone.
+    """
+    hold_V = response.population.hold_V
+    law = f"{times:.2g} times the attraction"
+    tell(0.0, law)
+    sure = np.array([row["failing_sure"] for row in curve])
+    largest_V = furthest_allowed(voltages(response.population), sure, allowed)
+    rates = response.rates(times, hold_V)
+    failing = asdict(corrected(response, times, hold_V))
+    tell(0.2, f"{law}, least spring")
+    spring = least_spring(response, likely, times, hold_V, allowed)
+    tell(0.8, f"{law}, largest hold voltage")
+    there = None
+    if largest_V is not None:
+        there = asdict(corrected(response, times, largest_V))
+    return {
+        "attraction": times,
+        "failing": failing,
+        "given_common": quantiles_of(rates),
+        "sure": float(np.mean(rates <= allowed)),
+        "largest_hold_V": largest_V,
+        "least_rms_nm": least_rms_nm(response, times, hold_V, allowed),
+        "least_spring": spring,
+        "there": there,
+    }
+
+
+def _control(response: ReserveResponse) -> dict[str, Any]:
+    """Shares that would fail if one number were known, from the least: what to control first.
+
+    They are of the scene's own attraction, or where that never fails of the largest.
+    """
+    hold_V = response.population.hold_V
+    failing_times = [
+        times for times in (1.0, WORKS[-1]) if response.sample(times, hold_V, 0).probability > 0.0
+    ]
+    if not failing_times:
+        return {"control_attraction": None, "control": []}
+    times = failing_times[0]
+    control = []
+    for k, name in enumerate(response.population.names):
+        if_known = response.sample(times, hold_V, 0, (k, 0.0)).probability
+        control.append({"name": name, "failing_if_known": if_known})
+    control.sort(key=lambda row: row["failing_if_known"])
+    return {"control_attraction": times, "control": control}

@@ -1,4 +1,9 @@
-"""The pressure of a pad at many places at once, each with a deepest closing of its own."""
+"""The pressure of a pad at many places at once, each with a deepest closing of its own.
+
+A place that comes closer than ever follows the closing curve of the pad. One that rises again
+follows an opening from its deepest closing. A table holds openings from `MEMORY_DEPTHS` of these,
+at `MEMORY_RISES` rises above each.
+"""
 
 from copy import copy
 
@@ -14,14 +19,15 @@ FADE_NM = 1.0
 """Rise over which a difference between the end of closing and the start of opening fades, where
 push and pull nearly cancel."""
 MEMORY_DEPTHS = 96
-"""Deepest closings of the table, between those that were computed: 8 nm in steps of 0.1 nm."""
+"""Deepest closings of the table, evenly between those that were computed: some 0.1 nm apart."""
 MEMORY_RISES = 1200
-"""Separations above them."""
+"""Rises above a deepest closing in the table."""
 HIGHEST_RISE_NM = 60.0
-"""Beyond, closing and opening are the same attraction, but for coarse films."""
+"""Largest rise in the table. Beyond it closing and opening are the same attraction, but for coarse
+films."""
 COARSE_NM = 120.0
-"""Shallowest depth of a coarse film. Those of scene `paper` are 90 nm at most: its tables stay
-so."""
+"""Shallowest computed depth from which a film counts as coarse: its table goes on for as long as
+closing and opening differ. Films of scene `paper` have 90 nm at most."""
 SAME = 1e-7
 """Difference of closing and opening, over the largest repulsion, below which they are the same:
 1 Pa of 10 MPa, the accuracy of a beam's balance."""

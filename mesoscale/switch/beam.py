@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.beam_kernels import deflect, newton_step
+from mesoscale.switch.beam_kernels import Mechanics, deflect, newton_step
 from mesoscale.units import GPA, NM, UM
 
 Array = NDArray[np.float64]
@@ -109,10 +109,8 @@ class Beam:
         return first_m[:, None] + self.sizes_m[:, None] * self.within
 
     @cached_property
-    def mechanics(self) -> tuple[Array, Array, Array, Array, Array, float, float, Array, int]:
-        """Hermite's shapes, elements against bending and unit tension, weights times width, these
-        times products of two shapes, and what `newton_step` takes after them.
-        """
+    def mechanics(self) -> Mechanics:
+        """The beam for the inner loops."""
         shapes = np.array([_shapes(size, self.within) for size in self.sizes_m])
         bending, pulled = (
             np.array(parts) for parts in zip(*map(_stiffness, self.sizes_m.tolist()), strict=True)
@@ -126,7 +124,7 @@ class Beam:
             pulled[element] = turn.follows.T @ pulled[element] @ turn.follows
             bending[element] = turn.follows.T @ bending[element] @ turn.follows + turn.spring
             rest[turn.node, 1] -= turn.slope(self.rest_nodal)  # it is at rest already
-        return (
+        return Mechanics(
             shapes,
             self.bending_N_m2 * bending,
             pulled,
@@ -182,7 +180,7 @@ class Beam:
         """Deflection at the integration points from nodal values (nodes, 2), shape (elements,
         points).
         """
-        return deflect(nodal, self.mechanics[0])
+        return deflect(nodal, self.mechanics.shapes)
 
     def step(
         self, nodal: Array, load: Load, inertia: float = 0.0, other: Array | None = None
@@ -197,7 +195,7 @@ class Beam:
         """
         pressure, slope = load(self.rest_m + self.deflection_m(nodal))
         other = np.zeros_like(pressure) if other is None else other
-        return newton_step(nodal, pressure, slope, other, inertia, *self.mechanics)[:2]
+        return newton_step(nodal, pressure, slope, other, inertia, self.mechanics)[:2]
 
 
 @dataclass(frozen=True)
@@ -373,10 +371,13 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
         return stated
     newton_MPa = settings.width_um * settings.thickness_um * 1e-6
     heat = settings.heating_MPa * newton_MPa
-    _, bending, pulled, _, _, _, stretching, rest, unknowns = stated.mechanics
+    mechanics = stated.mechanics
+    stretching = mechanics.stretching_N_m
+    unknowns = mechanics.unknowns
     freedoms = slice(2, 2 + unknowns)
-    bends, pulls = (assembled(parts)[freedoms, freedoms] for parts in (bending, pulled))
-    z0 = rest.ravel()[freedoms]
+    bends = assembled(mechanics.bending_N_m)[freedoms, freedoms]
+    pulls = assembled(mechanics.pulled)[freedoms, freedoms]
+    z0 = mechanics.rest.ravel()[freedoms]
     share = np.concatenate([[0.0], np.cumsum(stated.sizes_m)]) / stated.length_m
     excess_N = -(stated.tension_N + heat) - euler_MPa(settings) * newton_MPa
     u = np.zeros(unknowns)

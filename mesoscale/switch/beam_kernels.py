@@ -1,10 +1,15 @@
 """Inner loops of the bending electrode: one Newton step, and the motion to balance."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from mesoscale.pad.local import pad_pressure
 from mesoscale.units import GPA, NM
+
+Array = NDArray[np.float64]
 
 CLOSING_NM, OPENING_NM = 1.0, 0.25
 """Largest step of a place in contact. Where a pad of few cells tears off, longer steps overshoot:
@@ -34,6 +39,34 @@ SETTLED, BEYOND, FREE, UNSETTLED = range(4)
 """How a motion ends: in balance, below the computed closing, off the pad, or not within the allowed
 steps.
 """
+
+
+class Mechanics(NamedTuple):
+    """A beam of finite elements for these loops. Their shapes are Hermite's: of height and slope of
+    the first node, then of the second.
+
+    Attributes
+    ----------
+    shapes : at the integration points, shape (elements, 4, points).
+    bending_N_m : stiffness of bending, shape (elements, 4, 4).
+    pulled : stiffness of an axial force of 1 N, 1/m, shape (elements, 4, 4).
+    weights_m2 : area that each integration point stands for, shape (elements, points).
+    products_m2 : these times the products of two shapes, shape (elements, 4, 4, points).
+    tension_N : axial force at rest.
+    stretching_N_m : growth of the axial force with the length of the bent beam.
+    rest : height (m) and slope of the nodes at rest, shape (nodes, 2).
+    unknowns : how many of heights and slopes are free.
+    """
+
+    shapes: Array
+    bending_N_m: Array
+    pulled: Array
+    weights_m2: Array
+    products_m2: Array
+    tension_N: float
+    stretching_N_m: float
+    rest: Array
+    unknowns: int
 
 
 @njit(cache=True)
@@ -183,41 +216,49 @@ def elongation(nodal, pulled, rest):
 
 
 @njit(cache=True)
-def newton_step(
-    nodal,
-    pressure_Pa,
-    slope_Pa_m,
-    other_Pa,
-    inertia,
-    shape,
-    bends,
-    pulled,
-    weights,
-    coupled,
-    tension,
-    stretching,
-    rest,
-    unknowns,
-):
-    """One Newton step towards balance, and the answer to another load, of the free nodes; shape
-    (nodes, 2) each.
+def newton_step(nodal, pressure_Pa, slope_Pa_m, other_Pa, damping_Pa_m, beam):
+    """One Newton step towards balance, and the response to another load.
 
-    The work of the unbalanced forces on the step comes third. It is negative where the step is one
-    to a balance that is not stable. Stretching adds a product of one vector with itself to the
-    matrix, which then is no band any more: so the growth of the axial force is one unknown more.
+    With B the stiffness of bending, G that of an axial force of 1 N, T this force at rest, n what
+    it has grown by, and z the state over that at rest z0, a beam in balance has
+
+        B z + T G z + n G (z + z0) = f(z),    n = S ((z + z0) G (z + z0) - z0 G z0) / 2.
+
+    Linearised about z, with v = G (z + z0):
+
+        (B + (T + n) G + damping - df/dz) change + S v (v change) = what is not balanced.
+
+    S v v is no band matrix. So the growth of the axial force is one unknown more
+    (`solve_beam_matrix`).
+
+    Parameters
+    ----------
+    nodal : z, height (m) and slope of the nodes less those at rest, shape (nodes, 2).
+    pressure_Pa, slope_Pa_m : pressure and its slope at the integration points, shape (elements,
+        points).
+    other_Pa : the other load there.
+    damping_Pa_m : added stiffness that holds the beam back.
+    beam : a `Mechanics`.
+
+    Returns
+    -------
+    change, response : of the nodes to what is not balanced and to the other load, shape (nodes, 2)
+        each.
+    work : of the unbalanced forces on the change. It is negative where the step is one to a balance
+        that is not stable.
     """
     elements, points = pressure_Pa.shape
-    nodes = unknowns // 2
+    nodes = beam.unknowns // 2
     blocks = np.zeros((nodes, 2, 2))
     coupling = np.zeros((nodes, 2, 2))
     right = np.zeros((nodes, 3, 2))
-    more = stretching * elongation(nodal, pulled, rest)
+    growth_N = beam.stretching_N_m * elongation(nodal, beam.pulled, beam.rest)
     # Hermite's four shapes of an element: i and j are height (0) and slope (1) of its first node,
     # and of its second (2, 3); the clamped node of the beam is none of the unknown ones
     for e in range(elements):
         for i in range(4):
             node = e + i // 2 - 1
-            turned = i % 2
+            which = i % 2
             if node < 0 or node >= nodes:
                 continue
 
@@ -225,53 +266,53 @@ def newton_step(
             pushed = 0.0
             other = 0.0
             for g in range(points):
-                share = weights[e, g] * shape[e, i, g]
+                share = beam.weights_m2[e, g] * beam.shapes[e, i, g]
                 pushed += pressure_Pa[e, g] * share
                 other += other_Pa[e, g] * share
-            right[node, 1, turned] += other
+            right[node, 1, which] += other
             for j in range(4):
                 # forces of bending and tension on it
                 moved = nodal[e + j // 2, j % 2]
-                at_rest = rest[e + j // 2, j % 2]
-                drawn = pulled[e, i, j]
-                tension_part = tension * moved + more * (moved + at_rest)
-                pushed -= bends[e, i, j] * moved + drawn * tension_part
-                right[node, 2, turned] += drawn * (moved + at_rest)
+                at_rest = beam.rest[e + j // 2, j % 2]
+                drawn = beam.pulled[e, i, j]
+                tension_part = beam.tension_N * moved + growth_N * (moved + at_rest)
+                pushed -= beam.bending_N_m[e, i, j] * moved + drawn * tension_part
+                right[node, 2, which] += drawn * (moved + at_rest)
 
                 # the matrix is symmetric: one half of it is enough
                 if j > i or e + j // 2 < 1:
                     continue
-                entry = bends[e, i, j] + (tension + more) * drawn
+                entry = beam.bending_N_m[e, i, j] + (beam.tension_N + growth_N) * drawn
                 for g in range(points):
-                    entry += (inertia - slope_Pa_m[e, g]) * coupled[e, i, j, g]
+                    entry += (damping_Pa_m - slope_Pa_m[e, g]) * beam.products_m2[e, i, j, g]
                 if i // 2 == j // 2:
-                    blocks[node, turned, j % 2] += entry
+                    blocks[node, which, j % 2] += entry
                 else:
-                    coupling[node - 1, j % 2, turned] += entry
-            right[node, 0, turned] += pushed
+                    coupling[node - 1, j % 2, which] += entry
+            right[node, 0, which] += pushed
 
     force = right[:, 0].copy()
-    solve_beam_matrix(blocks, coupling, right, stretching)
+    solve_beam_matrix(blocks, coupling, right, beam.stretching_N_m)
     change = np.zeros((elements + 1, 2))
-    answer = np.zeros((elements + 1, 2))
+    response = np.zeros((elements + 1, 2))
     work = 0.0
     # in loops: what numba brings for assigning a part of an array takes seconds to compile
     for node in range(nodes):
-        for turned in range(2):
-            change[1 + node, turned] = right[node, 0, turned]
-            answer[1 + node, turned] = right[node, 1, turned]
-            work += force[node, turned] * right[node, 0, turned]
-    return change, answer, work
+        for which in range(2):
+            change[1 + node, which] = right[node, 0, which]
+            response[1 + node, which] = right[node, 1, which]
+            work += force[node, which] * right[node, 0, which]
+    return change, response, work
 
 
 @njit(cache=True)
-def deflect(nodal, shape):
+def deflect(nodal, shapes):
     """Deflection at the integration points, shape (elements, points)."""
-    deflection = np.zeros((nodal.shape[0] - 1, shape.shape[2]))
+    deflection = np.zeros((nodal.shape[0] - 1, shapes.shape[2]))
     for e in range(deflection.shape[0]):
         for g in range(deflection.shape[1]):
             for i in range(4):
-                deflection[e, g] += nodal[e + i // 2, i % 2] * shape[e, i, g]
+                deflection[e, g] += nodal[e + i // 2, i % 2] * shapes[e, i, g]
     return deflection
 
 
@@ -339,7 +380,8 @@ def creep(
 
     Parameters
     ----------
-    beam, places, pad, electric : what `newton_step`, `add_loads` and `pad_pressure` take last.
+    beam : a `Mechanics`.
+    places, pad, electric : what `add_loads`, `pad_pressure` and `add_loads` take of them.
     spring_Pa : pull of the spring, the scale of all pressures; see
         `mesoscale.switch.beam.Beam.spring_Pa`.
     contact_nm : separation at which a place is about to land.
@@ -359,14 +401,14 @@ def creep(
     slope = np.empty_like(rest_m)
     nothing = np.zeros_like(rest_m)
     dimple_nm = places[2]
-    s = (rest_m + deflect(nodal, beam[0])) / NM
+    s = (rest_m + deflect(nodal, beam.shapes)) / NM
     for _ in range(MOST_STEPS):
         pad_pressure(s - dimple_nm, deepest_nm, pressure, slope, *pad)
         add_loads(s, pressure, slope, electric, places)
         change, _, work = newton_step(
-            nodal, pressure * GPA, slope * (GPA / NM), nothing, damping, *beam
+            nodal, pressure * GPA, slope * (GPA / NM), nothing, damping, beam
         )
-        moved = deflect(change, beam[0]) / NM
+        moved = deflect(change, beam.shapes) / NM
         largest_nm, excess = _longest(moved, s, places, contact_nm, longest_nm)
 
         # too far, or towards a balance that is not stable

@@ -200,9 +200,21 @@ class MovingBeam:
         return np.where(self.beam.lands > 0, over_pad, self.beam.stopper_nm)
 
     def _leading(self) -> int:
-        """The node that a small voltage brings down farthest."""
+        """The node that a small voltage brings down farthest.
+
+        Raises
+        ------
+        InputError : a small voltage brings none down.
+        """
         _, per_V2 = self.beam.step(self.nodal, lambda s: self.load(s, 0.0), 0.0, self._pull_Pa())
-        return int(np.argmin(per_V2[:, 0]))
+        node = int(np.argmin(per_V2[:, 0]))
+        if per_V2[node, 0] >= 0.0:
+            raise InputError(
+                "device: a small voltage does not bring the beam down, since it does not rest"
+                " stably where it is; raise thickness_um or residual_stress_MPa, or state its"
+                " bow_nm at rest"
+            )
+        return node
 
     def relax(self, voltage: float) -> None:
         """Plain Newton steps to the balance at a voltage, from the state at hand.

@@ -14,12 +14,14 @@ def lowest_kHz(beam: Beam, settings: DeviceSettings) -> float:
     Its stiffness is that of `mesoscale.switch.beam` without voltage: bending, axial force, and the
     stretching of a shape that is not flat.
     """
-    _, bending, pulled, _, products, _, stretching, rest, unknowns = beam.mechanics
-    freedoms = slice(2, 2 + unknowns)
-    bends, pulls = (assembled(parts)[freedoms, freedoms] for parts in (bending, pulled))
+    mechanics = beam.mechanics
+    freedoms = slice(2, 2 + mechanics.unknowns)
+    bends = assembled(mechanics.bending_N_m)[freedoms, freedoms]
+    pulls = assembled(mechanics.pulled)[freedoms, freedoms]
     mass_kg_m2 = 1e3 * settings.density_g_cm3 * settings.thickness_um * UM
-    mass = mass_kg_m2 * assembled(products.sum(axis=3))[freedoms, freedoms]
-    gradient = pulls @ rest.ravel()[freedoms]
-    stiffness = bends + beam.tension_N * pulls + stretching * np.outer(gradient, gradient)
+    mass = mass_kg_m2 * assembled(mechanics.products_m2.sum(axis=3))[freedoms, freedoms]
+    gradient = pulls @ mechanics.rest.ravel()[freedoms]
+    stretched = mechanics.stretching_N_m * np.outer(gradient, gradient)
+    stiffness = bends + beam.tension_N * pulls + stretched
     lowest = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[0, 0])[0]
     return float(np.sqrt(max(lowest, 0.0))) / (2e3 * np.pi)

@@ -126,14 +126,14 @@ def _pull_in(pad: dict[str, Any]) -> str:
     if not pad.get("answer") and not pad["central"]:
         return ""
     touches = "touches" in (pad["central"] or {})
-    does = "touches before it would snap," if touches else "closes"
+    verb = "touches before it would snap," if touches else "closes"
     pressed = " What its hold voltage has above that presses it." if touches else ""
     if not pad.get("answer"):
-        closes = f"{does} at {show(pad['central']['pull_in_V'])} V, at central inputs"
+        closes = f"{verb} at {show(pad['central']['pull_in_V'])} V, at central inputs"
     else:
         quantiles = pad["answer"]["pull_in_V"]["quantiles"]
         low, middle, high = (f"{show(quantiles[q])} V" for q in ("0.05", "0.5", "0.95"))
-        closes = f"{does} at {middle} {interval_of(low, high)}"
+        closes = f"{verb} at {middle} {interval_of(low, high)}"
     return f"It {closes}.{pressed} {_check(pad)}"
 
 

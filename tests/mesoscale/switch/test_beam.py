@@ -110,7 +110,7 @@ def test_a_beam_that_stretches_is_von_karmans(down_um, load, stress_MPa):
     middle, nodal = loaded(beam, load)
     assert 1e6 * middle == pytest.approx(down_um, rel=1e-4)
     axial_N = beam.tension_N + beam.stretching_N_m * elongation(
-        nodal, beam.mechanics[2], beam.rest_nodal
+        nodal, beam.mechanics.pulled, beam.rest_nodal
     )
     assert 1e-6 * axial_N / (beam.width_m * 4e-6) == pytest.approx(stress_MPa, abs=6e-4)
 
