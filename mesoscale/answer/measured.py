@@ -3,8 +3,9 @@
 Properties are standard normal numbers z behind the departures of `device.spread`. Pull-in,
 capacitance and resonance are a polynomial of second degree of z, fitted to beams that are solved
 over the prior, and again near the posterior. The posterior is weighed by importance: draws of the
-prior first, then of a normal distribution around it mixed with the prior (Hesterberg, Technometrics
-37 (1995) 185). What the polynomial misses counts as an error of the measurement.
+prior first, then of normal distributions around it mixed with the prior (Hesterberg, Technometrics
+37 (1995) 185). Where hardly a draw counts, the likelihood is raised to a power that grows to 1.
+What the polynomial misses counts as an error of the measurement.
 """
 
 from dataclasses import dataclass
@@ -46,8 +47,10 @@ FROM_PRIOR = 0.2
 """Share of the second draws that are of the prior."""
 WIDER = 1.5
 """Variance of the others over that of the posterior."""
-FEWEST = 200
+FEWEST = 1000
 """Independent draws that a posterior needs."""
+MOST_STEPS = 12
+"""Distributions between prior and posterior, each drawn around the one before."""
 SOLVED_SHARE = 0.8
 """Of the beams over the prior must pull in."""
 DOUBTED, REFUSED = 3.0, 4.0
@@ -281,28 +284,48 @@ def _posterior(
         off = (np.exp(_terms(z) @ coefficients) - values) / errors
         return -0.5 * (off**2).sum(axis=1)
 
-    prior = rng.standard_normal((DRAWS, count))
-    weight = _weights(log_likelihood(prior))
-    if count == 0:
-        return prior[:KEPT]
-    mean = weight @ prior
-    centred = prior - mean
-    spread = (weight[:, None] * centred).T @ centred
-    narrow = np.linalg.cholesky(WIDER * spread + RIDGE * np.eye(count))
-    around = mean + rng.standard_normal((DRAWS, count)) @ narrow.T
-    of_prior = rng.random(DRAWS) < FROM_PRIOR
-    z = np.where(of_prior[:, None], rng.standard_normal((DRAWS, count)), around)
-    log_prior = -0.5 * (z**2).sum(axis=1)
-    scaled = np.linalg.solve(narrow, (z - mean).T)
-    log_around = -0.5 * (scaled**2).sum(axis=0) - np.log(np.diag(narrow)).sum()
-    log_drawn = np.logaddexp(np.log(FROM_PRIOR) + log_prior, np.log1p(-FROM_PRIOR) + log_around)
-    weight = _weights(log_likelihood(z) + log_prior - log_drawn)
-    if 1.0 / (weight**2).sum() < FEWEST:
-        raise InputError(
-            "device.measured: hardly a device of device.spread has what was measured; widen the"
-            " spread or the errors"
-        )
-    return z[rng.choice(DRAWS, KEPT, p=weight)]
+    z = rng.standard_normal((DRAWS, count))
+    log_prior = log_drawn = -0.5 * (z**2).sum(axis=1)
+    for _ in range(MOST_STEPS):
+        likelihood = log_likelihood(z)
+        share = _bearable(likelihood, log_prior - log_drawn)
+        weight = _weights(share * likelihood + log_prior - log_drawn)
+        if share == 1.0 or count == 0:
+            return z[rng.choice(DRAWS, KEPT, p=weight)]
+        mean = weight @ z
+        centred = z - mean
+        spread = (weight[:, None] * centred).T @ centred
+        narrow = np.linalg.cholesky(WIDER * spread + RIDGE * np.eye(count))
+        around = mean + rng.standard_normal((DRAWS, count)) @ narrow.T
+        of_prior = rng.random(DRAWS) < FROM_PRIOR
+        z = np.where(of_prior[:, None], rng.standard_normal((DRAWS, count)), around)
+        log_prior = -0.5 * (z**2).sum(axis=1)
+        scaled = np.linalg.solve(narrow, (z - mean).T)
+        log_around = -0.5 * (scaled**2).sum(axis=0) - np.log(np.diag(narrow)).sum()
+        log_drawn = np.logaddexp(np.log(FROM_PRIOR) + log_prior, np.log1p(-FROM_PRIOR) + log_around)
+    raise InputError(
+        "device.measured: hardly a device of device.spread has what was measured; widen the spread"
+        " or the errors"
+    )
+
+
+def _bearable(likelihood: Array, others: Array) -> float:
+    """Largest power of the likelihood, up to 1, with which enough draws count; logarithms (s,)."""
+    low, high = 0.0, 1.0
+    if _independent(_weights(likelihood + others)) >= FEWEST:
+        return 1.0
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        if _independent(_weights(middle * likelihood + others)) >= FEWEST:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def _independent(weight: Array) -> float:
+    """Number of equal draws that tell as much as weighted ones."""
+    return 1.0 / float((weight**2).sum())
 
 
 def _weights(logarithm: Array) -> Array:

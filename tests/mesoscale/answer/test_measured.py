@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from mesoscale.answer.departures import departed_properties, with_properties
-from mesoscale.answer.measured import narrowed, observed, over_prior, what_remains
+from mesoscale.answer.measured import (
+    Solved,
+    _posterior,
+    narrowed,
+    observed,
+    over_prior,
+    what_remains,
+)
 from mesoscale.answer.spread import departures, properties_at, typical
 from mesoscale.errors import InputError
 from mesoscale.studies.answer_stability import published_beam
@@ -135,3 +142,15 @@ def test_a_beam_that_touches_first_is_not_measured_by_its_pull_in():
     dimple = {"electrode": (0.2, 0.8), "contact": (0.4, 0.6), "dimple_nm": 3200.0}
     with pytest.raises(InputError, match="touches before it snaps"):
         departures(device(**dimple, measured={"pull_in_V": "45 +- 1"}))
+
+
+def test_a_wide_prior_is_narrowed_step_by_step():
+    """A normal number of deviation 1, measured with 0.001: no draw of the prior is near enough."""
+    rng = np.random.default_rng(1)
+    z = rng.standard_normal((300, 2))
+    logarithms = np.column_stack([5.0 + 0.3 * z[:, 0], 2.0 + 0.1 * z[:, 1], 1.0 + 0.0 * z[:, 0]])
+    value = np.exp(5.0 + 0.3 * 1.7)
+    draws = _posterior(Solved(z, logarithms), [0], np.array([value]), np.array([1e-3 * value]), rng)
+    assert draws[:, 0].mean() == pytest.approx(1.7, abs=0.001)
+    assert draws[:, 0].std() == pytest.approx(1e-3 / 0.3, rel=0.1)
+    assert draws[:, 1].std() == pytest.approx(1.0, rel=0.1)

@@ -176,7 +176,10 @@ def _caption(results: Results, rows: list[CsvRow]) -> str:
         f" at central inputs. Together they are {show(float(np.sqrt(np.nansum(np.square(held)))))}"
         " V, added in quadrature"
     )
-    if answer := results.json("answer/pad_switch.json").get("answer"):
+    switch = results.json("answer/pad_switch.json")
+    if switch.get("measured"):
+        held_words += ", though measurements tie properties of the device to each other"
+    if answer := switch.get("answer"):
         ends_V = [answer["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]
         return f"{held_words}; the interval is {show(ends_V[1] - ends_V[0])} V wide"
     return held_words
