@@ -258,11 +258,12 @@ def _written(chosen: argparse.Namespace, scene: Path, rewrite: bool = False) -> 
     if missing := [name for name in chosen.files if not os.path.exists(name)]:
         meant = did_you_mean(missing[0], COMMANDS)
         return _refuse(f"{missing[0]}: neither a file nor a command{meant} (asperity --help)")
+    # on small matrices threads wait for each other, three times as long
     for library in (
         "OMP",
         "OPENBLAS",
         "MKL",
-    ):  # on small matrices threads wait for each other, three times as long
+    ):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     from asperity.door import described
     from mesoscale.errors import InputError
@@ -372,12 +373,13 @@ def _snakemake(chosen: argparse.Namespace, dry: bool = False, show: bool = False
             "--workflow-profile",
             "none",
         ),
+        # as workflow/profiles/local
         *(
             "--rerun-incomplete",
             "--nolock",
             "--max-checksum-file-size",
             "1000000000",
-        ),  # as workflow/profiles/local
+        ),
         *(*options, "--cores", chosen.cores, *chosen.target),
         *(
             "--config",

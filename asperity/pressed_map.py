@@ -199,8 +199,7 @@ def press(
     h_macro : hardness (GPa), at which the surface yields; None: elastic.
     h_prime : its size effect, GPa nm^0.5.
     counterface : (nx, ny) heights of the second surface as an instrument sees it. It is turned over
-        about the y axis:
-        its row -1 meets row 0. Only the sum of both maps matters to the contact.
+        about the y axis: its row -1 meets row 0. Only the sum of both maps matters to the contact.
     periodic : the map repeats without end (square maps only). False: it stands alone on the
         half-space.
     contact_at : which heights touch first: the highest of measured maps, the lowest of
@@ -211,8 +210,7 @@ def press(
     Raises
     ------
     InputError : no such map, side, load or material; maps beyond memory; a load beyond full
-        contact; a tilted map that
-        is periodic; an attraction that is no such function.
+        contact; a tilted map that is periodic; an attraction that is no such function.
     """
     if not isinstance(periodic, (bool, np.bool_)):
         raise InputError(f"periodic = {periodic!r}: accepted are True and False")

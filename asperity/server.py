@@ -189,11 +189,8 @@ def application(workers: Workers, host: str) -> "web.Application":
             raise InputError(
                 "the request cannot be decoded; send it as it is, in good chunks"
             ) from None
-        except (
-            ValueError,
-            LookupError,
-            RecursionError,
-        ):  # LookupError: a charset that nobody knows
+        except (ValueError, LookupError, RecursionError):
+            # LookupError: a charset that nobody knows
             raise InputError("the request is no JSON") from None
         if not isinstance(content, dict):
             raise InputError("the request must be a JSON object")

@@ -229,13 +229,14 @@ def run_lammps(
         "-nocite",
         "-nonbuf",
     ]
+    # its pair table is ~15 % faster, also on one thread
     command += [
         "-suffix",
         "omp",
         "-package",
         "omp",
         "1",
-    ]  # its pair table is ~15 % faster, also on one thread
+    ]
     for name, value in variables.items():
         values = [value] if isinstance(value, (str, int, float)) else list(value)  # type: ignore[call-overload]
         command += ["-var", name, *map(str, values)]

@@ -256,8 +256,7 @@ def load_potential(path: str | Path) -> Potential:
     Raises
     ------
     InputError : unreadable or malformed file, missing pair, unknown species or source, charged
-        formula unit,
-        or a pair without a repulsive core.
+        formula unit, or a pair without a repulsive core.
     """
     path = Path(path)
     potential = load_settings(Potential, path, "potential", "config/potentials/pmmcs.yaml")

@@ -38,9 +38,8 @@ NUMBERS = quoted()
 nb_custom_formats = {".py": ["jupytext.reads", {"fmt": "py:percent"}]}
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = (
-    600  # seconds a cell: beside lint and tests, two cores are shared by seven processes
-)
+# seconds a cell: beside lint and tests, two cores are shared by seven processes
+nb_execution_timeout = 600
 
 # the API reference: a page per room and module. Settings have their own page, written from the same
 # classes
@@ -84,6 +83,5 @@ def tell_sources(app, docname, source):
 
 def setup(app):
     app.connect("source-read", tell_sources)
-    app.connect(
-        "html-page-context", collapse_navigation, priority=400
-    )  # before the theme's, which is 500
+    # before the theme's, which is 500
+    app.connect("html-page-context", collapse_navigation, priority=400)

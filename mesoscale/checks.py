@@ -163,9 +163,8 @@ def check_periodic(heights: np.ndarray) -> None:
     position = np.linspace(-0.5, 0.5, len(heights))
     level = heights - heights.mean()
     share = position / (position @ position)
-    tilts = np.array(
-        [share @ level.mean(axis=1), share @ level.mean(axis=0)]
-    )  # from one edge to the other, nm
+    # from one edge to the other, nm
+    tilts = np.array([share @ level.mean(axis=1), share @ level.mean(axis=0)])
     cliffs = np.array([(level[-1] - level[0]).mean(), (level[:, -1] - level[:, 0]).mean()])
     rough = float(np.std(level - tilts[0] * position[:, None] - tilts[1] * position))
     for axis, tilt, cliff in zip("xy", tilts.tolist(), cliffs.tolist(), strict=True):

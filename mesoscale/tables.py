@@ -39,8 +39,7 @@ def foreign_columns(path: str | Path, named: str) -> Columns:
     Raises
     ------
     InputError : too large, unreadable or no text; two columns of one name; a row that is longer
-        than the header. Each
-        begins with `named`.
+        than the header. Each begins with `named`.
     """
     try:
         if is_of_the_system(path):

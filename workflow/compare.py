@@ -92,10 +92,8 @@ def _h5_content(path: Path) -> dict[str, Any]:
             attributes[name] = _attributes(item)
             if isinstance(item, h5py.Dataset):
                 values[name] = item[()]
-    return {
-        "values": values,
-        "attributes": attributes,
-    }  # values first: the first difference is the one that is named
+    # values first: the first difference is the one that is named
+    return {"values": values, "attributes": attributes}
 
 
 def _attributes(item: Any) -> dict[str, Any]:

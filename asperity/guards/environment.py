@@ -39,9 +39,8 @@ def secure() -> None:
     ------
     UnsafeFolder
     """
-    os.environ["PYTHONSAFEPATH"] = (
-        "1"  # no module is taken from the working folder or from beside a job's script
-    )
+    # no module is taken from the working folder or from beside a job's script
+    os.environ["PYTHONSAFEPATH"] = "1"
     entries = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     paths = [str(ROOT), *(path for path in entries if os.path.isabs(path))]
     os.environ["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(paths))

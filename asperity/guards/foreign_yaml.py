@@ -12,9 +12,8 @@ from typing import Any
 
 import yaml
 
-ODD_BREAK = re.compile(
-    r"\r(?!\n)|[\x85\u2028\u2029]"
-)  # a comment ends there, though no editor shows it
+# a comment ends there, though no editor shows it
+ODD_BREAK = re.compile(r"\r(?!\n)|[\x85\u2028\u2029]")
 MAX_BYTES = 1_000_000
 MAX_NODES = 50_000  # a second of reading; the largest scene has 400
 MAX_DEPTH = 20  # the settings need 6
@@ -114,10 +113,8 @@ def parse(text: str | bytes, tuples: bool = False) -> Any:
         )
     try:
         return yaml.load(text, _ContainerLoader if tuples else _Loader)
-    except (
-        yaml.YAMLError,
-        ValueError,
-    ) as error:  # also: text that is no Unicode, numbers of 5000 digits
+    except (yaml.YAMLError, ValueError) as error:
+        # also: text that is no Unicode, numbers of 5000 digits
         raise MistakenYaml(f"not valid YAML ({' '.join(str(error).split()):.300})") from None
 
 

@@ -26,8 +26,8 @@ def key(default: Any, meaning: str, accepted: str = "", **field_options: Any) ->
     default : its default; ``...``: it must be given.
     meaning : one thought, as the documentation shows it.
     accepted : interval and unit of a quantity, such as ``"(0, 30] nm"`` or ``"[1, inf)"``; a unit
-        alone, ``"MPa"``,
-        for a list whose entries have an interval of their own; empty: what the type says.
+        alone, ``"MPa"``, for a list whose entries have an interval of their own; empty: what the
+        type says.
     others : further keywords of `pydantic.Field`, such as `min_length`.
     """
     unit: str | None = accepted

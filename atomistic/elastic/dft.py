@@ -221,9 +221,8 @@ class PyscfGamma(Calculator):
 
     def _solve(self, mesh, quantity: str) -> dict[str, np.ndarray]:
         mf = self._mean_field(mesh)
-        overlap = np.asarray(
-            mf.cell.pbc_intor("int1e_ovlp", hermi=1)
-        )  # half the time of PySCF's own call
+        # half the time of PySCF's own call
+        overlap = np.asarray(mf.cell.pbc_intor("int1e_ovlp", hermi=1))
         self._keep_overlap(mf, overlap)
         energy = mf.kernel(self._guess(mf.cell, overlap))
         converged = bool(mf.converged) and bool(np.isfinite(energy))

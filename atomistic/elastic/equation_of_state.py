@@ -20,10 +20,8 @@ from asperity.guards.errors import InputError
 from atomistic.constants import EV_PER_A3_IN_GPA
 
 MIN_POINTS = 5
-B_PRIME_RANGE = (
-    2.0,
-    7.0,
-)  # outside it, a solid this side of melting is unlikely and the fit suspect
+# outside it, a solid this side of melting is unlikely and the fit suspect
+B_PRIME_RANGE = (2.0, 7.0)
 FORMS_AGREE = 0.02  # Birch–Murnaghan and Vinet must give the same B within this
 
 

@@ -47,16 +47,14 @@ class CachedGrid(MultiGridNumInt2):
     ----------
     cell : built PySCF cell, all atoms with GTH pseudopotentials; its `mesh` is the grid
     precision : of the orbitals on the grid and of products with them; single precision rounds the
-        energy by some 1e-7
-        hartree per atom, much the same for neighbouring geometries, and leaves 1e-8 hartree from
-        cycle to cycle
+        energy by some 1e-7 hartree per atom, much the same for neighbouring geometries, and leaves
+        1e-8 hartree from cycle to cycle
 
     Attributes
     ----------
     waves : orbitals of the last density on the grid, (orbitals, grid points)
     basis_overlap : of the basis functions, None until it is set; with it only the first potential
-        of an SCF is a full
-        matrix (`_matrix_of`)
+        of an SCF is a full matrix (`_matrix_of`)
     """
 
     def __init__(self, cell: "Cell", precision: type[np.floating] = np.float64):

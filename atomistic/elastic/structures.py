@@ -71,9 +71,8 @@ def relaxed_structure(
         progress(0.0, f"relaxing ions, at most {max_steps} steps")
     if max_steps:
         try:
-            done = relax_ions(
-                atoms, 0.3, max_steps
-            )  # eV/Å, largest force left before the E(V) scan
+            # eV/Å, largest force left before the E(V) scan
+            done = relax_ions(atoms, 0.3, max_steps)
         except CalculationFailed as error:
             done = Relaxation(failure=f"relaxation: {error}")
     atoms = strained(quenched if done.failure else atoms, 0.0)

@@ -51,8 +51,7 @@ class ClosedAsperity:
     ----------
     curve : one row per average (columns as in docs/results.md).
     witness : one row per relaxed snapshot: bond exchanges and lasting lowering against the first,
-        and the attraction of
-        its top.
+        and the attraction of its top.
     summary : atoms, steps and the side of the cell.
     """
 
@@ -219,9 +218,8 @@ def oxide_bond(
     if not set(ions) <= set(elements):
         return None
     cation, anion = sorted(ions, key=cations(material, potential).__contains__, reverse=True)
-    types = {
-        element: kind for kind, element in enumerate(elements, 1)
-    }  # the last of an element is the film's
+    # the last of an element is the film's
+    types = {element: kind for kind, element in enumerate(elements, 1)}
     return OxideBond(types[cation], types[anion], material.part("oxide_glass").cutoff_A)
 
 

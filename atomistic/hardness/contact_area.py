@@ -43,8 +43,7 @@ def contact_area(
     touching_A : positions in the plane, shape (atoms, 2).
     cell_A : periodic lengths in x and y.
     centre_A : middle of the contact; the grid is rolled so that the contact does not wrap around,
-        where holes
-        would stay open.
+        where holes would stay open.
     """
     share = np.sum(contact_map(touching_A, cell_A, area, centre_A))
     return float(share * _spacing(cell_A, area).prod())

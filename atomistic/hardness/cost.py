@@ -10,9 +10,8 @@ from atomistic.hardness.stack import check_film
 from atomistic.materials import Material
 from atomistic.settings import HardnessSettings
 
-ATOM_STEPS_PER_CORE_SECOND = (
-    1.3e6  # tabulated pair potential: 12 runs of scene reduced took 31 core-minutes
-)
+# tabulated pair potential: 12 runs of scene reduced took 31 core-minutes
+ATOM_STEPS_PER_CORE_SECOND = 1.3e6
 
 
 def closing_seconds(

@@ -88,8 +88,7 @@ class Hardness:
         became of the plateau.
     plateau_exponent : n of stress ~ length^n on the plateau.
     same_shape_GPa, same_shape_length_nm : mean stress and contact length where the contact is
-        `Rules.same_shape`
-        of the wavelength wide.
+        `Rules.same_shape` of the wavelength wide.
     """
 
     status: str
@@ -199,8 +198,7 @@ def find_hardness(
     cell_area_nm2 : cross-section of the simulation cell.
     approach_nm : travel before a flat can touch.
     on_base : a base, or a film on one: stress that changes with the contact is what its law
-        describes, so that no
-        plateau is asked for.
+        describes, so that no plateau is asked for.
     """
     if len(curve) < rules.min_points:
         return Hardness(

@@ -40,9 +40,8 @@ class Plan:
 
 def plan_closing(closing: ClosingSettings, run: ClosingRun, protocol: Protocol = PROTOCOL) -> Plan:
     """Divide the run into samples (for averages) and segments (for restart files)."""
-    timestep = (
-        protocol.timestep_fs / 1000 / np.sqrt(run.energy_scale)
-    )  # the same share of a vibration's period
+    # the same share of a vibration's period
+    timestep = protocol.timestep_fs / 1000 / np.sqrt(run.energy_scale)
     anneal = round(closing.anneal_ps / timestep)
     travel = (
         10 * protocol.approach_nm + 10 * protocol.depth_over_amplitude * run.asperity.amplitude_nm

@@ -96,9 +96,8 @@ class Readout:
     def curve(self, segments: range) -> Rows:
         """Averages over samples of force, contact area and temperature, with the energy balance."""
         samples: dict[int, Sample] = {}
-        for n in (
-            segments
-        ):  # the last step of a segment may stand in the next one again: the first one counts
+        # the last step of a segment may stand in the next one again: the first one counts
+        for n in segments:
             if n not in self._samples:
                 self._samples[n] = load_samples(self._workspace, n, self.area, self._cell)
             samples = self._samples[n] | samples
@@ -156,8 +155,7 @@ def energy_drift(
     Parameters
     ----------
     ends : position, energy and heat at the ends of consecutive segments, by segment; the first is
-        where the balance
-        begins.
+        where the balance begins.
     """
     numbers = sorted(balances)
     place, energy, heat = np.array([balances[n] for n in numbers]).T

@@ -48,8 +48,7 @@ class FitRules:
     ----------
     interval : quantiles of the 68 % interval, as in the paper.
     least_runs, least_share : defended runs needed, and their share of all runs. Runs scatter by 11
-        %, so that four
-        leave their mean open by 6 %; errors that all runs share are 13 %.
+        %, so that four leave their mean open by 6 %; errors that all runs share are 13 %.
     samples : of the joint distribution of H_macro and H'.
     identified : Student's t of H_macro and of H' from which on a free fit tells both.
     """

@@ -151,8 +151,7 @@ def lay(
     Parameters
     ----------
     base, glass : cells of the base (one wavelength wide, or as many to it as those of the glass)
-        and of the glass
-        (`tiles` to the wavelength).
+        and of the glass (`tiles` to the wavelength).
     """
     below = cut_base(base, glass, tiles, amplitude_A, base_A, seed)
     film = cut_asperity(glass, tiles, amplitude_A, base_A + GAP_A + film_A, seed)
@@ -199,9 +198,8 @@ def film_properties(
     moved = end[:, 1:3] - start[:, 1:3]
     moved -= wavelength_A * np.round(moved / wavelength_A)
     near = np.hypot(*(start[:, 1:3] - wavelength_A / 4).T) < wavelength_A / 4
-    beneath = (
-        near & ~film & (z > z[near & ~film].max() - 6.0)
-    )  # its way is compared with that of the film
+    # its way is compared with that of the film
+    beneath = near & ~film & (z > z[near & ~film].max() - 6.0)
     film_moved = np.median(moved[near & film], axis=0)
     slid = film_moved - np.median(moved[beneath], axis=0)
     gaps = (low - top)[both]

@@ -27,12 +27,8 @@ TRUTH = {
     "rms": 5.0,
 }
 EXAMPLE_SEED = 77_000_000
-SEPARATION_ERROR_NM, PULL_OFF_ERROR, HARDNESS_ERROR, MODULUS_ERROR_GPA = (
-    0.2,
-    0.1,
-    0.05,
-    3.0,
-)  # two of them as shares
+# two of them as shares
+SEPARATION_ERROR_NM, PULL_OFF_ERROR, HARDNESS_ERROR, MODULUS_ERROR_GPA = (0.2, 0.1, 0.05, 3.0)
 POINTS = 25  # of a curve
 INDENTS_NM2 = (40.0, 100.0, 400.0, 1000.0, 4000.0)
 CONTACT = ContactSettings(mechanics="asperity", pixels=256, attraction="clamped")
@@ -87,9 +83,8 @@ def tables(
     }
     for k in range(curves):
         cycle, specimen = run_cycle(inputs, chosen, seed + k), f"film {k + 1}"
-        separations = separations_at(cycle.closing, forces) + rng.uniform(
-            -20.0, 20.0
-        )  # the zero is not known
+        # the zero is not known
+        separations = separations_at(cycle.closing, forces) + rng.uniform(-20.0, 20.0)
         noisy = separations + SEPARATION_ERROR_NM * rng.standard_normal(POINTS)
         made["closing_curves"] += [
             {

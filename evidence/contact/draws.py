@@ -31,10 +31,11 @@ MIDDLE = ContactInputs(
 """The paper's mean inputs."""
 RANGES = {
     "hamaker": (0.18, 0.25),
+    # uniform over the central 99.6 % of Table 1's normal(91, 3.8): tails are drawn as often
     "e_star": (
         80.0,
         102.0,
-    ),  # uniform over the central 99.6 % of Table 1's normal(91, 3.8): tails are drawn as often
+    ),
     "h_macro": (0.7, 3.2),
     "h_prime": (1.95, 14.8),
     "q0": (0.015, 0.035),
@@ -153,9 +154,8 @@ def _judged(number: int, case: str, pixels: int) -> tuple[str, int, float, float
     if not cycle.flags["force_reached"]:
         broken.append("force not reached")
     again, lost = 0.0, dissipated_energy(cycle)[0]
-    if (
-        settings.mechanics != "asperity" and lost > 1e-3 * work(cycle.closing)[0]
-    ):  # else nothing yielded
+    # else nothing yielded
+    if settings.mechanics != "asperity" and lost > 1e-3 * work(cycle.closing)[0]:
         for finer in (1, FINER):  # few steps know the work too little to judge a loss so small
             steps = replace(
                 numerics,

@@ -27,10 +27,8 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """One row."""
     cell = {**SMOOTH_CELL, "pixels": given.pixels, "length_nm": float(given.pixels)}
     settings = ContactSettings(mechanics="coupled", model="elastic", **cell)
-    heights, force_nN = (
-        random_surface(SMOOTH, settings, SEED),
-        20.5e-3 * given.pixels**2,
-    )  # 20.5 MPa
+    # 20.5 MPa
+    heights, force_nN = (random_surface(SMOOTH, settings, SEED), 20.5e-3 * given.pixels**2)
     start, numerics = time.process_time(), Numerics(force_steps=10)
     with mock.patch.object(cycle, "check_memory"):  # which is what is measured
         found = run_cycle(

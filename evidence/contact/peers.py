@@ -25,10 +25,8 @@ from mesoscale.settings import ContactSettings
 
 SITE_NM = 1.0
 STEPS = 10  # of each branch
-DEPTHS = (
-    -6.0,
-    1.0,
-)  # of the branches, from the first contact of the undeformed surface, in units of D0
+# of the branches, from the first contact of the undeformed surface, in units of D0
+DEPTHS = (-6.0, 1.0)
 WORK_J_M2 = 0.05
 RANGES_NM = (0.012, 1000.0)  # of the exponentials
 RANGE_STEP = 0.5  # of their logarithms: the law to 1e-5

@@ -76,9 +76,8 @@ def walk(h, separations, inputs: ContactInputs, settings: ContactSettings):
                 break
         if settings.model == "plastic":
             overlap = -(h.ravel() + separation + matrix @ p)
-            yields = (p >= limit * (1 - 1e-12)) & (
-                overlap > 0
-            )  # the solver's own rounding lies below the limit
+            # the solver's own rounding lies below the limit
+            yields = (p >= limit * (1 - 1e-12)) & (overlap > 0)
             h.ravel()[yields] += overlap[yields]
         rows.append(p.reshape(h.shape))
     return np.array(rows), h

@@ -153,9 +153,8 @@ def _timed(case: Case) -> tuple[dict[str, Any], np.ndarray]:
     forces (nN).
     """
     heights, pairs, newton = _surface(case), [], []
-    np.empty(
-        31 << 20, np.uint8
-    )  # freed at once, after which as much stays with the process: no pair waits for pages
+    # freed at once, after which as much stays with the process: no pair waits for pages
+    np.empty(31 << 20, np.uint8)
     noise = np.random.default_rng(SEED).standard_normal(heights.shape)
 
     def pair(_: Any) -> None:

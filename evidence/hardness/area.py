@@ -148,9 +148,8 @@ def pressed_layers(
     """
     closing, run = ClosingSettings(), _flat_run(energy_scale)
     plan = plan_closing(closing, run, protocol)
-    start = (
-        plan.segments * plan.segment_steps
-    )  # from the clearance to first touch; the slab is pressed after it
+    # from the clearance to first touch; the slab is pressed after it
+    start = plan.segments * plan.segment_steps
     steps = start + round(SLAB_TRAVEL_A / (plan.speed * plan.timestep))
     plan = replace(plan, segments=-(-steps // plan.segment_steps))
     aside, place = LammpsFolder(work / "anneal", {}, "anneal.in"), (1, 0)
@@ -181,9 +180,8 @@ def pressed_layers(
     return layers
 
 
-Flank = Callable[
-    [np.ndarray, float], np.ndarray
-]  # depth below the section (Å), its length (Å) -> half-width (Å)
+# depth below the section (Å), its length (Å) -> half-width (Å)
+Flank = Callable[[np.ndarray, float], np.ndarray]
 
 
 def _planes(depth: np.ndarray, length: float) -> np.ndarray:

@@ -169,9 +169,8 @@ class Draw:
         for k, travel in enumerate(np.arange(0.0, self.travel[-1], 0.1).tolist()):
             plastic = bursts > 0 and travel >= onset
             exchanges = self.rng.poisson(self.background + bursts * plastic) if k else 0
-            lowering = 0.1 * plastic + self.rng.normal(
-                0, 0.005
-            )  # the top of a relaxed sample flickers by 0.05 Å
+            # the top of a relaxed sample flickers by 0.05 Å
+            lowering = 0.1 * plastic + self.rng.normal(0, 0.005)
             witness.append(
                 {"displacement_nm": travel, "new_exchanges": exchanges, "lowering_nm": lowering}
             )

@@ -50,14 +50,10 @@ KEPT = 400  # of the draws
 MAIN, OTHER = "films", "nitride"  # scenes: the electrode, the dielectric
 LENGTHS_NM = (3.0, 5.0, 10.0, 15.0, 30.0, 100.0)
 OXIDE_NM = 5.0  # of TiO2 on the titanium of Kim et al. (2013)
-SOFT_GPA, SIZE_EFFECT = (
-    (0.7, 3.2),
-    (3.7, 16.7),
-)  # H_macro, and H' (GPa nm^0.5) of eq. 4 fitted to a glass
-LEAST_SIDE, LEAST_LENGTH_NM = (
-    4,
-    1.0,
-)  # points on either side of the drop of the slope; smaller contacts are noise
+# H_macro, and H' (GPa nm^0.5) of eq. 4 fitted to a glass
+SOFT_GPA, SIZE_EFFECT = ((0.7, 3.2), (3.7, 16.7))
+# points on either side of the drop of the slope; smaller contacts are noise
+LEAST_SIDE, LEAST_LENGTH_NM = (4, 1.0)
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -280,9 +276,8 @@ def draw(axes: Axes) -> None:
     of = laws()
     colors = ("#20242b", "#b5482a", "#d99a2b", "#4c9a5b", "#1f5fa8")
     on_nitride = points_of(load("hardness.films"), OTHER)
-    on_nitride = on_nitride.take(
-        np.isfinite(on_nitride.thickness_nm)
-    )  # its silica is that of the other scene
+    # its silica is that of the other scene
+    on_nitride = on_nitride.take(np.isfinite(on_nitride.thickness_nm))
     for points, base, style in (
         (of["points"], "titanium", "o-"),
         (on_nitride, "silicon nitride", "s:"),

@@ -42,17 +42,11 @@ from evidence.record import ROOT
 
 STRAIN = 4e-3
 STEEPNESS = 0.1  # amplitude over wavelength, as in scene reduced
-LOOPS, LOOP_A, LOOP_K, LOOP_PS = (
-    2,
-    10.0,
-    600.0,
-    15.0,
-)  # in a crystal twice as high as wide ones are; radius
+# in a crystal twice as high as wide ones are; radius
+LOOPS, LOOP_A, LOOP_K, LOOP_PS = (2, 10.0, 600.0, 15.0)
 FIRST_SHELL_A = 3.5  # between the first and the second neighbours of the crystal at 300 K
-CRYSTAL_A, EXPANDED = (
-    20.0,
-    1.0043,
-)  # height of its cell, which is tiled; its edges at 300 K over those at 0 K
+# height of its cell, which is tiled; its edges at 300 K over those at 0 K
+CRYSTAL_A, EXPANDED = (20.0, 1.0043)
 KINDS = ("crystal", "dislocated", "polycrystal")
 MEASURED = {
     "a_A": 2.951,
@@ -215,9 +209,8 @@ def dislocated(metal: Metal, whole: Atoms, seed: int, work: Path) -> Atoms:
     loops.
     """
     rng = np.random.default_rng(np.random.SeedSequence([seed, 53]))
-    spacing = whole.cell_A[2] / round(
-        whole.cell_A[2] / (EXPANDED * metal.eam.lattice_A[1] / 2)
-    )  # of basal planes
+    # of basal planes
+    spacing = whole.cell_A[2] / round(whole.cell_A[2] / (EXPANDED * metal.eam.lattice_A[1] / 2))
     plane = np.round(whole.positions_A[:, 2] / spacing).astype(int)
     missing = np.zeros(len(whole), bool)
     for k in range(LOOPS):

@@ -53,9 +53,8 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
 
 
 def _departed(device: DeviceSettings) -> Iterator[tuple[str, DeviceSettings]]:
-    for name, less, more in departed(
-        device, 0.841345
-    ):  # the probability one standard deviation out
+    # the probability one standard deviation out
+    for name, less, more in departed(device, 0.841345):
         yield f"{name} -", less
         yield f"{name} +", more
     yield "temperature_C +", device.model_copy(update={"temperature_C": device.temperature_C + 1.0})
@@ -94,9 +93,8 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
             for (scene, case, method), row in by.items()
             if method == "finite differences"
         ]
-        shown[f"differences_{column.removesuffix('_V')}"] = (
-            f"{max(*apart, 1e-4):.2%}"  # rows have four digits
-        )
+        # rows have four digits
+        shown[f"differences_{column.removesuffix('_V')}"] = f"{max(*apart, 1e-4):.2%}"
     central = {scene: by[scene, "fringe", wanted] for scene, _, _ in by}
     for case in dict.fromkeys(row["case"] for row in table if row["case"] not in CAUSES):
         moved = [

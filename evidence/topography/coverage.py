@@ -51,10 +51,8 @@ TIP_ERROR = 0.2
 GRAINY_MAPS = ((1000.0, 512), (3000.0, 1536))
 LINES = ((8000.0, 4), (2000.0, 4))  # length in nm and number of the profiles of a set
 LINE_POINTS, FINER = 2048, 4
-SHAPES = (
-    0.1,
-    0.3,
-)  # log-normal heights: skewness 0.3 to 0.95; for more the spectrum can no longer be kept
+# log-normal heights: skewness 0.3 to 0.95; for more the spectrum can no longer be kept
+SHAPES = (0.1, 0.3)
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:

@@ -93,10 +93,8 @@ def row_of(kind: str, treatment: str, number: int) -> dict[str, Any]:
     if treated is None:
         return row
     row |= {"found": treated.kind, "trusted": float(treated.end / spectrum.nyquist)}
-    if treatment in TREATMENTS and treatment not in (
-        "linear",
-        "spline",
-    ):  # of these the map before has another size
+    # of these the map before has another size
+    if treatment in TREATMENTS and treatment not in ("linear", "spline"):
         before = hann_spectrum(clean(Scan(honest, (length_nm, length_nm), "before"), SETTINGS))
         after, _ = restored(spectrum, treated, cleaned.rms_nm)
         near = [np.abs(item.q / treated.end - 0.95) < 0.06 for item in (after, before)]
@@ -111,9 +109,8 @@ def _found_points(honest: Array, rng: Rng) -> dict[str, Any]:
     """
     lost = lost_points(honest.shape, rng)
     value = float(rng.choice(STAND_INS))
-    heights = (
-        honest + 4 * np.ptp(honest) if value == 0.0 else honest
-    )  # 0 stands for missing far from the surface only
+    # 0 stands for missing far from the surface only
+    heights = honest + 4 * np.ptp(honest) if value == 0.0 else honest
     found, numbers = without_stand_ins(np.where(lost, value, heights))
     side = float(len(honest))
     rms = [clean(Scan(item, (side, side), "map"), SETTINGS).rms_nm for item in (found, honest)]

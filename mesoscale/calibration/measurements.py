@@ -82,8 +82,8 @@ def load_measurements(table: MeasurementTable, path: str | Path | None = None) -
     Raises
     ------
     InputError : the file is missing, a column or its unit is missing or unknown, a value is no
-        number, an error is not
-        positive, columns look swapped, or a curve has fewer points than unknowns.
+        number, an error is not positive, columns look swapped, or a curve has fewer points than
+        unknowns.
     """
     file = table.file
     header, table_rows = foreign_table(path or file, file)

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-if (
-    TYPE_CHECKING
-):  # each job of a run reads the names of observables, and these bring all of the contact
+# each job of a run reads the names of observables, and these bring all of the contact
+if TYPE_CHECKING:
     from mesoscale.contact import Cycle
     from mesoscale.contact.cycle import Branch
     from mesoscale.settings import ContactSettings

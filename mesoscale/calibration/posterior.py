@@ -236,9 +236,8 @@ def calibrate(
             )
         picks = rng.integers(len(chain.z), size=more)
         centre = chain.z.mean(axis=0)
-        x = posterior.inputs(
-            centre + 1.3 * (chain.z[picks] - centre)
-        )  # wider, so that its tails are known, too
+        # wider, so that its tails are known, too
+        x = posterior.inputs(centre + 1.3 * (chain.z[picks] - centre))
         runs = []
         for index, row in enumerate(x.tolist(), turn * more):
             values = dict(zip(model.prior.names, row, strict=True))

@@ -375,9 +375,8 @@ def hold(
     Where it fills all sites, this gap is `reach`.
     """
     bins = moments.shape[0]
-    start = (
-        lowest + separation
-    )  # gap at which the first bin begins; sites with less are in this bin, too
+    # gap at which the first bin begins; sites with less are in this bin, too
+    start = lowest + separation
     sums = np.zeros((bins, 3))
     for k in range(gap.size):
         b = min(max(int((gap[k] - start) / width), 0), bins - 1)

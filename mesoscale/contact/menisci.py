@@ -41,9 +41,8 @@ class Menisci(NamedTuple):
 
     def pull_at(self, reach_nm: float) -> float:
         """p_c (GPa) of liquid that reaches up to a gap; closer walls press it out: the largest."""
-        return self.tension / max(
-            reach_nm - self.films_nm, self.tension / self.pull_GPa
-        )  # radius times the cosines
+        # radius times the cosines
+        return self.tension / max(reach_nm - self.films_nm, self.tension / self.pull_GPa)
 
 
 class Liquid(NamedTuple):

@@ -120,8 +120,7 @@ def given_surface(
     Raises
     ------
     InputError : heights that are no surface in nm, or whose side of contact is not stated; a side
-        without heights; a
-        grid other than the settings' where no side is given.
+        without heights; a grid other than the settings' where no side is given.
     """
     if heights is None:
         if length_nm is not None:

@@ -25,8 +25,7 @@ class ContactInputs:
     hurst : Hurst exponent of the surface.
     rms : RMS height of the surface, nm.
     h_film, t_film, k_film, m_film : hardness (GPa) and thickness (nm) of a film, and how the base
-        softens it
-        (`HardnessLaw`); a film needs all four.
+        softens it (`HardnessLaw`); a film needs all four.
 
     Raises
     ------

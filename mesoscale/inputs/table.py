@@ -37,8 +37,7 @@ def collect(
     ----------
     settings : origin of each row, and the distributions of the literature rows.
     stages : content of the result file of each stage that a row wants: `inputs` (by name:
-        distribution, a, b
-        and perhaps low, high, correlation) and `gate` (`passed`, `reasons`).
+        distribution, a, b and perhaps low, high, correlation) and `gate` (`passed`, `reasons`).
     files : name of that file, for messages and the table.
     law : `contact.attraction`, by which a stated work and range become A_H and D0.
 
@@ -64,9 +63,8 @@ def collect(
             distribution = distribution_of(entry, where)
             for other, rank in entry.get("correlation", {}).items():
                 partner = settings.rows(law).get(other)
-                if (
-                    row.origin == "calibration"
-                ):  # a posterior has its own correlations, among its own inputs
+                # a posterior has its own correlations, among its own inputs
+                if row.origin == "calibration":
                     if partner is not None and partner.origin == "calibration":
                         pairs.pop((other, name), None)
                         pairs[name, other] = float(rank)
@@ -88,8 +86,7 @@ def film_table(
     Parameters
     ----------
     film : what topography found of the film as a whole, by name: distributions of its typical
-        place, and of the
-        standard deviation of ln RMS between places.
+        place, and of the standard deviation of ln RMS between places.
     scatter : range of that deviation; None: topography's, where the RMS height comes from there.
 
     Raises
@@ -209,8 +206,7 @@ def joint_samples(rows: Mapping[str, InputRow]) -> dict[tuple[str, str], float]:
     Raises
     ------
     InputError : a file has samples of an input in use that takes its own from elsewhere, or joint
-        samples of one that
-        is common to all devices and one that varies with each.
+        samples of one that is common to all devices and one that varies with each.
     """
     files: dict[str, list[str]] = {}
     for name, row in rows.items():

@@ -28,8 +28,7 @@ class Law:
     hamaker : Hamaker constant (1e-18 J = nN nm).
     rho_a_nm : attraction length (nm), fixed by the paper.
     shield_nm : alpha of eq. 12 (nm), which the paper does not give: as long as rho_a. It acts where
-        the attraction is
-        that of C_a.
+        the attraction is that of C_a.
     """
 
     d_c_nm: ArrayLike

@@ -37,8 +37,7 @@ class LawFit:
     ----------
     covariance : covariance of (C_a_GPa_nm, C_r_GPa, rho_r_nm), d_c given, shape (3, 3).
     residual : root mean square misfit of attraction and repulsion over the window, relative to the
-        largest repulsive
-        force (1).
+        largest repulsive force (1).
     status : `ok`, or why numbers are missing or doubtful.
     """
 
@@ -108,8 +107,7 @@ def fit_branch(
     Returns
     -------
     LawFit : with status `ok`, `no_contact`, `few_points`, `not_identifiable: why` or `poor_fit`.
-        Only `ok`
-        and `poor_fit` carry C_r and rho_r.
+        Only `ok` and `poor_fit` carry C_r and rho_r.
 
     Raises
     ------

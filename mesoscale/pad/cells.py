@@ -98,8 +98,7 @@ class FilmPieces:
     Attributes
     ----------
     power : variance of each wave of the film (nm^2), shape (pixels, pixels // 2 + 1); in [0, 0]
-        that of waves longer
-        than a cell.
+        that of waves longer than a cell.
     """
 
     def __init__(self, inputs: ContactInputs, contact: ContactSettings):

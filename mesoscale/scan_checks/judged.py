@@ -23,9 +23,8 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
 from mesoscale.topography.synthesis import synthesize_spectrum
 
 Array = np.ndarray
-MOST_CONTACT = (
-    0.5  # share of the cell; beyond, contacts have merged and asperities one by one say nothing
-)
+# share of the cell; beyond, contacts have merged and asperities one by one say nothing
+MOST_CONTACT = 0.5
 LOADS_NN = (1000.0, 7000.0)  # per cell of the contact settings: 1 and 7 uN
 
 

@@ -21,8 +21,7 @@ class InputDefinition:
     stage : stage that can compute it (hardness, elastic, topography), or literature.
     literature : default range where no stage computes it, uniform, from the paper's Table 1.
     setting : field of `ContactSettings`, or of one of its sections, that it replaces; empty: a
-        field of
-        `ContactInputs` of its name.
+        field of `ContactInputs` of its name.
     optional : left out unless a scene gives it.
     hardness : law of hardness that has it (`inputs.hardness`); empty: not an input of one.
     """

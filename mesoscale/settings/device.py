@@ -317,9 +317,8 @@ class DeviceSettings(Settings):
     @property
     def bending_GPa(self) -> float:
         """Modulus of bending: E, or E / (1 - nu^2) of a wide beam, whose edges cannot curl."""
-        wide = (
-            self.width_um >= 5.0 * self.thickness_um
-        )  # Osterberg and Senturia, J. MEMS 6 (1997) 107
+        # Osterberg and Senturia, J. MEMS 6 (1997) 107
+        wide = self.width_um >= 5.0 * self.thickness_um
         plate = wide if self.bends_as is None else self.bends_as == "plate"
         return self.youngs_modulus_GPa / (1.0 - self.poisson_ratio**2 if plate else 1.0)
 

@@ -116,9 +116,8 @@ def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case
     carried = inputs.hardness.pressure(area) * area
     x = (np.arange(n) - n // 2) * settings.length_nm / n
     with_ = partial(replace, inputs)
-    coupled = (
-        settings.mechanics != "asperity"
-    )  # then the separation of the mean planes says when contact is full
+    # then the separation of the mean planes says when contact is full
+    coupled = settings.mechanics != "asperity"
     reading = settings.reading.model_copy
     cases = [
         Case("central inputs", "medians of the scene's inputs", inputs),

@@ -268,8 +268,7 @@ def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
     Raises
     ------
     InputError : see `beam_of`; the number of lumps is not even, or less than 4; the beam is no
-        clamped one, or has
-        parts without electrode or pad.
+        clamped one, or has parts without electrode or pad.
     """
     if lumps < 4 or lumps % 2:
         raise InputError(

@@ -85,8 +85,7 @@ def add_loads(separation_nm, pressure, slope, electric, places):
     pressure, slope : of the pad (GPa, GPa/nm) at the separation of what lands on it; changed in
         place.
     electric : dielectric over its permittivity (nm), square of the voltage, vacuum permittivity,
-        fringe over width
-        (1/nm).
+        fringe over width (1/nm).
     places : see `mesoscale.switch.beam.Beam.places`.
     """
     dielectric_nm, squared_V2, permittivity, edge_per_nm = electric

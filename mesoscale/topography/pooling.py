@@ -91,8 +91,7 @@ def pool(
     cut_off : they end at the measured cut-off; the RMS height is then that of the waves before it.
     electrode_nm : side of a square of the electrode's area.
     pixels : grid points a side of these surfaces. Where they end at the cut-off, a side that is
-        chosen grows with them
-        (`grown_cell`).
+        chosen grows with them (`grown_cell`).
 
     Raises
     ------

@@ -72,8 +72,7 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     Returns
     -------
     spectrum : at nodes even in log q between these; `modes` is what its error is worth, the
-        smoothing's share of
-        the information left out.
+        smoothing's share of the information left out.
     """
     measured = binned_line(*line_spectrum(profile), low, high)
     nodes = _nodes(measured.q)
@@ -163,8 +162,8 @@ class _LineModel:
     measured : the line's spectrum on k bins
     weight, left, right_share : (k, m) of the points q at which each C1 reads C: their weight, the
         node to their left, and how far they are on the way to the next one
-    prior, pull : (n, n) and (n,): ln of the prior density of y, ln C at n nodes, is
-        -y prior y/2 + pull y
+    prior, pull : (n, n) and (n,): ln of the prior density of y, ln C at n nodes, is -y prior y/2 +
+        pull y
     """
 
     measured: Spectrum

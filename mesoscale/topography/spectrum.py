@@ -25,8 +25,7 @@ class Spectrum:
     q : (m,) mean wave vector of each shell, 1/nm.
     psd : (m,) mean of C over the shell, nm^4.
     modes : (m,) number of independent complex amplitudes behind each mean (not an integer:
-        overlapping
-        sections and windows count for the area they really cover).
+        overlapping sections and windows count for the area they really cover).
     spacing : width of a shell, 1/nm.
     nyquist : largest wave vector that the pixels resolve along both axes, 1/nm.
     sharp : window and shells lift nothing any more (a converted line profile): nothing to correct.
@@ -94,8 +93,7 @@ def radial_spectrum(
     flat : flat share of the window; 0.99 is the paper's, 0 the Hann window, whose side lobes do not
         cover steep spectra.
     skip_lines : leave out the two lowest wave numbers along the fast direction, where offsets
-        between
-        scan lines (and their alignment) act.
+        between scan lines (and their alignment) act.
     """
     nx, ny = heights.shape
     per_side = max(1, round(np.sqrt(sections)))

@@ -111,9 +111,8 @@ def _regression(x: Array, y: Array, ranges: Array, any_sign: bool) -> Surrogate 
 
     try:
         return sparse_chaos(x, y, ranges, transform="identity" if any_sign else "log")
-    except (
-        ValueError
-    ):  # too few usable runs; the count of missing ones is in uncertainty/validation.csv
+    except ValueError:
+        # too few usable runs; the count of missing ones is in uncertainty/validation.csv
         return None
 
 
@@ -130,8 +129,7 @@ class Propagation:
     by_seed : mean and deviation of the outputs of Table 2 of every seed's own response, shape
         (seeds, 2, len(OUTPUTS)).
     variances : var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses,
-        shape (2,
-        len(OUTPUTS)).
+        shape (2, len(OUTPUTS)).
     """
 
     samples: Array

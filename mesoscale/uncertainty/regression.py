@@ -31,11 +31,9 @@ def sparse_chaos(
     y : outputs, shape (m,); runs with NaN (and, for `log`, without positive value) are left out.
     ranges : shape (n, 2).
     transform : log fits ln y, then scales the response so that its mean over the runs is theirs (it
-        would be
-        too low by the scatter that x does not explain).
+        would be too low by the scatter that x does not explain).
     degree : highest total degree; 1 to 3 differ by less than the study can tell (evidence
-        uncertainty.work_precision).
-        Terms of many inputs are thinned by the hyperbolic norm.
+        uncertainty.work_precision). Terms of many inputs are thinned by the hyperbolic norm.
 
     Raises
     ------

@@ -98,9 +98,8 @@ def test_snakemake_writes_through_no_link(tmp_path, monkeypatch, name):
 
 def test_what_snakemake_may_not_read_is_refused(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(
-        "os.access", lambda path, mode: Path(path).name != "metadata"
-    )  # root may read everything
+    # root may read everything
+    monkeypatch.setattr("os.access", lambda path, mode: Path(path).name != "metadata")
     (tmp_path / ".snakemake/metadata").mkdir(parents=True)
     with pytest.raises(
         UnsafeFolder, match=r"^\.snakemake/metadata: may not be read and written; change its permi"
@@ -302,17 +301,12 @@ def test_a_file_is_read_no_further_than_its_cap(tmp_path):
 
 def test_text_of_a_stranger_is_shown_without_control_characters():
     assert shown("a\x1b[31mb\nc\u202ed é µ") == "a\\x1b[31mb\\nc\\u202ed é µ"
-    assert (
-        as_cell("a;=HYPERLINK(1);-1;b\n@x") == "a;'=HYPERLINK(1);'-1;b\n'@x"
-    )  # a spreadsheet may separate by ;
+    # a spreadsheet may separate by ;
+    assert as_cell("a;=HYPERLINK(1);-1;b\n@x") == "a;'=HYPERLINK(1);'-1;b\n'@x"
     assert [as_cell(text) for text in ("=HYPERLINK(1)", "+1+1", "@x", "-x", "-1.5", "a=b", "")] == [
         "'=HYPERLINK(1)", "'+1+1", "'@x", "'-x", "-1.5", "a=b", "",
     ]  # fmt: skip
-    full_width = (
-        "\uff1d1+1",
-        "\uff0b1",
-        "\uff20x",
-        "\uff0dx",
-    )  # as the Excel of East Asia computes them
+    # as the Excel of East Asia computes them
+    full_width = ("\uff1d1+1", "\uff0b1", "\uff20x", "\uff0dx")
     assert [as_cell(text) for text in full_width] == [f"'{text}" for text in full_width]
     assert as_cell("a;\uff1d1") == "a;'\uff1d1"

@@ -46,9 +46,8 @@ def test_a_film_of_known_roughness_is_measured_and_pressed(film):
     assert "h_prime" not in measured.inputs(hard).names
     contact = measured.press({"e_star": 75.0}, load_nN=3000.0, pixels=128)
     assert contact.cycle.converged
-    assert (
-        len(asp.monte_carlo(table, contact.on_grid, samples=2).failed) < 2
-    )  # as docs/examples/uncertainty.py says
+    # as docs/examples/uncertainty.py says
+    assert len(asp.monte_carlo(table, contact.on_grid, samples=2).failed) < 2
     # pressures carry the load, and walls that are pressed have no gap
     assert contact.pressure_GPa.mean() * contact.cycle.cell_area_nm2 == pytest.approx(
         3000.0, rel=1e-5

@@ -39,13 +39,8 @@ def test_number_density_of_a_quenched_glass_is_that_of_its_stated_density(name, 
 def test_polycrystalline_titanium_is_the_average_of_its_crystal():
     """Voigt-Reuss-Hill average of a hexagonal crystal (Hill, Proc. Phys. Soc. A 65, 349 (1952))."""
     body = load_material(FOLDER / "titanium.yaml").part("polycrystal")
-    C11, C12, C13, C33, C44 = (
-        162.4,
-        92.0,
-        69.0,
-        180.7,
-        46.7,
-    )  # GPa, 298 K: Fisher and Renken, doi:10.1103/PhysRev.135.A482
+    # GPa, 298 K: Fisher and Renken, doi:10.1103/PhysRev.135.A482
+    C11, C12, C13, C33, C44 = (162.4, 92.0, 69.0, 180.7, 46.7)
     C = np.zeros((6, 6))
     C[:3, :3] = [[C11, C12, C13], [C12, C11, C13], [C13, C13, C33]]
     C[3:, 3:] = np.diag([C44, C44, (C11 - C12) / 2])

@@ -36,9 +36,8 @@ def test_morse_term_as_published():
     potential = load_potential(PMMCS)
     close, far = np.array([2.1]), np.array([2.4])
     silicon_oxygen, _ = potential.energy_and_force("Si", "O", close)
-    assert (
-        -COULOMB_EV_A * 2.88 / 2.1 - 0.340554 < silicon_oxygen[0] < -5
-    )  # screened below the bare sum
+    # screened below the bare sum
+    assert -COULOMB_EV_A * 2.88 / 2.1 - 0.340554 < silicon_oxygen[0] < -5
     assert potential.energy_and_force("Si", "O", far)[0][0] > silicon_oxygen[0]
 
 

@@ -16,6 +16,5 @@ def test_rates_keep_their_bounds(noise, correlation, background):
     made = list(rows(given))
     assert [row["case"] for row in made if row["rate"] > row["bound"]] == []
     [stopped] = [row["rate"] for row in made if row["case"] == "stopped_by_its_rule"]
-    assert stopped == pytest.approx(
-        0.32, abs=0.1
-    )  # the nominal interval is of 68 %: neither too narrow nor too wide
+    # the nominal interval is of 68 %: neither too narrow nor too wide
+    assert stopped == pytest.approx(0.32, abs=0.1)

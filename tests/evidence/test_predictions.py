@@ -39,9 +39,8 @@ def test_a_contact_feels_the_film_alone_and_then_both_as_gao_says():
     tip = (1.0 - TIP.poisson**2) / TIP.young_GPa
     small, *both = stiffness_GPa(72.0, 165.0, 500.0, np.array([1.0, 50.0, 500.0, 6000.0]))
     assert small == pytest.approx(1.0 / (film + tip), rel=2e-3)
-    for found, x in zip(
-        both, (10.0, 1.0, 1 / 12), strict=True
-    ):  # Gao, Chiu and Lee 1992: I0 of t/a, first order
+    # Gao, Chiu and Lee 1992: I0 of t/a, first order
+    for found, x in zip(both, (10.0, 1.0, 1 / 12), strict=True):
         sides = 0.6 * x * np.log1p(x**-2) - x / (1 + x**2)
         share = 2 / np.pi * np.arctan(x) + sides / (1.6 * np.pi)
         assert found == pytest.approx(1.0 / (share * film + (1.0 - share) * base + tip), rel=0.02)

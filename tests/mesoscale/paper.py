@@ -12,7 +12,6 @@ _TABLE, _SCENE = (
     yaml.safe_load((_SCENES / f"{name}.yaml").read_text(encoding="utf-8"))
     for name in ("table1", "paper")
 )
-INPUTS = InputsSettings.model_validate_json(
-    json.dumps(_TABLE["inputs"])
-)  # JSON: a list may fill a tuple
+# JSON: a list may fill a tuple
+INPUTS = InputsSettings.model_validate_json(json.dumps(_TABLE["inputs"]))
 CONTACT = ContactSettings.model_validate_json(json.dumps(_SCENE["contact"]))

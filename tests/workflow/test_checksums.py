@@ -107,9 +107,8 @@ def test_the_next_run_makes_a_damaged_result_again_and_sees_changed_samples_not_
     folder.mkdir()
     scene, samples = folder / "mine.yaml", folder / "rms.csv"
     scene.write_text(SCENE)
-    samples.write_text(
-        "rms\n5\n6\n7\n" + "5.5000000\n" * 110_000
-    )  # above the megabyte that Snakemake would read
+    # above the megabyte that Snakemake would read
+    samples.write_text("rms\n5\n6\n7\n" + "5.5000000\n" * 110_000)
     assert workflow_in.run(str(scene), "inputs").returncode == 0
     inputs = workflow_in.folder / "results/mine/inputs.csv"
     whole = inputs.read_bytes()

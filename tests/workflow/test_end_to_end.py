@@ -184,9 +184,8 @@ def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_w
     take_over(finished, tmp_path / "results/killed", "hardness", "elastic/quenched")
     logs = tmp_path / "results/killed/logs"
     for job in STAGES.values():
-        if not list(
-            logs.glob(f"{job}*.log")
-        ):  # a run killed in another stage may have come this far
+        # a run killed in another stage may have come this far
+        if not list(logs.glob(f"{job}*.log")):
             assert workflow.kill_when(
                 str(scene), lambda job=job: bool(list(logs.glob(f"{job}*.log")))
             ), job

@@ -291,9 +291,8 @@ def test_python_gives_the_numbers_of_the_scene_digit_for_digit(
     done = workflow_in.run("mine.yaml", "contact", "answer")
     assert done.returncode == 0, done.stderr
 
-    threads = {
-        f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMBA")
-    }  # as jobs have it
+    # as jobs have it
+    threads = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMBA")}
     command = [sys.executable, "-c", SAME_NUMBERS, str(scans)]
     same = subprocess.run(
         command,

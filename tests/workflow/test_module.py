@@ -115,10 +115,8 @@ def host(tmp_path):
         (tmp_path / "config.yaml").write_text(f"asperity: {{scene: {scene}}}")
         snakemake = str(Path(sys.executable).with_name("snakemake"))
         command = [snakemake, *options, "--cores", "1", "--configfile", "config.yaml"]
-        env = {
-            **os.environ,
-            "XDG_CACHE_HOME": str(tmp_path / "cache"),
-        }  # Snakemake's own, where the home is read-only
+        # Snakemake's own, where the home is read-only
+        env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache")}
         done = subprocess.run(
             command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False
         )

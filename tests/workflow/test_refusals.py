@@ -135,9 +135,8 @@ def test_points_that_cannot_tell_causes_apart_are_refused_before_anything_runs()
         {"extends": "table1", "pad": {"points": 4}, "device": {"spring_N_per_m": 10}}
     )
     said = [line for line in mistakes(plate, {}) if line.startswith("pad.points")]
-    assert said[0].startswith(
-        "pad.points = 4: 12 "
-    )  # 7 inputs, scatter of RMS, D0, and three of a plate
+    # 7 inputs, scatter of RMS, D0, and three of a plate
+    assert said[0].startswith("pad.points = 4: 12 ")
     for points in (0, wanted):
         assert not mistakes(
             Scene.model_validate({"extends": "table1", "pad": {"points": points}}), {}

@@ -341,9 +341,8 @@ def test_numbers_that_rest_on_failed_gates_say_so(page):
         "Rests on failed gates: hardness. hardness: only 2 of 9 runs &lt;gave&gt; a hardness."
         in page
     )
-    assert (
-        page.count("Rests on failed gates: hardness.") == 4
-    )  # the first screen and the parts behind it
+    # the first screen and the parts behind it
+    assert page.count("Rests on failed gates: hardness.") == 4
     assert "hardness, whose gate failed" in page
 
 
@@ -377,9 +376,8 @@ def test_pictures_are_light_and_lose_nothing():
     shades = np.asarray(picture.convert("RGBA"))[:, :, :3].astype(int)
     scaled = (heights - heights.min()) / np.ptp(heights)
     expected = matplotlib.colormaps["cividis"](scaled, bytes=True)[:, :, :3].astype(int)
-    assert any(
-        np.abs(shades - turned).max() <= 2 for turned in (expected, expected[::-1])
-    )  # of 255; rounding
+    # of 255; rounding
+    assert any(np.abs(shades - turned).max() <= 2 for turned in (expected, expected[::-1]))
     assert max(len(part) for part in re.findall(r'\bd="[^"]*?\.(\d+)', svg)) <= 2
 
 

@@ -18,9 +18,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-UNFINISHED = (
-    ".asperity-unfinished-"  # so begin the temporary names of results and records, and no others
-)
+# so begin the temporary names of results and records, and no others
+UNFINISHED = ".asperity-unfinished-"
 CLOCK_S = 5.0  # by which clocks of machines that share a disk may differ
 CONTENTS = Path(".snakemake/asperity_contents.json")
 """Checksums of the files that scenes name, with size, dates and inode that they had; may be
@@ -77,9 +76,8 @@ def _remembered(file: Path) -> dict[str, Any]:
 
 def _remember(file: Path, content: dict[str, Any]) -> None:
     temporary = file.with_name(f"{file.name}.{os.getpid()}")
-    with suppress(
-        OSError
-    ):  # a full disk, or a folder that may not be written: read again next time
+    # a full disk, or a folder that may not be written: read again next time
+    with suppress(OSError):
         file.parent.mkdir(exist_ok=True)
         temporary.write_text(json.dumps(content), encoding="utf-8")
         temporary.replace(file)

@@ -54,14 +54,12 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         yield temporary
         umask = os.umask(0)
         os.umask(umask)
-        temporary.chmod(
-            0o666 & ~umask
-        )  # mkstemp makes private files; results follow the user's umask
+        # mkstemp makes private files; results follow the user's umask
+        temporary.chmod(0o666 & ~umask)
         with temporary.open("rb") as stream:
             os.fsync(stream.fileno())
-        record(
-            path, temporary
-        )  # before the result: killed in between, the record waits for a file that is made again
+        # before the result: killed in between, the record waits for a file that is made again
+        record(path, temporary)
         temporary.replace(path)
     except OSError as error:
         error.filename = error.filename or str(path)  # "disk full" alone would not say where
@@ -87,15 +85,13 @@ def write_csv(path: str | Path, rows: Iterable[Mapping[str, Any]]) -> None:
     Parameters
     ----------
     rows : mappings from column name (with its unit as suffix) to value; a missing value is an empty
-        cell. The order
-        of the columns is that of the table's schema, of a file outside results/ that of the first
-        row.
+        cell. The order of the columns is that of the table's schema, of a file outside results/
+        that of the first row.
 
     Raises
     ------
     ValueError : the table does not fit its schema (`workflow.schemas`), which every file under
-        results/ has; or,
-        elsewhere, a row has a column that the first has not.
+        results/ has; or, elsewhere, a row has a column that the first has not.
     """
     path = Path(path)
     rows = [{key: _cell(value) for key, value in row.items()} for row in rows]

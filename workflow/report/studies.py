@@ -376,9 +376,8 @@ def _draw_panel(axis, knobs: Sequence[KnobTable]) -> None:
         )
     front = pareto_front([(seconds, error) for seconds, error, _ in pooled])
     axis.plot(*zip(*front, strict=True), "--", color=SOFT, linewidth=1, zorder=0)
-    axis.legend(
-        fontsize=8, loc="upper left", bbox_to_anchor=(0, -0.18)
-    )  # below: nowhere else is free
+    # below: nowhere else is free
+    axis.legend(fontsize=8, loc="upper left", bbox_to_anchor=(0, -0.18))
 
 
 def pareto_front(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -261,8 +261,7 @@ def _one_line(error: Exception, log_path: Path) -> str:
     message = " ".join(str(error).split())
     if isinstance(error, (InputError, DamagedResult, UnfitTable)):
         return message
-    if isinstance(
-        error, OSError
-    ):  # no permission, disk full, file missing: the system's words name the file
+    # no permission, disk full, file missing: the system's words name the file
+    if isinstance(error, OSError):
         return f"{message}; finished results are kept, run again when this is solved"
     return f"internal error ({type(error).__name__}: {message}); details in {log_path}"

@@ -24,19 +24,8 @@ from typing import NoReturn
 from asperity.guards.environment import READ
 
 RUN = "ASPERITY_RUN"  # environment variable with the process id of the run that a job belongs to
-FILES = {
-    ".cir",
-    ".csv",
-    ".data",
-    ".h5",
-    ".html",
-    ".json",
-    ".log",
-    ".sub",
-    ".va",
-    ".xyz",
-    ".yaml",
-}  # results
+# results
+FILES = {".cir", ".csv", ".data", ".h5", ".html", ".json", ".log", ".sub", ".va", ".xyz", ".yaml"}
 PATIENCE_S = 60.0  # for jobs of a killed run to end
 
 
@@ -51,8 +40,7 @@ def inspect(*folders: Path) -> None:
     Raises
     ------
     Refused : a link that leads out of its folder, a pipe or device, a file or folder that cannot be
-        read, or a lock,
-        log or result of another kind.
+        read, or a lock, log or result of another kind.
     """
     for folder in folders:
         if not folder.is_dir():

@@ -171,9 +171,8 @@ class Terminal(logging.Handler):
         for number, (_, started) in self._running.items():
             if number in seconds:
                 spent = time.monotonic() - started
-                seconds[number] = max(
-                    seconds[number] - spent, 0.1 * spent
-                )  # one that takes longer goes on
+                # one that takes longer goes on
+                seconds[number] = max(seconds[number] - spent, 0.1 * spent)
         return wall_seconds(seconds, self._needs(), self._cores)
 
     def _finish(self, number: int) -> None:

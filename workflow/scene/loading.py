@@ -37,8 +37,7 @@ def load_scene(name_or_path: str) -> Scene:
     Raises
     ------
     SceneError : the scene is missing, unreadable or has a mistake; one line per mistake, each
-        naming file,
-        key, value and what is accepted.
+        naming file, key, value and what is accepted.
     """
     path, *parents = lineage(str(name_or_path))
     content: dict[str, Any] = {}
@@ -158,8 +157,7 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
     Raises
     ------
     SceneError : a file is missing, dated in the future or of the system, or its path has brackets
-        or characters that
-        do not print; one line per file.
+        or characters that do not print; one line per file.
     """
     files = []
     mistakes = []

@@ -18,9 +18,8 @@ with job(snakemake) as run:
     stated = copy.deepcopy(snakemake.params.settings)
     results = dict(snakemake.input.items())
     for name in [name for name in results if name.startswith("samples_")]:
-        stated[name.removeprefix("samples_")]["values"] = results.pop(
-            name
-        )  # found beside the scene, perhaps
+        # found beside the scene, perhaps
+        stated[name.removeprefix("samples_")]["values"] = results.pop(name)
     settings = settings_from_job(InputsSettings, stated)
     stages = {stage: load_json(path) for stage, path in results.items()}
     files = {stage: "/".join(path.split("/")[-2:]) for stage, path in results.items()}

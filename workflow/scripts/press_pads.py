@@ -34,16 +34,14 @@ with job(snakemake, shared=not is_central) as run:
             solved[number] = result
             run.progress(len(solved) / len(numbers), f"{len(solved)} of {len(numbers)} points")
     write_solved(snakemake.output[0], solved, run.provenance)
-    if follows and snakemake.rule.endswith(
-        "press_pads"
-    ):  # not where a calibration presses pads of the prior
+    # not where a calibration presses pads of the prior
+    if follows and snakemake.rule.endswith("press_pads"):
         from workflow.report.early import early_page  # the other jobs draw nothing
 
         root = Path(snakemake.output[0]).parents[2]
         central = PadModel(solved[0], points.design, ())
-        spectra = [
-            path.replace("parameters.json", "spectra.h5") for path in snakemake.input
-        ]  # of the same job
+        # of the same job
+        spectra = [path.replace("parameters.json", "spectra.h5") for path in snakemake.input]
         files = sorted({*snakemake.input, *spectra})
         area = points.contact.length_nm**2
         write_text(

@@ -55,9 +55,8 @@ with job(snakemake) as run:
     )
 
     run.progress(0.5, "validated; ranks the inputs")
-    seeds_shares = np.array(
-        [row["seed_share"] for row in outputs], dtype=float
-    )  # None is not a number
+    # None is not a number
+    seeds_shares = np.array([row["seed_share"] for row in outputs], dtype=float)
     effects = load_csv(snakemake.input.table3)
     printed = table3(effects), table3(effects, as_printed=True)
     write_csv(

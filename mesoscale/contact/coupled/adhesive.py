@@ -64,9 +64,8 @@ class AdhesiveContact(CoupledContact):
     """
 
     REVERSIBLE = False
-    DENSE_TIMES_PIXELS = (
-        2**20
-    )  # each step of the iteration solves anew, and needs no other sites for it
+    # each step of the iteration solves anew, and needs no other sites for it
+    DENSE_TIMES_PIXELS = 2**20
     FORCE_TOLERANCE = 1e-4
     SMALLEST_STEP = 1e-4
     LONGEST_GUESS = math.inf  # but one step is taken at most
@@ -93,9 +92,8 @@ class AdhesiveContact(CoupledContact):
         self.unknown_work = numerics.unknown_work
         law = self.adhesion
         gap = self.heights + self.touching_separation
-        self.parting = (
-            -0.5 * law.cutoff * law.deformed(gap, np.ones_like(gap)) if law else 0.0
-        )  # nN nm, roughly
+        # nN nm, roughly
+        self.parting = -0.5 * law.cutoff * law.deformed(gap, np.ones_like(gap)) if law else 0.0
 
     def _check_range(self) -> None:
         """Refuse an attraction that falls off so fast that single sites jump (InputError)."""
@@ -103,9 +101,8 @@ class AdhesiveContact(CoupledContact):
             return
         law = self.adhesion
         steepest = 3.0 * self.dispersion / law.cutoff
-        if (
-            law.menisci is not None
-        ):  # a site that fills must fall by less than the depth of the liquid
+        # a site that fills must fall by less than the depth of the liquid
+        if law.menisci is not None:
             steepest = max(steepest, law.menisci.pull_GPa / law.reach_nm)
         if steepest > self.stiffness:
             pixels = int(np.ceil(self.n * steepest / self.stiffness))

@@ -214,8 +214,7 @@ def solve(matrix, cell, gap, limit, tolerance, pressure, displacement):
     ----------
     matrix : (>= n, >= n), displacement of one site from the pressure on another, nm/GPa
     cell : numbers of the n sites, position of each site of the cell among them or -1 (N^2,), sites
-        a side (N), and
-        `half_space.stiffness_between_neighbours`
+        a side (N), and `half_space.stiffness_between_neighbours`
     gap : (n,), gap of the undeformed surface, nm
     limit : (n,), largest pressures, GPa, may be infinite
     tolerance : of the residual over the largest pressure

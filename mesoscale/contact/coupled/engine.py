@@ -55,9 +55,8 @@ class CoupledContact(Contact):
     # more, its edge is far from most contacts, and the others err by at most 0.5 % (128^2 and
     # 256^2, 20 nN to 20 uN, RMS 2 and 5 nm)
     NEAR_LIQUID = 0.1
-    TRANSFORM_PAIRS = (
-        8  # pairs of sites for each of the cell that take as long as a transform there and back
-    )
+    # pairs of sites for each of the cell that take as long as a transform there and back
+    TRANSFORM_PAIRS = 8
     AIMS_AT_END = True
     ROUNDS = 40
     FALLING_ROUNDS = 10  # from here on hardness may only fall, so that the rounds come to an end
@@ -421,9 +420,8 @@ class CoupledContact(Contact):
         self.sites, self.pressure, self.limit, self.displacement = known
         self.place[self.sites] = np.arange(count, dtype=np.int32)
         if self.grid is None:
-            if (
-                self.matrix.size == 0
-            ):  # memory is touched only as sites come in; the odd length keeps cache lines apart
+            # memory is touched only as sites come in; the odd length keeps cache lines apart
+            if self.matrix.size == 0:
                 self.matrix = np.empty((self.dense, self.dense + 8))
             dense.extend(self.matrix, self.table, self.scale, self.sites, old, count, self.n)
 

@@ -29,13 +29,10 @@ SPLIT_ERROR = 2e-3  # of `Split`, roughly
 # more is not changed in single precision, which errs by 2e-6 of what changes
 SMALL = 0.1
 COARSE = 1e-5  # tolerances beyond it need no displacements in double precision
-DIRECT, DIRECT_PER_PIXEL = (
-    256,
-    2,
-)  # free sites up to which a linear system has a matrix; the same over pixels a side
-TABLE_SHARE = (
-    1.5  # of the grid's sites: so many pairs of sites cost less by the table than a transform
-)
+# free sites up to which a linear system has a matrix; the same over pixels a side
+DIRECT, DIRECT_PER_PIXEL = (256, 2)
+# of the grid's sites: so many pairs of sites cost less by the table than a transform
+TABLE_SHARE = 1.5
 
 Array = np.ndarray
 Apply = Callable[[Array], Array]
@@ -58,11 +55,8 @@ class Grid:
         self.field = np.zeros(pixels**2)
         self.rows = np.arange(pixels)
         nowhere = self.rows[:0]
-        self.located = (
-            nowhere,
-            nowhere,
-            nowhere,
-        )  # the sites asked for last, their rows, and their places in these
+        # the sites asked for last, their rows, and their places in these
+        self.located = (nowhere, nowhere, nowhere)
         self.room = np.empty(self.compliance.size, np.complex128)
         self.table = half_space.influence(pixels, length, bodies)
         self.drifted = False  # whether displacements at hand are by `split`

@@ -167,9 +167,8 @@ def description_doubts(
     for measured, values in attributes.items():
         yield from _doubts_of_record(measured, values)
     for test in tests:
-        if (
-            test.anisotropy > 2.0
-        ):  # isotropic surfaces C ~ q^-2.5 to q^-4 without a plateau reach 1.4
+        # isotropic surfaces C ~ q^-2.5 to q^-4 without a plateau reach 1.4
+        if test.anisotropy > 2.0:
             text = (
                 f"{test.name}: slopes are {test.anisotropy:.2g} times as steep in one direction as"
                 " across it"

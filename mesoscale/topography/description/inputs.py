@@ -182,8 +182,7 @@ def rms_before(
     Parameters
     ----------
     q1, rms : distributions, over a range or fixed; the RMS height is that up to the finest Nyquist
-        wave vector, or,
-        with a measured spectrum, that of all of it.
+        wave vector, or, with a measured spectrum, that of all of it.
     surface : entries of `contact.surface`; empty: eq. 9 as fitted.
     """
     cut = middle(q1)
@@ -222,9 +221,8 @@ def rms_scatter_row(topography: Topography, merged: OneSpectrum | None) -> Row:
         return {"distribution": "fixed", "a": 0.0}
     if low > 0.1 * high:
         return _over(low, high)
-    deviation = (
-        high / 1.9599639845400545
-    )  # of the normal distribution, of whose half 95 % lie below `high`
+    # of the normal distribution, of whose half 95 % lie below `high`
+    deviation = high / 1.9599639845400545
     return {
         "distribution": "truncated_normal",
         "a": 0.0,

@@ -265,9 +265,8 @@ def _misfit(residual: np.ndarray, modes: np.ndarray) -> float:
 
     chance = polygamma(1, modes) + (digamma(modes) - np.log(modes)) ** 2
     excess = np.log(np.maximum(residual, 1e-12)) ** 2 - chance
-    weight = 1 / (
-        chance + 0.3**2
-    )  # bins in which chance makes more than 0.3 say little about the shape
+    # bins in which chance makes more than 0.3 say little about the shape
+    weight = 1 / (chance + 0.3**2)
     return float(np.sqrt(max(np.sum(weight * excess) / weight.sum(), 0.0)))
 
 

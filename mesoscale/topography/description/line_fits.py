@@ -98,9 +98,8 @@ def pooled(data: Points) -> tuple[np.ndarray, np.ndarray]:
     rows = np.arange(len(data.log_c))
     equations[rows, index] = 1
     equations[rows, len(bins) + member] = 1
-    equations[-1, len(bins) :] = (
-        1  # levels sum to zero: the pooled spectrum is that of the typical place
-    )
+    # levels sum to zero: the pooled spectrum is that of the typical place
+    equations[-1, len(bins) :] = 1
     right = np.append(data.log_c, 0.0)
     solution = np.linalg.lstsq(equations, right, rcond=None)[0]
     count = np.bincount(index)

@@ -28,10 +28,8 @@ STEEPEST = -8.5
 OVER = 1.3
 """d ln C / d ln q, over this ratio of wave vectors, that no measured map has."""
 FIRST_SHELL, SHELLS = 4.0, 4.0  # the first, and how many apart at least: single ones scatter
-WIDTH, LAST = (
-    0.12,
-    0.95,
-)  # of means, and of the Nyquist wave vector, where waves that a computer made may end
+# of means, and of the Nyquist wave vector, where waves that a computer made may end
+WIDTH, LAST = (0.12, 0.95)
 # from a Gaussian to a wall
 POWERS = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 40.0)
 WALL = 6.0
@@ -48,17 +46,13 @@ RHYTHM, RHYTHM_ALONE = 25.0, 400.0
 """Power of a period over that of others, along both axes or along one; 17 and 35 on 100 made maps
 without.
 """
-STRAIGHT, TWOFOLD_LEFT = (
-    0.43,
-    0.6,
-)  # of bends, and of roughness (`LEFT`): maps enlarged twofold or more have less
+# of bends, and of roughness (`LEFT`): maps enlarged twofold or more have less
+STRAIGHT, TWOFOLD_LEFT = (0.43, 0.6)
 LONGEST_PERIOD = 12.0  # pixels
-MODULATION = (
-    0.15  # of the roughness of pixels by that period; the smoothest interpolation leaves 0.2
-)
-PATTERN = (
-    3.0  # of what all lines have in common over what differs, from which on a surface has a pattern
-)
+# of the roughness of pixels by that period; the smoothest interpolation leaves 0.2
+MODULATION = 0.15
+# of what all lines have in common over what differs, from which on a surface has a pattern
+PATTERN = 3.0
 DRIFTS = 3  # periods over a map, below which roughness merely differs from place to place
 # of the Nyquist wave vector of the points measured, where a linear interpolation passes 0.66 of C
 LINEAR = 0.5
@@ -224,9 +218,8 @@ def repeated_pixels(heights: np.ndarray) -> int:
     values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
     if len(values) < 1000:
         return 0
-    differing = np.where(
-        heights == values[np.argmax(counts)], np.nan, heights
-    )  # a plateau at the end of a range is none
+    # a plateau at the end of a range is none
+    differing = np.where(heights == values[np.argmax(counts)], np.nan, heights)
     return min(_repeats(differing), _repeats(differing.T))
 
 

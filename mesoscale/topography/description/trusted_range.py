@@ -169,9 +169,8 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     _check_settled(item, np.abs(bias - previous)[use])
     error = np.where(q > item.high, TRUST.blunt_error * bias, 0.0)
     psd = psd * np.exp(bias)
-    if (
-        not item.spectrum.sharp and use.sum() > 3
-    ):  # the window lifts long waves, levelling takes the longest
+    # the window lifts long waves, levelling takes the longest
+    if not item.spectrum.sharp and use.sum() > 3:
         long = (q < item.low) & (q > 0.9 * item.spectrum.spacing)
         first_shells = max(4, int(np.sum(use & (q < 3 * item.low))))
         start = np.flatnonzero(use)[:first_shells]
@@ -311,9 +310,8 @@ def _noise_level(k: np.ndarray, c1: np.ndarray, profile: Profile, measured: Meas
     if measured.noise_nm is not None:
         return measured.noise_nm**2 * profile.step_nm / (2 * np.pi)
     end = k > 0.93 * np.pi / profile.step_nm
-    return float(np.median(c1[end])) / np.log(
-        2
-    )  # the median of an exponential distribution of mean 1
+    # the median of an exponential distribution of mean 1
+    return float(np.median(c1[end])) / np.log(2)
 
 
 def _check_span(profile: Profile, low: float, high: float, limit: str) -> None:

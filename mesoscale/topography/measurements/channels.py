@@ -30,9 +30,8 @@ ACROSS = re.compile(
     re.I,
 )
 """From left to right (a group), or back."""
-ANGSTROM = re.compile(
-    r"[a\u00e5]ngstr[o\u00f6]ms?", re.I
-)  # has Strom in it, which is German for a current
+# has Strom in it, which is German for a current
+ANGSTROM = re.compile(r"[a\u00e5]ngstr[o\u00f6]ms?", re.I)
 CAPITALS = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 

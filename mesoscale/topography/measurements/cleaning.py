@@ -33,8 +33,7 @@ class Scan:
     Attributes
     ----------
     heights_nm : (nx, ny); x (the first axis) is the fast scan direction, so `heights_nm[:, j]` is a
-        scan
-        line. Missing pixels are NaN.
+        scan line. Missing pixels are NaN.
     lengths_nm : (2,) physical size along x and y.
     name : what messages and results call the scan.
     steps : what has been done to the heights so far, in order, in words.

@@ -92,9 +92,8 @@ def _by_heads(where: str, heads: tuple[str, ...], stated: str | None) -> tuple[l
     if not heights and len(heads) <= 3 and may_be[-1]:  # X and y1, distance and raw
         heights = [len(heads) - 1]
         positions = [k for k in positions if k < len(heads) - 1]
-    if (
-        len({base_of(names[k]) for k in heights}) > 1 and len(heads) == 2
-    ):  # a curve of one height over another
+    # a curve of one height over another
+    if len({base_of(names[k]) for k in heights}) > 1 and len(heads) == 2:
         heights = []
     if not heights:
         raise InputError(

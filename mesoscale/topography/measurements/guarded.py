@@ -38,9 +38,8 @@ def guarded(path: Path, read: Callable[[], Any]) -> Any:
     # as text (147 MB)
     cpu_s = min(CPU_S + size_MB, 50.0)
     memory_MB = min(MEMORY_MB + 20.0 * size_MB, 16000.0)
-    with tempfile.TemporaryDirectory(
-        prefix="asperity-"
-    ) as folder:  # ours: the process may be killed
+    # ours: the process may be killed
+    with tempfile.TemporaryDirectory(prefix="asperity-") as folder:
         receiver, sender = multiprocessing.Pipe(duplex=False)
         child = os.fork()  # not multiprocessing.Process, which a worker of a pool may not start
         if child == 0:

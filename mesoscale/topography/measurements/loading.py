@@ -88,8 +88,7 @@ def load_measurements(
     Raises
     ------
     InputError : file missing, unreadable or of unknown format; no or several height channels; no
-        physical size or
-        unit; a container of several surfaces.
+        physical size or unit; a container of several surfaces.
     """
     path = Path(path)
     settings = settings or TopographySettings()

@@ -18,9 +18,8 @@ LONE = 5.0
 MOST_ALONE = 0.1  # share of points that may lie so far away: more are a surface of two levels
 TIES, TIED_SHARE = 8, 2e-4
 """Fewest points, and fewest of all, whose common value is looked at."""
-MORE_THAN_NEAR = (
-    10.0  # times as many points as any value nearby: 8-bit heights have hundreds at each
-)
+# times as many points as any value nearby: 8-bit heights have hundreds at each
+MORE_THAN_NEAR = 10.0
 MOST_TIED = 0.5
 JUMP = 3.0
 """How the surface jumps to what stands for missing points, over nine tenths of its steps between
@@ -150,8 +149,7 @@ def cropped(
     Parameters
     ----------
     asked : `largest`, the largest rectangle without missing points, small holes apart; or first and
-        last place along x
-        and along y.
+        last place along x and along y.
 
     Raises
     ------
@@ -193,9 +191,8 @@ def _largest_rectangle(known: np.ndarray) -> tuple[slice, slice]:
     high = np.zeros(known.shape[1], dtype=int)
     for row, line in enumerate(known):
         high = np.where(line, high + 1, 0)
-        open_columns: list[
-            tuple[int, int]
-        ] = []  # first column and height of rectangles that are still open
+        # first column and height of rectangles that are still open
+        open_columns: list[tuple[int, int]] = []
         for column, height in enumerate([*high.tolist(), 0]):
             start = column
             while open_columns and open_columns[-1][1] >= height:

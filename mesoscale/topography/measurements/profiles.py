@@ -178,9 +178,8 @@ def clean_profile(profile: Profile, settings: TopographySettings) -> Profile:
         form = float(np.log(line_square / max(np.var(parabola), 1e-300)))
         if profile.bow or settings.detrend == "quadratic":
             heights, note = parabola, "subtracted a parabola"
-        elif (
-            settings.detrend == "auto" and form > 3.5
-        ):  # 400 lines across C ~ q^-4 without a plateau reach 3.3
+        elif settings.detrend == "auto" and form > 3.5:
+            # 400 lines across C ~ q^-4 without a plateau reach 3.3
             heights = parabola
             note = form_step(form)
             profile = replace(profile, bow=True)

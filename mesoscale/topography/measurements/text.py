@@ -166,9 +166,8 @@ def decoded(raw: bytes) -> str | None:
 def _layout(lines: Sequence[str]) -> tuple[str | None, bool]:
     """Separator of values, and whether numbers have decimal commas."""
     numbers = [line for line in lines if re.search(r"\d", line)]
-    sample = numbers[len(numbers) // 4 :: max(1, len(numbers) // SAMPLE)][
-        :SAMPLE
-    ]  # past most of a header
+    # past most of a header
+    sample = numbers[len(numbers) // 4 :: max(1, len(numbers) // SAMPLE)][:SAMPLE]
     if _one_column(sample):
         return None, True
     best = 0.0
@@ -186,9 +185,8 @@ def _understood(sample: Sequence[str], separator: str | None, comma: bool) -> fl
     """How many words of these lines are numbers, less where others are beside them."""
     score = 0.0
     for line in sample:
-        words = [word for word in _split(line, separator) if word][
-            :SAMPLE_WORDS
-        ]  # empty places are missing points
+        # empty places are missing points
+        words = [word for word in _split(line, separator) if word][:SAMPLE_WORDS]
         numbers = sum(_as_number(word, comma) is not None for word in words)
         score += numbers**2 / max(1, len(words))
     return score

@@ -112,9 +112,8 @@ def test_a_network_is_known_again_in_another_orientation_order_and_description()
     beta = crystal(NITRIDE, "beta")
     beta.rattle(0.3, seed=2)
     again = beta[np.random.default_rng(3).permutation(len(beta))]
-    mirrored_edges = (
-        np.diag([1, -1, 1]) @ beta.cell.array @ np.diag([1, -1, 1])
-    )  # another hand, the same handed cell
+    # another hand, the same handed cell
+    mirrored_edges = np.diag([1, -1, 1]) @ beta.cell.array @ np.diag([1, -1, 1])
     again.set_cell(np.array([[1, 1, 0], [0, 1, 0], [0, 0, 1]]) @ mirrored_edges)
     again.positions = again.positions @ np.diag([1, -1, 1]) + 0.7
     again.rotate(40, (1, 2, 3), rotate_cell=True)

@@ -53,9 +53,8 @@ def test_no_calculation_is_spent_on_a_cell_that_no_quench_made_right(shaken):
 
 
 def test_a_broken_bond_is_relaxed_where_it_is_allowed_and_its_gap_decides(shaken):
-    shaken.positions[shaken.symbols.indices()["N"][0], 0] += (
-        1.2  # leaves one of its three neighbours
-    )
+    # leaves one of its three neighbours
+    shaken.positions[shaken.symbols.indices()["N"][0], 0] += 1.2
     broken = relaxed_structure(shaken, GLASS, tersoff, STEPS)
     assert broken.calculator is not None
     assert broken.report("a01")["defects"] == broken.verdict.defects
@@ -71,9 +70,8 @@ def test_a_failed_calculation_and_a_closed_gap_are_reasons(shaken):
 
     failed = relaxed_structure(shaken, GLASS, lambda: Fails(tersoff().parameters), STEPS)
     assert any("SCF not converged" in reason for reason in failed.reasons)
-    assert np.allclose(
-        failed.atoms.positions, shaken.positions
-    )  # to rounding: the cell is scaled by one
+    # to rounding: the cell is scaled by one
+    assert np.allclose(failed.atoms.positions, shaken.positions)
     assert not failed.relaxation.converged
 
     def metal():

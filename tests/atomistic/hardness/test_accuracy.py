@@ -93,9 +93,8 @@ def test_pressure_at_depth_does_not_depend_on_how_often_it_was_measured(count):
     ]
     pressure_GPa, force_nN = at_depth(samples, 50.0, 4.0)
     assert pressure_GPa == pytest.approx(3.0 / 60.0 * EV_PER_A3_IN_GPA)
-    assert force_nN == pytest.approx(
-        3.0 * 3.5 * EV_PER_A3_IN_GPA / 100, rel=1e-3
-    )  # a quarter of 4 Å, at its end
+    # a quarter of 4 Å, at its end
+    assert force_nN == pytest.approx(3.0 * 3.5 * EV_PER_A3_IN_GPA / 100, rel=1e-3)
 
 
 def test_a_real_closing_is_repeated_to_the_last_bit_and_presses(closings):

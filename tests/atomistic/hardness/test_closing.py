@@ -79,9 +79,8 @@ def test_closing_conserves_energy_and_builds_up_stress(closing):
     assert np.all(column["force_nN"][:2] == 0)
     assert column["force_nN"][-1] > 1
     assert column["contact_area_nm2"][-1] > column["contact_area_nm2"][len(closing.curve) // 2] > 0
-    assert (
-        np.abs(column["energy_drift_meV_per_atom"]).max() < 3
-    )  # 0.2 meV per atom and ps is the gate
+    # 0.2 meV per atom and ps is the gate
+    assert np.abs(column["energy_drift_meV_per_atom"]).max() < 3
     np.testing.assert_allclose(
         column["contact_stress_GPa"][-1] * column["contact_area_nm2"][-1],
         column["force_nN"][-1],

@@ -25,9 +25,8 @@ def random_solid(rng, height=30.0):
 
 def test_one_atom_is_a_disc_of_the_rim():
     area = contact_area(np.array([[30.0, 30.0]]), CELL, FINE, MIDDLE)
-    assert area == pytest.approx(
-        np.pi * AREA.rim_A**2, rel=0.05
-    )  # a tenth of an Å of grid on its radius
+    # a tenth of an Å of grid on its radius
+    assert area == pytest.approx(np.pi * AREA.rim_A**2, rel=0.05)
 
 
 def test_nothing_touches():

@@ -83,9 +83,8 @@ def test_the_fit_hands_on_joint_inputs_and_says_where_it_was_measured():
     inputs, film = fit["inputs"], fit["film"]
     assert list(inputs) == ["h_film", "k_film", "m_film"]
     assert np.median(inputs["h_film"]["values"]) == pytest.approx(10, rel=0.1)
-    assert (
-        np.std(np.log(inputs["h_film"]["values"])) > 0.13
-    )  # errors that all runs share: potential, steepness, rate, base
+    # errors that all runs share: potential, steepness, rate, base
+    assert np.std(np.log(inputs["h_film"]["values"])) > 0.13
     assert np.median(inputs["m_film"]["values"]) == pytest.approx(1.5, abs=0.5)
     assert inputs["m_film"]["correlation"]["k_film"] < -0.2
     assert film["base_GPa"]["low"] < 4 < film["base_GPa"]["high"]

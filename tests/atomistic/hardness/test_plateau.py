@@ -123,9 +123,8 @@ def test_a_run_stops_on_a_narrow_interval_or_where_it_leaves_the_window():
     assert not stops(len(rows), stop_points=len(rows))
     assert not stops(len(rows), stop="window")
     for stop in ("settled", "window"):
-        assert stops(
-            len(rows), cell_area=10.0, stop=stop
-        )  # the last averages lie beyond half of the cell
+        # the last averages lie beyond half of the cell
+        assert stops(len(rows), cell_area=10.0, stop=stop)
     rising = curve(lambda length: 4 * length)
     assert not may_stop(rising, seen, cell, "settled", APPROACH_NM)
 

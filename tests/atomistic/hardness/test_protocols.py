@@ -217,9 +217,8 @@ def test_other_potentials_make_a_glass_and_close(
     it.
     """
     other = load_potential(POTENTIALS / f"{name}.yaml")
-    calibration = load_potential(
-        POTENTIALS / "pmmcs.yaml"
-    ).contact_area  # Matsui and Akaogi's set has none of its own
+    # Matsui and Akaogi's set has none of its own
+    calibration = load_potential(POTENTIALS / "pmmcs.yaml").contact_area
     other = other.model_copy(update={"contact_area": calibration})
     own = HardnessSettings.model_validate(
         {**settings().model_dump(), "potential": name, "material": material}

@@ -96,14 +96,14 @@ def test_scales_weigh_alike_whatever_their_number_of_runs():
     points = [point(10, 4, 1.0, spread=0.0)] * 9 + [point(5, 4, 0.5, spread=0.0)]
     _, drawn = hardness_samples(points, {"none": 0.0}, (1.0, 1.0), 4000)
     assert set(np.round(drawn, 9)) == {5.0, 10.0}
-    assert np.mean(drawn == 10.0) == pytest.approx(
-        0.5, abs=0.03
-    )  # three standard errors of 4000 draws
+    # three standard errors of 4000 draws
+    assert np.mean(drawn == 10.0) == pytest.approx(0.5, abs=0.03)
     found = fit_size_effect(points, GLASS, 0.0, h_macro, "scales", (9.0, 11.0), {"none": 0.0})
+    # the measurement bounds nothing
     assert set(np.round(found["inputs"]["h_film"]["values"], 9)) == {
         5.0,
         10.0,
-    }  # the measurement bounds nothing
+    }
 
 
 def test_twins_are_compared_pair_by_pair():
@@ -116,9 +116,8 @@ def test_twins_are_compared_pair_by_pair():
     (row,) = twins(points)
     assert (row["energy_scale"], row["pairs"]) == (0.5, 2)
     assert row["ratio"]["median"] == pytest.approx(np.sqrt(0.52 * 0.5))
-    assert np.log(row["ratio"]["high"] / row["ratio"]["median"]) == pytest.approx(
-        RUN_SCATTER
-    )  # of 2 x 2 runs
+    # of 2 x 2 runs
+    assert np.log(row["ratio"]["high"] / row["ratio"]["median"]) == pytest.approx(RUN_SCATTER)
     assert twins(points[:1]) == []
 
 
@@ -164,9 +163,8 @@ def test_energies_bound_the_measured_hardness_at_the_slope_of_the_tip():
     # at the tip's slope the runs are softer than at their own
     for energies, measured in ((low, 6.0), (high, 12.0)):
         assert 10.0 * energies * relative_hardness(BERKOVICH) == pytest.approx(measured, rel=2e-3)
-    assert (
-        energy_bounds(10.0, slopes, [1.0], (9.9, 12.0))[0] == 1.0
-    )  # the potential as published is never left out
+    # the potential as published is never left out
+    assert energy_bounds(10.0, slopes, [1.0], (9.9, 12.0))[0] == 1.0
     assert energy_bounds(10.0, slopes, [0.5, 1.0], None) == (0.5, 1.0)
 
 

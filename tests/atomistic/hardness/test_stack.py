@@ -95,9 +95,8 @@ def test_grains_fill_the_cell_and_keep_apart(metal):
     assert not KDTree(body.positions_A, boxsize=body.cell_A).query_pairs(
         METAL.too_near * metal.eam.r_A
     )
-    assert (
-        0.88 < len(body) / 40.0**3 * 1e3 / metal.atoms_per_nm3 < 1.0
-    )  # grain boundaries close in the anneal
+    # grain boundaries close in the anneal
+    assert 0.88 < len(body) / 40.0**3 * 1e3 / metal.atoms_per_nm3 < 1.0
     neighbours = KDTree(body.positions_A, boxsize=body.cell_A).query_ball_point(
         body.positions_A, 3.5
     )
@@ -194,12 +193,10 @@ def test_a_glass_of_the_base_is_judged_by_its_file(nitride):
     found = network.properties(cell)
     assert found["density_g_cm3"] == pytest.approx(3.1, abs=0.5)
     assert found["bond_A"] == pytest.approx(1.75, abs=0.05)
-    assert found["coordination_Si"] * 3 == pytest.approx(
-        found["coordination_N"] * 4, rel=1e-9
-    )  # bonds have two ends
-    thin = Atoms(
-        cell.elements, cell.types, 1.24 * cell.positions_A, 1.24 * cell.cell_A
-    )  # some bonds are too long now
+    # bonds have two ends
+    assert found["coordination_Si"] * 3 == pytest.approx(found["coordination_N"] * 4, rel=1e-9)
+    # some bonds are too long now
+    thin = Atoms(cell.elements, cell.types, 1.24 * cell.positions_A, 1.24 * cell.cell_A)
     assert any(fault.startswith("density_g_cm3") for fault in network.faults(thin))
     assert network.properties(thin)["coordination_N"] < found["coordination_N"]
 
@@ -230,9 +227,8 @@ def test_a_film_lies_on_its_metal_with_its_thickness(glass, base):
     top = np.hypot(x - side / 4, y - side / 4) < 4.0  # about the peak
     assert z[top].min() > 12.0 + 1.0
     volume_A3 = side**2 * 8.0
-    density = len(glass) / np.prod(
-        glass.cell_A
-    )  # some atoms of so small a film go for its neutrality
+    # some atoms of so small a film go for its neutrality
+    density = len(glass) / np.prod(glass.cell_A)
     assert film.sum() / volume_A3 == pytest.approx(density, rel=0.12)
 
 
@@ -308,9 +304,8 @@ def test_a_film_that_is_stopped_goes_on_as_if_it_had_not_been(
         run_closing(*given, stop, base=base)
     resumed = run_closing(*given, base=base)
     for part in ("curve", "witness", "summary"):
-        np.testing.assert_equal(
-            getattr(resumed, part), getattr(pressed, part)
-        )  # bit for bit; NaN where no stress is
+        # bit for bit; NaN where no stress is
+        np.testing.assert_equal(getattr(resumed, part), getattr(pressed, part))
 
 
 def test_a_film_is_pressed_and_keeps_its_energy(pressed):

@@ -48,11 +48,12 @@ def shapes():
             across**2 / (20 * radius),
             2 * np.pi * across * across[-1] / 4000,
         )
+    # nm: a top that was pressed flat at H = 8 GPa and sprang back, E* = 96 GPa (Hertz)
     for half in (
         2.5,
         5.0,
         10.0,
-    ):  # nm: a top that was pressed flat at H = 8 GPa and sprang back, E* = 96 GPa (Hertz)
+    ):
         across, radius = 10 * half * side, 4 * half * 96 / (3 * np.pi * 8)
         yield (
             f"top of {2 * half:g} nm",
@@ -81,9 +82,8 @@ def test_the_work_and_not_the_force_decides_the_pull_off_of_what_is_not_flat(nam
     by_force, by_work = (
         areas @ (1 / (6 * np.pi * (depths + 10 * cutoff) ** 3)) / exact for cutoff in cutoffs
     )
-    assert by_work == pytest.approx(1.0, abs=0.07), (
-        name
-    )  # terms of the order of D0 over the height of the shape
+    # terms of the order of D0 over the height of the shape
+    assert by_work == pytest.approx(1.0, abs=0.07), name
     assert by_force < 0.7, name
 
 

@@ -91,9 +91,8 @@ def test_every_number_is_that_of_its_own_calculation():
     release = switch.states.release_V
     hot = central(device.model_copy(update={"temperature_C": 30.0})).states.release_V
     assert rows["temperature"]["volts"] == pytest.approx(abs(hot - release))
-    assert rows["charge in the dielectric, even"]["volts"] == pytest.approx(
-        0.458, abs=0.001
-    )  # 10¹¹ e/cm², 200 nm, 7.9
+    # 10¹¹ e/cm², 200 nm, 7.9
+    assert rows["charge in the dielectric, even"]["volts"] == pytest.approx(0.458, abs=0.001)
     power = rows["power of the signal"]["volts"]
     assert (release - power) ** 2 == pytest.approx(release**2 - 5.0)
     assert rows["law of attraction"]["volts"] == 7.0

@@ -32,12 +32,10 @@ def test_a_body_is_harder_throughout():
 
 def test_a_film_is_harder_and_its_base_stays():
     usual, doubled = (point.contact_of(CONTACT)[0].hardness for point in (FILM, harder(FILM, 2.0)))
-    assert doubled.pressure(1e-6) == pytest.approx(
-        2 * usual.pressure(1e-6), rel=1e-2
-    )  # L/t of 2e-4: the film alone
-    assert doubled.pressure(1e12) == pytest.approx(
-        usual.pressure(1e12), rel=1e-2
-    )  # 10⁶ nm wide: the base alone
+    # L/t of 2e-4: the film alone
+    assert doubled.pressure(1e-6) == pytest.approx(2 * usual.pressure(1e-6), rel=1e-2)
+    # 10⁶ nm wide: the base alone
+    assert doubled.pressure(1e12) == pytest.approx(usual.pressure(1e12), rel=1e-2)
 
 
 def test_pads_of_all_factors_have_the_same_surfaces():

@@ -58,9 +58,8 @@ def test_humid_air_sticks_what_lets_go_in_dry_air():
     free, stuck = sticking_between(balance)
     coarse = levels(table, CONTACT)
     assert len(balance) == len(coarse) + HALVINGS
-    assert (
-        stuck - free < 0.2 * np.diff(coarse)[np.searchsorted(coarse, stuck) - 1]
-    )  # its step is halved
+    # its step is halved
+    assert stuck - free < 0.2 * np.diff(coarse)[np.searchsorted(coarse, stuck) - 1]
     assert reach_nm(AirSettings(humidity=stuck)) > 0.31
 
 
@@ -98,9 +97,8 @@ def test_a_pad_is_computed_as_far_as_liquid_reaches():
         for contact in (CONTACT, CONTACT.model_copy(update={"air": air}))
     ]
     dry, humid = (pad.curves for pad in pads)
-    touching = (
-        pads[1].first_contact_nm.max() + 5.0
-    )  # cells stand for some that touch first farther out
+    # cells stand for some that touch first farther out
+    touching = pads[1].first_contact_nm.max() + 5.0
     beyond = humid.separation_nm > touching + menisci_of(air).reach_nm
     assert beyond.sum() > 20
     wanted = np.interp(humid.separation_nm[beyond], dry.separation_nm, dry.closing[1])

@@ -277,9 +277,8 @@ def test_pads_are_computed_to_more_than_the_plate_can_press():
 
 @pytest.mark.parametrize("settings", [PLATE, published_beam()])
 def test_a_pad_that_is_pressed_harder_than_it_was_computed_is_continued(settings):
-    local = switch_of(settings).least_GPa(
-        SEPARATION
-    )  # 2.5 times that of the voltage alone, with less than which a plate presses
+    # 2.5 times that of the voltage alone, with less than which a plate presses
+    local = switch_of(settings).least_GPa(SEPARATION)
     enough, less = (MIDDLE.pressed(share * local, SEPARATION) for share in (1.5, 0.3))
     computed, continued = switch_of(settings).states(enough), switch_of(settings).states(less)
     assert (computed.deepened, continued.deepened) == (False, True)

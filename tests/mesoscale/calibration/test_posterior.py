@@ -24,9 +24,8 @@ from mesoscale.calibration.values import normal_with_common
 from mesoscale.errors import InputError
 from tests.mesoscale.calibration.conftest import MAX_FORCE_NN, made_up_observables
 
-AREAS_NM2 = np.array(
-    [40.0, 100.0, 400.0, 4000.0]
-)  # one area alone leaves a ridge of H_macro and H', slow to sample
+# one area alone leaves a ridge of H_macro and H', slow to sample
+AREAS_NM2 = np.array([40.0, 100.0, 400.0, 4000.0])
 TRUTH = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, 5.0]])
 
 
@@ -90,9 +89,8 @@ def test_responses_find_mean_and_scatter(prior, cycles):
     prediction = fit_responses(NAMES, cycles, prior)(x)
     sd = np.sqrt(np.einsum("mkk->mk", prediction.scatter) * (1 + prediction.error[:, None]))
     off = (y - prediction.mean) / sd
-    assert (
-        np.abs(off.mean(axis=0)).max() < 0.12
-    )  # 900 runs know the mean to 0.03, a region of them less
+    # 900 runs know the mean to 0.03, a region of them less
+    assert np.abs(off.mean(axis=0)).max() < 0.12
     assert np.abs(off.std(axis=0) - 1).max() < 0.08
 
 

@@ -84,9 +84,8 @@ def test_switches_that_stick_do_not_bias_the_others(prior, count):
     """Lines through known and sticking switches are those that made them, whatever their number."""
     release = fit_voltages(pads(prior, count, middle_V=0.0), prior)["release"]
     x = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, rms] for rms in (3.0, 8.5, 14.0)])
-    assert release(x) == pytest.approx(
-        [11.0, 0.0, -11.0], abs=0.05
-    )  # the made-up switches have no other scatter
+    # the made-up switches have no other scatter
+    assert release(x) == pytest.approx([11.0, 0.0, -11.0], abs=0.05)
     assert release.each_V == pytest.approx(EACH_V, rel=0.1)
     assert release.shared_V == pytest.approx(SHARED_V, rel=0.1)
 

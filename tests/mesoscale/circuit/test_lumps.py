@@ -100,15 +100,13 @@ def test_the_pull_is_the_slope_of_the_capacitance(fringe):
 @pytest.mark.parametrize("s", [30.0, 300.0, 3000.0])
 def test_the_gas_is_a_damper_when_slow_and_a_spring_when_fast(s):
     thin = 1.0 + 9.638 * (67.3 / s) ** 1.159
-    slow = (
-        CIRCUIT.viscosity_Pa_s / thin * PLATE.width_m**2 / (s * NM) ** 3 * NM * 1e6
-    )  # Pa per nm/us
+    # Pa per nm/us
+    slow = CIRCUIT.viscosity_Pa_s / thin * PLATE.width_m**2 / (s * NM) ** 3 * NM * 1e6
     excess = 1e-7
     pressure, flow = gas_flow(PLATE, s, s * (1.0 + excess))
     assert pressure == pytest.approx(PLATE.gas_Pa * excess, rel=1e-6)
-    assert pressure == pytest.approx(
-        slow * flow, rel=1e-6
-    )  # in balance the gas flows as fast as the walls come
+    # in balance the gas flows as fast as the walls come
+    assert pressure == pytest.approx(slow * flow, rel=1e-6)
 
 
 def compiled(lumps, tmp_path):
@@ -161,9 +159,8 @@ def test_the_compiled_switch_has_the_same_rates_and_charge(tmp_path, lumps):
     rng = np.random.default_rng(0)
     for volts, low, high in ((40.0, 22.0, 60.0), (7.0, 30.0, 500.0), (70.0, 1000.0, 3490.0)):
         s = rng.uniform(low, high, lumps.count)
-        deepest = np.minimum(
-            s, rng.uniform(20.0, 28.0, lumps.count)
-        )  # opened from where its curves are
+        # opened from where its curves are
+        deepest = np.minimum(s, rng.uniform(20.0, 28.0, lumps.count))
         gas = s * rng.uniform(0.5, 3.0, lumps.count)
         state = np.concatenate(
             [s, 100.0 * rng.normal(size=lumps.count), CIRCUIT.start_nm - deepest, gas]
@@ -244,9 +241,8 @@ def test_an_undamped_plate_takes_the_time_of_the_energy_integral(tmp_path):
         return np.sqrt(2.0 * (work - elastic) / PLATE.mass_kg_m2) * 1e3
 
     way = SPRING.gap_nm - 300.0
-    exact = quad(lambda root: 2.0 * root / speed(root**2), 0.0, np.sqrt(way))[
-        0
-    ]  # x = root^2: 1/v has a root at rest
+    # x = root^2: 1/v has a root at rest
+    exact = quad(lambda root: 2.0 * root / speed(root**2), 0.0, np.sqrt(way))[0]
     time_us, moved, _ = stepped(tmp_path, PLATE, volts, 1.005 * exact, gas=1e-3)
     assert np.interp(way, moved, time_us) == pytest.approx(exact, rel=2e-3)
 

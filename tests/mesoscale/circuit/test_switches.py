@@ -63,9 +63,8 @@ def test_draws_make_the_band_of_the_slow_loop():
     rows = loops(central, [softer] * 4)
     assert rows[-1]["voltage_V"] == pytest.approx(CIRCUIT.loop_top * central.row["pull_in_V"])
     assert all(row["up_q05_fF"] <= row["up_q95_fF"] for row in rows)
-    assert sum(row["up_q05_fF"] for row in rows) > sum(
-        row["up_central_fF"] for row in rows
-    )  # it closes earlier
+    # it closes earlier
+    assert sum(row["up_q05_fF"] for row in rows) > sum(row["up_central_fF"] for row in rows)
 
 
 def test_a_plate_on_a_spring_has_no_circuit():

@@ -39,15 +39,13 @@ def branch(gap: Array, edges: Array, e_star: float, strength: float, cutoff: flo
     strength : attraction at touch, GPa: s = strength (D0 / (g + D0))^3 with D0 the cut-off in nm
     """
     size = gap.size
-    matrix = np.column_stack(
-        [compliance(edges, e_star), -np.ones(size)]
-    )  # of the stresses and the approach
+    # of the stresses and the approach
+    matrix = np.column_stack([compliance(edges, e_star), -np.ones(size)])
     area = np.pi * np.diff(edges**2)
     unknown = np.zeros(size + 1)
     forces = []
-    steps = [
-        (1, share * strength) for share in np.geomspace(0.01, 1.0, 30)
-    ]  # to begin with, the attraction rises
+    # to begin with, the attraction rises
+    steps = [(1, share * strength) for share in np.geomspace(0.01, 1.0, 30)]
     steps += [(touching, strength) for touching in range(2, size)]
     for touching, now_strength in steps:
         for _ in range(50):

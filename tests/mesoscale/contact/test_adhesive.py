@@ -26,9 +26,8 @@ ROUGH = ContactInputs(
     hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0
 )
 RADIUS, E_STAR, D0 = 50.0, 10.0, 0.3
-LATTICE_CURVATURE = (
-    4.5168  # of the displacement by all other cells of a square lattice, sum of 1/r^3 over 2
-)
+# of the displacement by all other cells of a square lattice, sum of 1/r^3 over 2
+LATTICE_CURVATURE = 4.5168
 
 
 def inputs_of(

@@ -15,9 +15,8 @@ from mesoscale.topography.synthesis import synthesize
 INPUTS = ContactInputs(
     hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0
 )
-FILM = replace(
-    INPUTS, h_prime=0.0, h_film=8.0, t_film=2.0, k_film=0.24, m_film=1.2
-)  # asperities of 1 to 20 nm
+# asperities of 1 to 20 nm
+FILM = replace(INPUTS, h_prime=0.0, h_film=8.0, t_film=2.0, k_film=0.24, m_film=1.2)
 CASES: dict[str, tuple[dict, dict, dict]] = {  # settings, reading, numerics
     "default": ({}, {}, {}),
     "paper": (
@@ -60,9 +59,8 @@ def test_forces_and_surface_agree_with_the_plain_model(case, model):
         pixels, settings.length_nm, 0.06, 0.75, 3.0, 3, settings.reading.convention
     )
     lowest = np.unravel_index(np.argmin(heights), heights.shape)
-    heights = np.roll(
-        heights, (-lowest[0], -lowest[1]), (0, 1)
-    )  # the first asperity straddles the corner
+    # the first asperity straddles the corner
+    heights = np.roll(heights, (-lowest[0], -lowest[1]), (0, 1))
     separations = -heights.min() - np.linspace(0.05, 3.5, 20)
     expected, surface = plain_contact.walk(heights, separations, inputs, settings, numerics)
     contact = AsperityContact(heights.copy(), inputs, settings, numerics)

@@ -40,12 +40,10 @@ def test_plates_follow_hamaker():
     offset = AsperityContact(
         np.zeros((32, 32)), INPUTS, settings.model_copy(update={"attraction": "offset"})
     )
-    assert offset.attraction(10.0 - 0.165) == pytest.approx(
-        -11.4061, rel=1e-5
-    )  # the walls are 10 nm apart
-    assert offset.attraction(1e-12) == pytest.approx(
-        contact.attraction(0.1), rel=1e-9
-    )  # the same at touch
+    # the walls are 10 nm apart
+    assert offset.attraction(10.0 - 0.165) == pytest.approx(-11.4061, rel=1e-5)
+    # the same at touch
+    assert offset.attraction(1e-12) == pytest.approx(contact.attraction(0.1), rel=1e-9)
 
 
 def test_gaussian_heights_far_away_follow_the_asymptotic_series():

@@ -84,9 +84,8 @@ def pressed_sphere(sites: float, pixels: int):
 def test_a_sphere_is_hertzs():
     errors = np.array([pressed_sphere(sites, int(32 * sites)) for sites in (5, 10, 20)])
     assert (errors[-1] < 0.01).all()
-    assert (
-        np.log2(errors[0] / errors[-1]) / 2 > 0.8
-    ).all()  # first order, as the edge of the contact is resolved
+    # first order, as the edge of the contact is resolved
+    assert (np.log2(errors[0] / errors[-1]) / 2 > 0.8).all()
 
 
 def hertz_attraction(
@@ -159,9 +158,8 @@ def test_pressures_and_surface_agree_with_the_plain_model(model, inputs):
     settings = coupled(32, length, model=model)
     heights = synthesize(pixels, length, 0.3, 0.75, 1.0, 3)
     lowest = np.unravel_index(np.argmin(heights), heights.shape)
-    heights = np.roll(
-        heights, (-lowest[0], -lowest[1]), (0, 1)
-    )  # the first cluster straddles the corner
+    # the first cluster straddles the corner
+    heights = np.roll(heights, (-lowest[0], -lowest[1]), (0, 1))
     separations = -heights.min() - np.linspace(0.05, 2.2, 5)
     expected, surface = plain_coupled.walk(heights, separations, inputs, settings)
     contact = CoupledContact(heights.copy(), inputs, settings)
@@ -318,12 +316,13 @@ def test_a_step_that_is_undone_leaves_no_trace(dense):
     separation = first - 4.5
     contact.move_to(separation, False)
     force, attraction = contact.force, contact.attraction(separation)
+    # the second one on, all sites of the grid are known; steps both ways
     for depth in (
         5.0,
         0.5,
         5.2,
         4.6,
-    ):  # the second one on, all sites of the grid are known; steps both ways
+    ):
         contact.move_to(first - depth, False)
         contact.back()
         assert contact.force == pytest.approx(force, rel=1e-12)

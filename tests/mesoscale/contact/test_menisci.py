@@ -139,9 +139,8 @@ def test_the_share_of_dispersion_is_that_of_lifshitz_theory():
         oscillators(7.4, (2.98, 1.43e16), (3.4, 1.6e14)),
         oscillators(30.0, (3.8, 0.95e16), (20, 7e13)),
     )
-    assert lifshitz(silica, air, silica) == pytest.approx(
-        6.5e-20, rel=0.05
-    )  # Israelachvili, table 13.3
+    # Israelachvili, table 13.3
+    assert lifshitz(silica, air, silica) == pytest.approx(6.5e-20, rel=0.05)
     share = {
         name: lifshitz(a, water, b) / lifshitz(a, air, b)
         for name, (a, b) in {"silica": (silica, silica), "default": (nitride, titania)}.items()
@@ -246,12 +245,13 @@ def test_menisci_that_keep_their_volume_pull_farther(mechanics):
         assert -sphere.attraction(gap) == pytest.approx(wanted, rel=0.01)
     flats = contact(np.zeros((32, 32)), air, mechanics=mechanics)
     flats.hold_liquid(1.0)
+    # as much liquid, thinner; its suction is that in equilibrium at most
     for gap in (
         1.0,
         1.2,
         2.0,
         8.0,
-    ):  # as much liquid, thinner; its suction is that in equilibrium at most
+    ):
         pull = min(menisci.tension / gap, menisci.pull_GPa) * 1.0 / gap
         assert -flats.attraction(gap) == pytest.approx(pull * 64.0**2, rel=1e-9)
     flats.hold_liquid(None)
@@ -313,11 +313,12 @@ def test_coupled_and_adhesive_contacts_agree_where_attraction_hardly_deforms():
 @pytest.mark.parametrize("humidity", [0.7, 0.9])
 def test_liquid_far_from_contacts_counts_undeformed(monkeypatch, humidity):
     pulls = {}
+    # of the sites near liquid that count with displacements
     for share in (
         0.0,
         CoupledContact.NEAR_LIQUID,
         1.0,
-    ):  # of the sites near liquid that count with displacements
+    ):
         monkeypatch.setattr(CoupledContact, "NEAR_LIQUID", share)
         inputs, settings = rough(
             air=AirSettings(humidity=humidity), max_force_nN=500.0, gap_cutoff_nm=0.165

@@ -26,9 +26,8 @@ def settings(pixels, length_nm, model="elastic"):
 
 
 def bowl(pixels, length_nm, radius_nm):
-    x = (
-        (np.arange(pixels) - pixels // 2 + 0.37) * length_nm / pixels
-    )  # its summit between the sites
+    # its summit between the sites
+    x = (np.arange(pixels) - pixels // 2 + 0.37) * length_nm / pixels
     return (x[:, None] ** 2 + x[None, :] ** 2) / (2.0 * radius_nm)
 
 
@@ -68,12 +67,10 @@ def test_one_round_spot_is_holms(resistivities):
     known = way.force_nN > 0.3 * force
     spot_nm = (0.75 * way.force_nN * radius / INPUTS.e_star) ** (1 / 3)  # Hertz
     ohm = ohms(way, resistivities, (0.0, 0.0))
-    alone = ohm + sum(resistivities) * LATTICE / (
-        2.0 * np.pi * length
-    )  # the neighbouring cells conduct, too
-    error = (alone * 4.0 * spot_nm / sum(resistivities) - 1.0)[
-        known
-    ]  # scatters as sites come in one by one
+    # the neighbouring cells conduct, too
+    alone = ohm + sum(resistivities) * LATTICE / (2.0 * np.pi * length)
+    # scatters as sites come in one by one
+    error = (alone * 4.0 * spot_nm / sum(resistivities) - 1.0)[known]
     assert known.sum() > 20
     assert abs(error.mean()) < 0.01
 

@@ -74,9 +74,8 @@ def test_a_table_integrates_to_the_rms_it_is_scaled_to():
     rough = RoughSpectrum.from_rms(7.0, 0.03, 2.5, 2.0)
     q = np.geomspace(0.01, 2.0, 400)
     table = SpectrumTable(q, 3.0 * rough.psd(q)).scaled(7.0, 2.0)
-    np.testing.assert_allclose(
-        table.psd(q), rough.psd(q), rtol=1e-3
-    )  # 400 points: the knee is cut a little
+    # 400 points: the knee is cut a little
+    np.testing.assert_allclose(table.psd(q), rough.psd(q), rtol=1e-3)
 
 
 def test_tall_peaks_touch_first():

@@ -46,9 +46,8 @@ def test_the_reserve_is_the_attraction_with_which_the_switch_just_sticks(setting
     for logarithm, wanted in ((reserve - FAILURE.step, False), (reserve + FAILURE.step, True)):
         scaled = attracting(law, float(np.exp(logarithm)))
         assert (switch_of(settings).states_on(scaled).release_V == 0.0) == wanted
-    assert (
-        Attracted(settings, law, 2.0).reserve() <= reserve
-    )  # to let go in time asks for more than to let go
+    # to let go in time asks for more than to let go
+    assert Attracted(settings, law, 2.0).reserve() <= reserve
 
 
 def test_a_well_far_deeper_than_the_spring_and_none_at_all_reach_the_ends():
@@ -78,9 +77,8 @@ def test_the_furthest_value_is_where_the_curve_meets_what_is_allowed(allowed, wa
     volts, probability = np.array([70.0, 80.0, 90.0]), np.array([1e-5, 1e-3, 1e-2])
     found = furthest_allowed(volts, probability, allowed)
     assert found == (wanted if wanted is None else pytest.approx(wanted))
-    falling = furthest_allowed(
-        100.0 - volts, probability, allowed
-    )  # as heights, of which the least fail most
+    # as heights, of which the least fail most
+    falling = furthest_allowed(100.0 - volts, probability, allowed)
     assert falling == (wanted if wanted is None else pytest.approx(100.0 - wanted))
 
 

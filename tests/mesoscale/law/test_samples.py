@@ -20,9 +20,8 @@ def test_the_band_is_that_of_the_samples_with_a_law():
         for name, value in NUMBERS.items()
     }
     for branch in BRANCHES:
-        columns[f"{branch}_C_r_GPa"] = np.append(
-            factors * 6.4e-4, [np.nan, -1.0]
-        )  # two without a law
+        # two without a law
+        columns[f"{branch}_C_r_GPa"] = np.append(factors * 6.4e-4, [np.nan, -1.0])
     rows = list(band_rows(columns | {"hamaker": np.zeros(103)}, points=40))
     assert [row["branch"] for row in rows] == ["closing"] * 40 + ["opening"] * 40
     touching = [row for row in rows if row["gap_nm"] < 31.0]

@@ -34,9 +34,8 @@ ALL = [
 def test_hard_pads_keep_all_invariants(mechanics, case):
     passed, detail = case.judge()
     assert passed, detail
-    assert case.name == "merging asperities" or not detail.startswith(
-        "refused"
-    )  # none of these needs to be
+    # none of these needs to be
+    assert case.name == "merging asperities" or not detail.startswith("refused")
 
 
 def test_every_attraction_is_tried_plastic_and_elastic():

@@ -122,9 +122,8 @@ def test_a_pad_that_is_continued_below_its_deepest_closing_is_exact_for_exponent
     )
     deeper = deepened(law)
     depth = float(deeper.depth_nm[0])
-    assert depth == pytest.approx(
-        22.0 - 2.0 * np.log(2.0)
-    )  # twice the repulsion, whose e-fold is 2 nm
+    # twice the repulsion, whose e-fold is 2 nm
+    assert depth == pytest.approx(22.0 - 2.0 * np.log(2.0))
     at = np.linspace(depth, 40.0, 50)
     repulsion, attraction = exact(at, depth)
     # s^-3 is no exponential: (3 / s^2) over 1.4 nm, and 0.1 nm between separations
@@ -270,9 +269,8 @@ def test_a_dozen_cells_have_the_well_of_a_pad_of_many():
     )
     assert abs(smoothed.mean() - exact) < 0.2 * (plain.mean() - exact)
     area = np.array([-0.1 * pad.curves.closing[1].sum() for pad in pads])
-    assert area == pytest.approx(
-        (2.0 * np.pi) ** 0.5, rel=1e-3
-    )  # of a single well: nothing is lost
+    # of a single well: nothing is lost
+    assert area == pytest.approx((2.0 * np.pi) ** 0.5, rel=1e-3)
 
 
 def test_cells_that_touch_first_at_one_separation_are_not_shifted():
@@ -321,9 +319,8 @@ def test_steps_grow_with_the_roughness_of_the_places_that_touch():
     assert steps[-5:] == pytest.approx(STEP_NM)
     assert steps.max() < 0.2 * unequal.separation_nm[0]
     assert (np.diff(steps) < 1e-9).all()  # from far to near
-    assert (
-        unequal.separation_nm.size < 1.5 * alike.separation_nm.size
-    )  # though rough places touch much farther out
+    # though rough places touch much farther out
+    assert unequal.separation_nm.size < 1.5 * alike.separation_nm.size
 
 
 def test_where_rough_places_alone_carry_the_pad_the_grid_ends_above_the_typical_first_contact():

@@ -20,9 +20,8 @@ def test_a_tilted_surface_loses_its_jump_and_keeps_its_waves():
     tilted = surface + np.linspace(-10, 10, 128)[:, None]
     periodic = periodic_part(tilted)
     assert np.abs(periodic[0] - periodic[-1]).mean() < 0.03 * np.abs(tilted[0] - tilted[-1]).mean()
-    assert np.std(periodic - surface) < 0.05 * np.std(
-        tilted - surface
-    )  # a tilt is the smoothest jump
+    # a tilt is the smoothest jump
+    assert np.std(periodic - surface) < 0.05 * np.std(tilted - surface)
 
 
 def test_the_largest_centred_square_is_turned_upside_down():

@@ -26,9 +26,8 @@ OWN = {mechanics: extreme_cases(MIDDLE, settings) for mechanics, settings in SET
 
 
 def further_cases(mechanics: str) -> list[Case]:
-    coupled = (
-        mechanics == "coupled"
-    )  # then the separation of the mean planes says when contact is full
+    # then the separation of the mean planes says when contact is full
+    coupled = mechanics == "coupled"
     rough = synthesize(N, 96.0, 0.025, 0.75, 8.5, 1)
     spike, pair = np.zeros((N, N)), np.zeros((N, N))
     spike[N // 2, N // 2] = -5.0

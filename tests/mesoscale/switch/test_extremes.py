@@ -40,9 +40,8 @@ def test_devices_at_the_ends_of_their_ranges_give_an_answer_or_none():
             warnings.simplefilter("error")
             try:
                 states = switch_of(published_beam(**chosen)).states(law)
-            except (
-                InputError
-            ):  # a beam that stands on the dielectric at rest, or presses beyond the pad
+            except InputError:
+                # a beam that stands on the dielectric at rest, or presses beyond the pad
                 continue
         assert states.release_V >= 0
         assert not states.pull_in_V < 0

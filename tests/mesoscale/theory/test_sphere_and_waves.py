@@ -65,9 +65,8 @@ def test_pressures_carry_the_forces():
 @pytest.mark.parametrize("share", [*SHARES, 1.0])
 def test_the_pressure_of_a_wave_has_its_mean(share):
     mean = theory.wave_mean_pressure(share, **WAVE)
-    assert theory.wave_area_share(mean, **WAVE) == pytest.approx(
-        share, rel=1e-7
-    )  # arcsine loses half the digits at 1
+    # arcsine loses half the digits at 1
+    assert theory.wave_area_share(mean, **WAVE) == pytest.approx(share, rel=1e-7)
     edge = np.sin(0.5 * np.pi * share)
 
     def strip(t):  # sin(pi x / wavelength) = sin(pi a / wavelength) sin(t)

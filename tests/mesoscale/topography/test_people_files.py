@@ -44,16 +44,14 @@ def rms(film):
 def test_cells_get_the_rms_height_that_was_measured_to_a_factor_of_two(name, rms_nm):
     film = asp.Film(CASES / name)
     assert 0.5 * rms_nm < rms(film) < 2.0 * rms_nm
-    assert (
-        film.description["cell_nm"] == 1000.0
-    )  # no longer than the longest measurement, or the usual
+    # no longer than the longest measurement, or the usual
+    assert film.description["cell_nm"] == 1000.0
     assert film.description["gate"]["passed"]
     assert ("form" in codes(film)) == (name == "curved_map.gwy")
     assert ("unseen_waves" in codes(film)) == (name == "complete.gwy")
     (knee,) = (doubt for doubt in film.description["doubts"] if doubt["code"] == "no_power_law")
-    assert knee["text"].startswith(
-        "the knee q0 of eq. 9 cannot be told"
-    )  # not: does not describe this surface
+    # not: does not describe this surface
+    assert knee["text"].startswith("the knee q0 of eq. 9 cannot be told")
     low, high = film.description["estimates"]["rms"]["interval"]
     assert high < 10 * low
     assert film.description["estimates_of"].startswith("eq. 9, for comparison")

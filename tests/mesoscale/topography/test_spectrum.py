@@ -37,9 +37,8 @@ def test_sections_and_window_keep_the_level_of_white_noise(flat):
     heights = np.random.default_rng(1).standard_normal((256, 256))
     spectrum = radial_spectrum(heights, (256.0, 256.0), 25, 0.75, flat)
     level = np.average(spectrum.psd, weights=spectrum.modes)
-    assert level == pytest.approx(
-        1 / (2 * np.pi) ** 2, rel=0.02
-    )  # 1 nm^2 over the band (2 pi / 1 nm)^2
+    # 1 nm^2 over the band (2 pi / 1 nm)^2
+    assert level == pytest.approx(1 / (2 * np.pi) ** 2, rel=0.02)
 
 
 def test_modes_tell_the_scatter_of_the_spectrum():
@@ -55,9 +54,8 @@ def test_modes_tell_the_scatter_of_the_spectrum():
     for low, high in bands:
         means = [np.average(s.psd[low:high], weights=modes[low:high]) for s in shells]
         measured = np.var(means) / np.mean(means) ** 2
-        assert measured == pytest.approx(
-            1 / modes[low:high].sum(), rel=0.35
-        )  # chi-square of 150: 12 %
+        # chi-square of 150: 12 %
+        assert measured == pytest.approx(1 / modes[low:high].sum(), rel=0.35)
 
 
 def test_the_paper_cuts_768_of_1024():

@@ -64,9 +64,8 @@ def test_the_spectrum_is_flat_to_the_roll_off_and_falls_with_the_stated_slope(co
     centre = np.array([q[(q >= a) & (q < b)].mean() for a, b in pairwise(bands)])
     assert mean[0] == pytest.approx(mean[1], rel=0.15)
     slope = np.polyfit(np.log(centre[3:]), np.log(mean[3:]), 1)[0]
-    assert slope == pytest.approx(
-        -slope_from_hurst(hurst, convention), abs=0.15
-    )  # band means, 20 surfaces
+    # band means, 20 surfaces
+    assert slope == pytest.approx(-slope_from_hurst(hurst, convention), abs=0.15)
     assert power[q > np.pi * pixels / length].max() < 1e-15 * power.max()
 
 

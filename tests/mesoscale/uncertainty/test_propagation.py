@@ -130,9 +130,8 @@ def test_sobol_indices_of_a_linear_function():
         assert row["sobol_first"] == pytest.approx(exact, abs=0.02)
         assert row["sobol_total"] == pytest.approx(exact, abs=0.02)
         assert row["sobol_total_low"] <= row["sobol_total"] <= row["sobol_total_high"]
-    assert sum(row["sobol_first"] for row in rows[:3]) == pytest.approx(
-        1.0, abs=0.02
-    )  # docs/uncertainty.md
+    # docs/uncertainty.md
+    assert sum(row["sobol_first"] for row in rows[:3]) == pytest.approx(1.0, abs=0.02)
 
 
 def test_sobol_estimators_on_ishigami():

@@ -90,9 +90,8 @@ def test_a_process_foretells_a_smooth_function_and_leaves_out_what_does_not_vary
     y = x[:, 0] + np.exp(0.5 * x[:, 1]) + 0.2 * x[:, 1] * x[:, 2]
     process = Process(x[:60], y[:60])
     mean, deviation = process(x[60:])
-    error = (
-        mean - y[60:]
-    )  # largest in a corner, where the fit of the lengths decides and processors differ
+    # largest in a corner, where the fit of the lengths decides and processors differ
+    error = mean - y[60:]
     assert np.sqrt((error**2).mean()) < 0.01
     assert (np.abs(error) < 4 * deviation).all()
     assert (deviation < 0.05).all()

@@ -57,9 +57,8 @@ def describe(results: Results) -> Iterator[Block]:
         "p of the onset": cell("onset_p_value"),
         "status": "status",
     }
-    if (
-        len({row.get("film_nm") for row in points}) == 1
-    ):  # no film, or one thickness: the column says nothing
+    # no film, or one thickness: the column says nothing
+    if len({row.get("film_nm") for row in points}) == 1:
         del columns["film (nm)"]
     yield table("Every run and what became of it", points, columns)
     yield from _fit_notes(fit)
@@ -160,9 +159,8 @@ def hardness_size(results: Results) -> str | None:
     points = results.csv("hardness/points.csv")
     fit = results.content("hardness/fit.json")
 
-    longest = max(
-        float(np.nanmax(column(points, "contact_length_nm"), initial=0.0)), 18.0
-    )  # nm, where H levels off
+    # nm, where H levels off
+    longest = max(float(np.nanmax(column(points, "contact_length_nm"), initial=0.0)), 18.0)
 
     def plot(axis):
         for key, (label, color, marker) in SCALES.items():

@@ -63,9 +63,8 @@ def test_a_fractal_gaussian_surface_is_described_by_the_power_law():
     pooled, content = described([item.scan for item in synthetic_scans(truth)], settings)
     assert pooled.choice.name == "power_law"
     assert pooled.surface == {}
-    assert (
-        pooled.rows["rms"]["a"] == pooled.topography.estimates["rms"].scatter[0]
-    )  # the roll-off fits on a cell
+    # the roll-off fits on a cell
+    assert pooled.rows["rms"]["a"] == pooled.topography.estimates["rms"].scatter[0]
     assert content["inputs"]["q0"]["a"] < 0.025 < content["inputs"]["q0"]["b"]
     assert content["gate"]["passed"]
 
@@ -95,9 +94,8 @@ def test_a_cell_gets_the_roughness_of_its_own_waves_where_the_roll_off_is_longer
     found = 0.5 * (pooled.rows["rms"]["a"] + pooled.rows["rms"]["b"])
     step = 2 * np.pi / 1000
     waves = step * np.hypot(*np.meshgrid(np.arange(-64, 64), np.arange(-64, 64)))
-    assert found == pytest.approx(
-        step * np.sqrt(truth.psd(np.maximum(waves, step)).sum()), rel=0.1
-    )  # of three scans
+    # of three scans
+    assert found == pytest.approx(step * np.sqrt(truth.psd(np.maximum(waves, step)).sum()), rel=0.1)
     assert np.std(left) < found < np.std(squares - squares.mean(axis=1, keepdims=True))
     assert "waves_beyond_cell" in [doubt["code"] for doubt in content["doubts"]]
 

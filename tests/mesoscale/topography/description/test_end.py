@@ -19,9 +19,8 @@ def test_the_cutoff_is_where_the_tip_ends_with_an_error_of_its_radius():
     limited = cutoff_row(replace(result, q1_limited=True), items)
     assert limited == {"distribution": "uniform", "a": end["interval"][0], "b": end["interval"][1]}
     assert limited["a"] <= end["value"] <= limited["b"]
-    if (
-        end["limit"] == "tip"
-    ):  # the steeper the spectrum, the less the end moves with the radius: q ~ R^(-1/(3 - s/2))
+    # the steeper the spectrum, the less the end moves with the radius: q ~ R^(-1/(3 - s/2))
+    if end["limit"] == "tip":
         assert 1.05 < limited["b"] / end["value"] < 1.2
 
 

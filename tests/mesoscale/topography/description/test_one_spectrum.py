@@ -156,9 +156,8 @@ def test_bands_of_few_places_hold_the_truth_as_often_as_they_say():
         drawn = np.log(one.draws(places=True)[:, middle])
         low, high = np.quantile(drawn, [0.05, 0.95])
         another.append(low < true + 0.4 * rng.standard_normal() < high)
-    assert (
-        0.84 < np.mean(typical) < 0.96
-    )  # three standard deviations of 200 counts at 90 % are 0.064
+    # three standard deviations of 200 counts at 90 % are 0.064
+    assert 0.84 < np.mean(typical) < 0.96
     assert 0.84 < np.mean(another) < 0.96
 
 

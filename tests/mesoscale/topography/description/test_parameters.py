@@ -101,9 +101,8 @@ def test_the_interval_of_the_typical_rms_covers_it_though_places_differ():
     assert sum(covered) >= 15  # fewer of 20 happen once in 400 times at 90 %
     assert not all(high / low > 2 for low, high in (estimate.interval for estimate in estimates))
     errors = [np.log(estimate.value / 6.0) for estimate in estimates]
-    assert np.std(errors) == pytest.approx(
-        0.4 / np.sqrt(11), rel=0.4
-    )  # the scatter of the mean of eleven places
+    # the scatter of the mean of eleven places
+    assert np.std(errors) == pytest.approx(0.4 / np.sqrt(11), rel=0.4)
 
 
 def test_the_range_of_the_scatter_between_places_covers_it():
@@ -111,9 +110,8 @@ def test_the_range_of_the_scatter_between_places_covers_it():
     rows = [
         rms_scatter_row(analyse(drawn_set(rng, 0.4), TopographySettings()), None) for _ in range(20)
     ]
-    assert (
-        sum(row["a"] <= 0.4 <= row["b"] for row in rows) >= 15
-    )  # fewer of 20 happen once in 400 times at 90 %
+    # fewer of 20 happen once in 400 times at 90 %
+    assert sum(row["a"] <= 0.4 <= row["b"] for row in rows) >= 15
     # eleven places: 2.16 by chi-squared of ten degrees of freedom, besides what is known of each
     # level
     assert max(row["b"] / row["a"] for row in rows) < 2.3

@@ -30,9 +30,8 @@ def test_noise_ends_it_where_the_surface_sinks_towards_its_floor():
     assert quiet.limit == loud.limit == "noise"
     surface = RoughSpectrum.from_rms(3.0, 0.03, 4.0, 10.0)
     for found, noise in ((quiet, 1e-3), (loud, 1e-1)):
-        assert surface.psd(np.array(found.high)) == pytest.approx(
-            19 * noise, rel=0.3
-        )  # 20 times the floor in all
+        # 20 times the floor in all
+        assert surface.psd(np.array(found.high)) == pytest.approx(19 * noise, rel=0.3)
 
 
 def test_a_blunt_tip_ends_it_where_an_octave_is_curved_like_the_tip():

@@ -62,9 +62,8 @@ def test_a_reader_that_misbehaves_is_refused_in_one_line(file, capfd, read, word
 
 
 def test_a_reader_that_grows_is_refused_in_one_line(file, monkeypatch):
-    monkeypatch.setattr(
-        guard, "CPU_S", 60.0
-    )  # of a busy machine, on which a second is not enough to grow
+    # of a busy machine, on which a second is not enough to grow
+    monkeypatch.setattr(guard, "CPU_S", 60.0)
     with pytest.raises(InputError, match="more than 200 MB") as error:
         guarded(file, growing)
     assert "\n" not in str(error.value)

@@ -358,9 +358,8 @@ def test_a_gwyddion_file_has_amperes(tmp_path):
         header="Lateral (nm), Raw (A)",
         comments="",
     )
-    assert load(tmp_path / "a.csv").heights_nm.std() == pytest.approx(
-        0.1 * z.std(), rel=0.01
-    )  # of a stylus: ångström
+    # of a stylus: ångström
+    assert load(tmp_path / "a.csv").heights_nm.std() == pytest.approx(0.1 * z.std(), rel=0.01)
 
 
 @pytest.mark.parametrize(
