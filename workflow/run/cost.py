@@ -33,7 +33,7 @@ TYPICAL_S = {  # on one core of a server
     "judge_scans": 10.0,
     "press_pads": 15.0,
     "press_prior_pads": 15.0,
-    "answer": 12.0,
+    "answer": 25.0,
     "uncertainty": 20.0,
     "report": 8.0,
     "calibration": 60.0,
