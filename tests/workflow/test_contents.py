@@ -108,7 +108,10 @@ def finished(make_workflow, tmp_path_factory):
     made = [folder / line.split("\t")[0] for line in summary[1:]]
     for path in made:
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.touch()
+        if path.suffix:
+            path.touch()
+        else:
+            path.mkdir()
     (folder / "results/mine/.scene").write_text(f"{scene}\n")
     workflow.run(str(scene), options=("--touch", "--forceall"))
     return workflow, str(scene)
