@@ -233,7 +233,10 @@ def test_every_option_that_a_refusal_prints_works(
             ["scans", "--material", "e_star=hard"],
             "e_star=hard: accepted is a number",
         ),
-        (["scans", "--device", "gap=2"], "gap=2: gap is no key of the device; did you mean gap_um?"),
+        (
+            ["scans", "--device", "gap=2"],
+            "gap=2: gap is no key of the device; did you mean gap_um?",
+        ),
     ],
 )
 def test_bad_input_of_the_door_is_one_line(
