@@ -64,7 +64,16 @@ def described(
             if getattr(words, name):
                 raise InputError(f"--{name.replace('_', '-')}: tells of measured files; name some")
     text = "\n".join(scene_lines(film, material, device)) + "\n"
-    return film, text, tuple(assumed_lines(material, device))
+    assumed = list(assumed_lines(material, device))
+    if film is None:
+        untold = [
+            f"{name} {values[0]:g} to {values[1]:g}"
+            for name in ("q0", "hurst", "rms")
+            if name not in material and (values := PAPER_ROWS[name].values)
+        ]
+        if untold:
+            assumed.append(f"no maps, so the roughness of the paper ({', '.join(untold)})")
+    return film, text, tuple(assumed)
 
 
 def topography_of(words: Namespace) -> dict[str, Any]:

@@ -243,7 +243,8 @@ def assumed_lines(material: Mapping[str, Any], device: Mapping[str, Any]) -> Ite
     if missing:
         words = []
         for name, row in missing.items():
-            values = " to ".join(f"{value:g}" for value in row.values or ())
+            between = " +- " if row.distribution == "normal" else " to "
+            values = between.join(f"{value:g}" for value in row.values or ())
             words.append(f"{name} {values} ({row.source})")
         yield f"not stated, taken (--material): {'; '.join(words)}"
     defaults = DeviceSettings()

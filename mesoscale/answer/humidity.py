@@ -26,11 +26,13 @@ HALVINGS = 3  # of the step of humidity in which the switch begins to stick
 
 
 def levels(table: InputTable, contact: ContactSettings) -> Array:
-    """Humidities over the range of the input, rising; without this input that of the air alone."""
+    """Humidities over the range of the input, rising; one where it is known, as that of the air."""
     if "humidity" not in table.names:
         air = contact.air or AirSettings(humidity=0.0)
         return np.array([air.humidity])
     low, high = table.rows[table.names.index("humidity")].distribution.span()
+    if low == high:
+        return np.array([low])
     # a few per cent of humidity change most
     return low + (high - low) * np.linspace(0.0, 1.0, 7) ** 2
 

@@ -41,6 +41,8 @@ with job(snakemake) as run:
     effects = effects_of(load_mapping(Path(snakemake.input.effects), "table of effects"))
     if points.contact.air or "humidity" in points.table.names:
         effects.pop("humid air", None)  # the answer holds it
+    if points.device.residual_stress_MPa != 0.0:
+        effects.pop("mean stress of the film", None)  # it is stated
     if computed := snakemake.input.get("hardness"):
         effects = with_twins(effects, load_json(computed)["twins"])
     else:

@@ -32,6 +32,7 @@ def test_the_humidities_span_the_input_or_are_that_of_the_air():
     assert found[0] == pytest.approx(0.1)
     assert found[-1] == pytest.approx(0.8)
     assert (np.diff(found) > 0).all()
+    assert levels(input_table(**HARD, humidity=fixed(0.4)), CONTACT).tolist() == [0.4]
     stated = CONTACT.model_copy(update={"air": AirSettings(humidity=0.4)})
     assert levels(input_table(**HARD), stated).tolist() == [0.4]
 
