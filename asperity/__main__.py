@@ -84,6 +84,9 @@ def main(arguments: list[str] | None = None) -> int:
         except KeyboardInterrupt:  # before Snakemake has taken over
             print("\ninterrupted; nothing was computed", file=sys.stderr)
             return 130
+        except BrokenPipeError:  # whoever reads has enough, as `head` has
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return 141  # as a process that SIGPIPE ends
     return 0
 
 
