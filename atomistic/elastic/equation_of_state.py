@@ -98,7 +98,8 @@ def fit_equation_of_state(volumes_A3: ArrayLike, energies_eV: ArrayLike) -> Equa
             f"Birch-Murnaghan {B * unit:.1f} and Vinet {B_vinet * unit:.1f} GPa differ by more than"
             f" {FORMS_AGREE:.0%}"
         )
-    error = _modulus_error(volume, energy, centre, coefficients, misfits)
+    step = 1e-6 * (np.ptp(energy) or 1.0)
+    error = _modulus_error(volume, basis, centre, coefficients, misfits, step)
     # beyond, it says less than the difference of the functionals, 8 % in silicon nitride
     if not error <= 0.1 * B:
         flags.append(
@@ -142,18 +143,18 @@ def _vinet_modulus(
 
 def _modulus_error(
     volume: np.ndarray,
-    energy: np.ndarray,
+    basis: np.ndarray,
     centre: float,
     coefficients: np.ndarray,
     misfits: np.ndarray,
+    step: float,
 ) -> float:
     """Standard error of B (eV/Å³), where energies scatter about the curve as their misfits do.
 
     The error is sqrt(sum_k (dB/dE_k)²) times the scatter. The coefficients move by column k of the
-    pseudoinverse when energy k does, and B with them.
+    pseudoinverse of the basis when energy k does, and B with them. `step` (eV) is that of energies
+    in the derivative.
     """
-    basis = np.vander((volume / centre) ** (-2 / 3), 4, increasing=True)
-    step = 1e-6 * (np.ptp(energy) or 1.0)
     B = _minimum(coefficients, centre, volume)[2]
     slopes = []
     for column in np.linalg.pinv(basis).T:
