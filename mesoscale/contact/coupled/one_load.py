@@ -92,9 +92,7 @@ def press_yielding(heights: Array, load_nN: float, hardness: float, base: Base) 
     return _nested(heights, base, 0.0, search)
 
 
-def press_to(
-    heights: Array, separation: float, base: Base, hardness: float = math.inf
-) -> Pressed:
+def press_to(heights: Array, separation: float, base: Base, hardness: float = math.inf) -> Pressed:
     """Press a map (nx, ny) in nm, contact at the lowest, to a separation (nm); it may yield at a
     pressure (GPa).
     """
@@ -430,8 +428,8 @@ class OneYieldingLoad(OneSeparation):
             if excess(far) == 0.0:
                 return True
             if excess(near) * excess(far) < 0.0:
-                found = optimize.brentq(excess, near, far, xtol=CLOSEST * self.length)
-                return excess(float(np.asarray(found))) == 0.0
+                separation = optimize.brentq(excess, near, far, xtol=CLOSEST * self.length)
+                return excess(float(np.asarray(separation))) == 0.0
             near = far
             step *= 2.0
         return False
