@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_matrix
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import splu
 
 from mesoscale.units import NM, VACUUM_PERMITTIVITY
 
@@ -78,7 +78,7 @@ def _energy_J_m2(rough, density, device, lifted_nm):
     source = np.zeros(size)
     source[surface] = density * spacing * NM / VACUUM_PERMITTIVITY
     potential = np.zeros(size)
-    potential[free] = spsolve(matrix[free][:, free], source[free])
+    potential[free] = splu(matrix[free][:, free]).solve(source[free])
     return 0.5 * float((density * potential[surface]).mean())
 
 

@@ -10,6 +10,7 @@ from mesoscale.settings import DeviceSettings
 from mesoscale.settings.device import SpreadRow, SpreadSettings
 from mesoscale.studies.answer_stability import made_up_pad, published_beam
 from mesoscale.switch import switch_of
+from mesoscale.switch.beam import beam_of
 from mesoscale.switch.beam_motion import NOTHING_UNEVEN, MovingBeam
 from mesoscale.switch.beam_switch import BeamSwitch
 from mesoscale.switch.charge import PER_CM2, shift_V, uneven_V2
@@ -46,7 +47,7 @@ def test_a_switch_without_charge_is_the_one_without_its_keys(device):
     assert not {"shift_V", "charge_e_cm2"} & set(device.model_dump()["spread"])
     assert isinstance(switch_of(device), BeamSwitch | PlateSwitch)
     if device is BEAM:
-        assert MovingBeam(switch_of(device).beam, device).uneven_V2 is NOTHING_UNEVEN
+        assert MovingBeam(beam_of(device), device).uneven_V2 is NOTHING_UNEVEN
     nothing = charged(device, uneven={"patch_nm": 100.0, "e_cm2": 0.0}, hold_voltage_V=200.0)
     plain = states(charged(device, hold_voltage_V=200.0))
     assert states(nothing) == plain
@@ -192,7 +193,7 @@ def test_the_capacitance_follows_the_shift():
 
 def test_a_beam_is_loaded_by_the_slope_of_its_pressure():
     device = charged(uneven={"patch_nm": 60.0, "e_cm2": 3e12})
-    moving = MovingBeam(switch_of(device).beam, device)
+    moving = MovingBeam(beam_of(device), device)
     for place_m in (2e-9, 21.3e-9, 400e-9):
         at = np.full(moving.beam.rest_m.shape, place_m)
         step_m = 1e-4 * place_m
