@@ -137,8 +137,8 @@ def _by_lumps(
     switch = BeamSwitch(as_felt(device, shift), lumped_beam(device, lumps))
     states, continued = on_deep_enough(pad, switch.states_on)
     pull_in_V, release_V = as_driven(states.pull_in_V, states.release_V, shift)
-    told = [name for name in SPREAD if name not in EVEN_CHARGE or name in device.varied]
-    properties = {name: getattr(device, name) for name in told if name != "tilt_nm"}
+    written = [name for name in SPREAD if name not in EVEN_CHARGE or name in device.varied]
+    properties = {name: getattr(device, name) for name in written if name != "tilt_nm"}
     inputs = {**point.values, "gap_cutoff_nm": point.gap_cutoff_nm, **properties}
     volts = {"pull_in_V": pull_in_V, "release_V": release_V}
     row = {"switch": name, "deviations": deviations, **inputs, **volts}
