@@ -1,6 +1,5 @@
 """Where a held switch touches its pad, and its gaps elsewhere: from the surfaces of the cells."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -122,14 +121,14 @@ class HeldGaps:
         waves = rfft2(density * (number == np.arange(EDGES_NM.size)[:, None, None]))
         pixels = heights.shape[0]
         step = 2.0 * np.pi / self.side_nm
-        along = step * pixels * np.fft.fftfreq(pixels)
-        wave_numbers = np.hypot(along[:, None], along[None, : pixels // 2 + 1])
+        frequencies = step * pixels * np.fft.fftfreq(pixels)
+        wave_numbers = np.hypot(frequencies[:, None], frequencies[None, : pixels // 2 + 1])
         wave_numbers[0, 0] = step
         waves[:, 0, 0] = 0.0
         squares = np.empty((RISES_NM.size, EDGES_NM.size, EDGES_NM.size))
         for place, rise in enumerate(RISES_NM):
-            own = np.maximum(gaps + rise, LEAST_GAP_NM)
-            levels = np.geomspace(own.min(), 1.0001 * own.max(), LEVELS)
+            local = np.maximum(gaps + rise, LEAST_GAP_NM)
+            levels = np.geomspace(local.min(), 1.0001 * local.max(), LEVELS)
             # volts felt across a gap, over that gap: the field
             fields = []
             for level in levels:
@@ -138,11 +137,11 @@ class HeldGaps:
                 )
                 filtered = waves * (felt / (level + device.dielectric_gap_nm))
                 fields.append(irfft2(filtered, s=heights.shape))
-            at = np.interp(np.log(own), np.log(levels), np.arange(LEVELS))
+            at = np.interp(np.log(local), np.log(levels), np.arange(LEVELS))
             below = np.minimum(at.astype(int), LEVELS - 2)
             part = at - below
             stacked = np.stack(fields)
-            rows, columns = np.indices(own.shape)
+            rows, columns = np.indices(local.shape)
             near = stacked[below, :, rows, columns]
             far = stacked[below + 1, :, rows, columns]
             field = (near + part[..., None] * (far - near)).reshape(-1, EDGES_NM.size)
@@ -185,7 +184,7 @@ def _shares(gaps_nm: Array) -> Array:
 
 
 def held_gaps(
-    solved: Solved, contact: ContactSettings, first_seed: int, cells: Sequence[int] | None = None
+    solved: Solved, contact: ContactSettings, first_seed: int, separations: int = SEPARATIONS
 ) -> HeldGaps:
     """The gaps of a switch on its pad, held as its scene says, before any charge.
 
@@ -193,7 +192,7 @@ def held_gaps(
     ----------
     contact : on the grid of the pads.
     first_seed : of the surfaces of its cells.
-    cells : numbers of those that are looked at; None: all.
+    separations : that stand for the electrode.
 
     Raises
     ------
@@ -206,22 +205,20 @@ def held_gaps(
     inputs, settings = point.contact_of(contact)
     pad_cells = device.pad_um2 * 1e6 / settings.length_nm**2
     drawn = sample_cells(inputs, pad.count, first_seed, pad_cells)
-    chosen = range(pad.count) if cells is None else cells
-    heights = np.stack([surface_of(inputs, settings, drawn[k]) for k in chosen])
-    weights = pad.weight[list(chosen)]
+    heights = np.stack([surface_of(inputs, settings, cell) for cell in drawn])
     return HeldGaps(
         device,
-        *_standing_for(separation_nm.ravel(), pulls.ravel()),
+        *_standing_for(separation_nm.ravel(), pulls.ravel(), separations),
         heights,
-        weights / weights.sum(),
+        pad.weight,
         settings.length_nm,
     )
 
 
-def _standing_for(separation_nm: Array, pulls: Array) -> tuple[Array, Array]:
+def _standing_for(separation_nm: Array, pulls: Array, count: int) -> tuple[Array, Array]:
     """Separations that stand for equal parts of the pull, and their shares."""
     order = np.argsort(separation_nm)
     total = np.cumsum(pulls[order]) / pulls.sum()
-    middles = (np.arange(SEPARATIONS) + 0.5) / SEPARATIONS
+    middles = (np.arange(count) + 0.5) / count
     places = np.minimum(np.searchsorted(total, middles), separation_nm.size - 1)
-    return separation_nm[order][places], np.full(SEPARATIONS, 1.0 / SEPARATIONS)
+    return separation_nm[order][places], np.full(count, 1.0 / count)

@@ -32,6 +32,9 @@ PER_DECADE = 2
 """Times of the life."""
 STRENGTHS = (0.0, 0.05, 0.3, 1.0)
 """Of the largest uneven charge of a device, at which its switch is solved."""
+TELLING = 4
+"""Position in `RISES_NM` of the rise whose U^2 tells the strength: 4 nm, where the last places let
+go."""
 FARTHEST_NM = 1e5
 FEWEST = 8
 """Devices of which a life can be."""
@@ -65,7 +68,7 @@ class SwitchLife:
     ----------
     shift_V : of the device before it is held.
     hold_V : drive that holds it.
-    squares_V2 : U^2 at the hold, of the strengths that were solved, rising.
+    squares_V2 : U^2 at the telling rise, of the strengths that were solved, rising.
     pull_in_V, release_V : as felt, with these; release 0: it sticks.
     """
 
@@ -79,12 +82,12 @@ class SwitchLife:
     def charged(
         self, hold_V: float, times: Array, settings: LifetimeSettings, rates: Rates
     ) -> tuple[Array, Array]:
-        """Even shift (V), and U^2 at the hold (V^2), after times (s) at a drive."""
+        """Even shift (V), and U^2 at the telling rise (V^2), after times (s) at a drive."""
         felt_V = hold_V - self.shift_V
         held = held_s(times, settings)
         shifts = shifts_V(felt_V, GAPS_NM, held, self.gaps.device, settings, rates)
         classes = self.gaps.class_V(shifts)
-        squares = np.einsum("ct,cd,dt->t", classes, self.gaps.uneven[0], classes)
+        squares = np.einsum("ct,cd,dt->t", classes, self.gaps.uneven[TELLING], classes)
         sign = np.sign(1.0 - 2.0 * settings.other_polarity)
         return sign * self.gaps.mean_V(shifts) - contactless_V(times, settings), squares
 
@@ -146,17 +149,17 @@ def life_with(
         )
         classes = gaps.class_V(shifts)
         squares = np.einsum("ct,rcd,dt->rt", classes, gaps.uneven, classes)
-        largest = squares[:, np.argmax(squares[0])]
-        if largest[0] > most[0]:
+        largest = squares[:, np.argmax(squares[TELLING])]
+        if largest[TELLING] > most[TELLING]:
             most = largest
-    if most[0] <= 0.0:
+    if most[TELLING] <= 0.0:
         return life
     both = [(states.pull_in_V, states.release_V)]
     both += [_charged_states(gaps, curves, strength * most) for strength in STRENGTHS[1:]]
     closes, lets_go = np.array(both).T
     return replace(
         life,
-        squares_V2=np.array(STRENGTHS) * float(most[0]),
+        squares_V2=np.array(STRENGTHS) * float(most[TELLING]),
         pull_in_V=closes,
         release_V=lets_go,
     )
@@ -350,7 +353,7 @@ def summary(lives: Lives, holds: Sequence[dict[str, Any]]) -> dict[str, Any]:
         "separation_nm": central.gaps.middle_nm,
         "gap_q50_nm": float(GAPS_NM[min(int(np.searchsorted(order, 0.5)), GAPS_NM.size - 1)]),
         "largest_field_V_nm": float(fields[0]),
-        "uneven_share": float(np.sqrt(np.trace(central.gaps.uneven[0]))),
+        "uneven_share": float(np.sqrt(np.trace(central.gaps.uneven[TELLING]))),
         "devices": len(lives.devices),
         "refused": list(lives.refused),
         "guesses": by_guess,

@@ -72,13 +72,16 @@ def guesses(settings: LifetimeSettings) -> dict[str, Rates]:
     }
 
 
-def lost_share(current: Current, start: Array, lowering: Array, times: Array) -> Array:
+def lost_share(
+    current: Current, start: Array, lowering: Array, times: Array, lost: Array = LOST
+) -> Array:
     """Share of its field that each place has lost after times (s), shape (places, times).
 
     Parameters
     ----------
     start : field (V/m) at first, shape (places,).
     lowering : K (V/m per C/m^2), shape (places,).
+    lost : shares at which the time is known.
 
     Raises
     ------
@@ -86,7 +89,7 @@ def lost_share(current: Current, start: Array, lowering: Array, times: Array) ->
     """
     if times.min(initial=0.0) < 0.0:
         raise ValueError(f"a time of {times.min():g} s: times are not below zero")
-    edges = np.concatenate([[0.0], LOST])
+    edges = np.concatenate([[0.0], lost])
     fields = start[:, None] * (1.0 - edges)
     with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
         slowness = np.minimum(-np.log(current(fields)), NEVER)
@@ -96,7 +99,7 @@ def lost_share(current: Current, start: Array, lowering: Array, times: Array) ->
         steps = np.log(start[:, None] * np.diff(edges) / lowering[:, None]) + slowness[:, 1:]
         after = np.minimum(np.logaddexp.accumulate(steps + np.log(mean), axis=1), NEVER)
         asked = np.log(times)
-    logarithms = np.log(LOST)
+    logarithms = np.log(lost)
     shares = np.empty((start.size, times.size))
     for row, known in zip(shares, after, strict=True):
         row[:] = np.interp(asked, known, logarithms)
@@ -112,12 +115,14 @@ def shifts_V(
     device: DeviceSettings,
     settings: LifetimeSettings,
     rates: Rates,
+    lost: Array = LOST,
 ) -> Array:
     """Shift (V) of places after being held at a voltage for times (s), shape (gaps, times).
 
     Parameters
     ----------
     gaps_nm : 0: it touches.
+    lost : see `lost_share`.
     """
     shifts = np.zeros((gaps_nm.size, times.size))
     if voltage <= 0.0:
@@ -138,14 +143,14 @@ def shifts_V(
     if touching.any():
         start = np.array([voltage / thick_m])
         lowering = np.array([1.0 / (VACUUM_PERMITTIVITY * device.permittivity)])
-        shifts[touching] = voltage * lost_share(injected, start, lowering, times)
+        shifts[touching] = voltage * lost_share(injected, start, lowering, times, lost)
     if not touching.all() and settings.electrode == "negative":
         gaps = gaps_nm[~touching]
         vacuum_m = (gaps + device.dielectric_gap_nm) * NM
         lowering = device.dielectric_nm / (
             VACUUM_PERMITTIVITY * (device.permittivity * gaps + device.dielectric_nm)
         )
-        shifts[~touching] = voltage * lost_share(emitted, voltage / vacuum_m, lowering, times)
+        shifts[~touching] = voltage * lost_share(emitted, voltage / vacuum_m, lowering, times, lost)
     full = charge_shift(rates.most_e_cm2 * PER_CM2, device.dielectric_nm, device.permittivity)
     return np.minimum(shifts, full)
 

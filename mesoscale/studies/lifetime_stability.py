@@ -120,9 +120,9 @@ def made_up_gaps(
     cells = []
     for _ in range(2):
         heights = np.zeros((PIXELS, PIXELS))
-        for along, across in rng.integers(1, 6, size=(40, 2)):
+        for rows, columns in rng.integers(1, 6, size=(40, 2)):
             phase = 2.0 * np.pi * rng.random()
-            wave = along * places[:, None] + across * places
+            wave = rows * places[:, None] + columns * places
             heights += np.cos(2.0 * np.pi * wave / SIDE_NM + phase)
         cells.append(rms_nm * heights / heights.std())
     return HeldGaps(

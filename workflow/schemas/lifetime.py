@@ -12,7 +12,7 @@ TABLES = (
             GUESS,
             number("time_s", "s", "time of hold; 0: before any"),
             number("shift_V", "V", "even shift of the central switch, with the sign of the drive"),
-            number("uneven_V", "V", "what it feels of uneven charge while held, U"),
+            number("uneven_V", "V", "what it feels of uneven charge 4 nm above its hold, U"),
             number("pull_in_V", "V", "its pull-in voltage"),
             number("release_V", "V", "its release voltage (0: stuck)"),
             *(
