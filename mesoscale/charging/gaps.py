@@ -118,7 +118,7 @@ class HeldGaps:
         number = np.searchsorted(EDGES_NM, gaps)
         # of charge that shifts by 1 V
         density = 1.0 / charge_shift(1.0, device.dielectric_nm, device.permittivity)
-        waves = rfft2(density * (number == np.arange(EDGES_NM.size)[:, None, None]))
+        waves = np.asarray(rfft2(density * (number == np.arange(EDGES_NM.size)[:, None, None])))
         pixels = heights.shape[0]
         step = 2.0 * np.pi / self.side_nm
         frequencies = step * pixels * np.fft.fftfreq(pixels)

@@ -343,6 +343,7 @@ def summary(lives: Lives, holds: Sequence[dict[str, Any]]) -> dict[str, Any]:
         allowed = [row["hold_V"] for row in rows if row["sticking"] + row["lost"] <= MOST_FAILING]
         by_guess[guess] = {
             "highest_hold_V": max(allowed, default=None),
+            "tried_V": max(row["hold_V"] for row in rows),
             "volts_a_decade": volts_a_decade(rows, central.hold_V),
         }
     return {

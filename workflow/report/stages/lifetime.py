@@ -33,7 +33,7 @@ def describe(results: Results) -> Iterator[Block]:
         " largest field"
         f" at a gap that just closes is {show(life['largest_field_V_nm'])} V/nm: a film breaks down"
         " below 1 V/nm, so that the fastest charge there is a bound. A measured drift of the same"
-        " film would settle the rates."
+        f" film would settle the rates. {_allowed(life)}"
     )
     holds = [row for row in results.csv("lifetime/holds.csv") if row["guess"] == "central"]
     yield table(
@@ -72,6 +72,21 @@ def three_sentences(life: dict[str, Any], rows: list[CsvRow]) -> str:
         f" {life['touching']:.2%} of the pulled area touches, and the mean field in the dielectric"
         f" is {show(life['contact_factor'])} times below that of full contact."
         f" {costs}; {PUBLISHED}."
+    )
+
+
+def _allowed(life: dict[str, Any]) -> str:
+    """The largest hold voltage with no more than one failure in a million, by each guess."""
+    largest = []
+    for guess, of_guess in life["guesses"].items():
+        hold_V = of_guess["highest_hold_V"]
+        words = "none" if hold_V is None else volts(hold_V)
+        if hold_V == of_guess["tried_V"]:
+            words = f"at least {words}"
+        largest.append(f"{words} ({guess} charge)")
+    return (
+        f"With no more than one failure in a million the largest hold is {', '.join(largest)},"
+        " extrapolated by normal tails."
     )
 
 
