@@ -174,10 +174,15 @@ def _add_words(command: argparse.ArgumentParser) -> None:
     command.add_argument("--channel", help="name of the height channel, of files that have several")
     command.add_argument(
         "--unit",
-        help="length unit of a file that states none: um, or um,nm of positions and heights",
+        action="append",
+        help="length unit of files that state none: um, or um,nm of positions and heights; of one"
+        " file: scan.txt=um,nm, an option for each",
     )
     command.add_argument(
-        "--size", help="size of a map or line that states none, in --unit or the file's: 10 or 10x5"
+        "--size",
+        action="append",
+        help="size of maps or lines that state none, in --unit or the file's: 10 or 10x5; of one"
+        " file: scan.txt=10x5, an option for each",
     )
     words = (
         "cut maps to their largest rectangle without missing points, or to pixels along x and y:"
