@@ -65,7 +65,7 @@ def open_pad(
     )
     pad = SideBySide(inputs, contact, sample_cells(inputs, cells))
     top = float(pad.first_contact_nm.max()) + STEP_NM
-    filled = reach_nm(contact.air)
+    filled = reach_nm(contact.air, inputs.hamaker)
     far = np.geomspace(max(200.0, 3.0 * (top + filled)), top + filled, 40)
     bridged = np.linspace(top + filled, top, 40)[1:] if filled else np.empty(0)
     way = [*far, *bridged]

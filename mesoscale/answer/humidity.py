@@ -70,7 +70,7 @@ def humidity_rows(
             row: dict[str, Any] = {
                 "humidity": humidity,
                 "opening": opening,
-                "reach_nm": reach_nm(humid),
+                "reach_nm": reach_nm(humid, values["hamaker"]),
                 **_numbers(solved),
             }
             if opening == air.opening:

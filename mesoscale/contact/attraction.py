@@ -73,7 +73,7 @@ class Attraction:
         self.least = self.cutoff - self.offset
         self.touching = settings.reading.touching_attracts
         self.rate = retardation_rate(settings.retardation_nm)
-        self.menisci = menisci_of(settings.air)
+        self.menisci = menisci_of(settings.air, hamaker)
         self.filled = Liquid(0.0, 0.0, self.reach_nm)
         self.kept: float | None = None
         self.site_area = site_area
@@ -147,15 +147,16 @@ class Attraction:
             far = len(self.moments)
         walls = (self.least, self.offset, self.rate)
         bins = (separation, far, self.lowest, self.bin_width, self.moments)
+        films = (self.menisci.films_nm, self.menisci.pulled_from_nm)
+        reach = self.menisci.reach_nm
         if self.kept is None:
-            reach = self.menisci.reach_nm
-            sites, volume, cubes = fill(gap, weight, *bins, reach, *walls)
+            sites, pulled, volume, cubes = fill(gap, weight, *bins, reach, *films, *walls)
         else:
             volume = self.kept
-            sites, reach, cubes = hold(gap, weight, *bins, volume, self.menisci.reach_nm, *walls)
+            sites, pulled, reach, cubes = hold(gap, weight, *bins, volume, reach, *films, *walls)
         self.filled = Liquid(sites, volume, reach)
         less = (1.0 - self.menisci.dispersion) * self.strength * cubes
-        return less - self.menisci.pull_at(reach) * self.site_area * sites
+        return less - self.menisci.pull_at(reach) * self.site_area * pulled
 
     def around(
         self,
@@ -342,16 +343,32 @@ def inverse_cubes_of(gap, weight, narrowest, offset, rate):
 
 
 @njit(cache=True)
-def fill(gap, weight, separation, far, lowest, width, moments, reach, narrowest, offset, rate):
-    """Sites with gaps below `reach`, in the bins from `far` on too, their volume, sum of 1/s^3.
+def fill(
+    gap,
+    weight,
+    separation,
+    far,
+    lowest,
+    width,
+    moments,
+    reach,
+    films,
+    pulled_from,
+    narrowest,
+    offset,
+    rate,
+):
+    """Sites with gaps below `reach`, those that are pulled, volume beside films, sum of 1/s^3.
 
-    The bin in which liquid ends is filled in part.
+    The bins from `far` on count, too. The bin in which liquid ends is filled in part.
     """
-    sites = volume = cubes = 0.0
+    sites = pulled = volume = cubes = 0.0
     for k in range(gap.size):
         if weight[k] > 0.0 and gap[k] < reach:
             sites += weight[k]
-            volume += weight[k] * max(gap[k], 0.0)
+            if gap[k] >= pulled_from:
+                pulled += weight[k]
+            volume += weight[k] * max(gap[k] - films, 0.0)
             cubes += weight[k] * inverse_cube(max(gap[k], narrowest) + offset, rate)
     for b in range(far, moments.shape[0]):
         edge = lowest + b * width + separation
@@ -361,44 +378,65 @@ def fill(gap, weight, separation, far, lowest, width, moments, reach, narrowest,
             share = min((reach - edge) / width, 1.0) * moments[b, 0]
             mean = edge + 0.5 * width + moments[b, 1] / moments[b, 0]
             sites += share
-            volume += share * max(mean, 0.0)
+            if mean >= pulled_from:
+                pulled += share
+            volume += share * max(mean - films, 0.0)
             cubes += share * inverse_cube(max(mean, narrowest) + offset, rate)
-    return sites, volume, cubes
+    return sites, pulled, volume, cubes
 
 
 @njit(cache=True)
 def hold(
-    gap, weight, separation, far, lowest, width, moments, volume, reach, narrowest, offset, rate
+    gap,
+    weight,
+    separation,
+    far,
+    lowest,
+    width,
+    moments,
+    volume,
+    reach,
+    films,
+    pulled_from,
+    narrowest,
+    offset,
+    rate,
 ):
-    """Sites that a volume of liquid fills from the narrowest gap on, its reach, sum of 1/s^3.
+    """Sites that a volume of liquid fills from the narrowest gap on, those that are pulled, its
+    reach, sum of 1/s^3.
 
-    Where it fills all sites, this gap is `reach`.
+    Where it fills all sites, more stands around them, and the gap is `reach`.
     """
     bins = moments.shape[0]
     # gap at which the first bin begins; sites with less are in this bin, too
     start = lowest + separation
-    sums = np.zeros((bins, 3))
+    sums = np.zeros((bins, 4))
     for k in range(gap.size):
         b = min(max(int((gap[k] - start) / width), 0), bins - 1)
         sums[b, 0] += weight[k]
-        sums[b, 1] += weight[k] * max(gap[k], 0.0)
+        sums[b, 1] += weight[k] * max(gap[k] - films, 0.0)
         sums[b, 2] += weight[k] * inverse_cube(max(gap[k], narrowest) + offset, rate)
-    sites = filled = cubes = 0.0
+        if gap[k] >= pulled_from:
+            sums[b, 3] += weight[k]
+    sites = pulled = filled = cubes = 0.0
     for b in range(bins):
         if b >= far and moments[b, 0] > 0.0:
             mean = start + (b + 0.5) * width + moments[b, 1] / moments[b, 0]
             sums[b, 0] += moments[b, 0]
-            sums[b, 1] += moments[b, 0] * max(mean, 0.0)
+            sums[b, 1] += moments[b, 0] * max(mean - films, 0.0)
             sums[b, 2] += moments[b, 0] * inverse_cube(max(mean, narrowest) + offset, rate)
+            if mean >= pulled_from:
+                sums[b, 3] += moments[b, 0]
         share = 1.0
         if filled + sums[b, 1] > volume:
             share = (volume - filled) / sums[b, 1]
         sites += share * sums[b, 0]
+        pulled += share * sums[b, 3]
         filled += share * sums[b, 1]
         cubes += share * sums[b, 2]
         if share < 1.0:
-            return sites, start + (b + share) * width, cubes
-    return sites, reach, cubes
+            return sites, pulled, start + (b + share) * width, cubes
+    return sites, pulled, reach, cubes
 
 
 @njit(cache=True, fastmath={"contract", "reassoc", "nsz"}, error_model="numpy")  # in parallel lanes

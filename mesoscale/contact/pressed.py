@@ -119,7 +119,7 @@ class Contact(ABC):
         self.sorted_to = -np.inf
         self.unsettled = 0
         self.adhesion: Attraction | None = None
-        if inputs.hamaker > 0 or menisci_of(settings.air):
+        if inputs.hamaker > 0 or menisci_of(settings.air, inputs.hamaker):
             self.adhesion = Attraction(
                 self.heights, self.site_area, inputs.hamaker, settings, numerics
             )

@@ -182,7 +182,7 @@ class Pilots:
             touching_nm=self._touching_nm,
             step_nm=self._step_nm,
             rough_places=isinstance(self._inputs, FilmInputs),
-            reach_nm=reach_nm(self._contact.air),
+            reach_nm=reach_nm(self._contact.air, self._inputs.hamaker),
         )
         separation_nm = np.concatenate([near, far_nm(float(near[-1]))])[::-1]
         return opened_at_loads(separation_nm, self.separations_nm, self.loads_GPa, depths)

@@ -2,15 +2,16 @@
 
 import math
 from collections.abc import Sequence
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from asperity.guards.settings import Settings, key
 from mesoscale.settings.surface import SurfaceSettings
 
 AttractionLaw = Literal["clamped", "offset"]
 Opening = Literal["balance", "volume"]
+FilmThickness = Annotated[float, Field(ge=0.0, le=1000.0)]
 WORK_FACTOR: dict[AttractionLaw, float] = {"clamped": 4.0, "offset": 12.0}
 """Work that separates two flats from touch: w = A_H / (this pi D0^2)."""
 RANGE_IN_D0: dict[AttractionLaw, float] = {"clamped": 1.5, "offset": 0.5}
@@ -95,7 +96,11 @@ class AirSettings(Settings):
     contact_angles_deg: tuple[float, float] = key(
         (0.0, 0.0), "contact angles of the liquid on both walls, 0 to 180"
     )
-    film_nm: float = key(0.0, "thickness of the adsorbed film on each wall", "[0, 1000] nm")
+    film_nm: FilmThickness | Literal["balance"] = key(
+        0.0,
+        "thickness of the adsorbed film on each wall, nm; balance: where its disjoining pressure is"
+        " that of the menisci",
+    )
     hamaker_share: float = key(
         0.3,
         "Hamaker constant across the liquid over that across air; in water 0.29 for silicon"

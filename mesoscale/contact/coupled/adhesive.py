@@ -103,7 +103,7 @@ class AdhesiveContact(CoupledContact):
         steepest = 3.0 * self.dispersion / law.cutoff
         # a site that fills must fall by less than the depth of the liquid
         if law.menisci is not None:
-            steepest = max(steepest, law.menisci.pull_GPa / law.reach_nm)
+            steepest = max(steepest, law.menisci.mean_pull_GPa / law.reach_nm)
         if steepest > self.stiffness:
             pixels = int(np.ceil(self.n * steepest / self.stiffness))
             raise InputError(
@@ -136,11 +136,11 @@ class AdhesiveContact(CoupledContact):
 
     @property
     def liquid_law(self) -> tuple[float, float]:
-        """Share of the dispersion that is left across the liquid, and Laplace's pressure in it,
-        GPa; (1, 0): dry.
+        """Share of the dispersion that is left across the liquid, and its pull from touch to its
+        end, GPa; (1, 0): dry. Sites would not come to rest on the step where films meet.
         """
         menisci = self.adhesion.menisci if self.adhesion else None
-        return (menisci.dispersion, menisci.pull_GPa) if menisci else (1.0, 0.0)
+        return (menisci.dispersion, menisci.mean_pull_GPa) if menisci else (1.0, 0.0)
 
     def back(self) -> None:
         """Undo the last move, its flow and its stresses."""

@@ -65,19 +65,19 @@ def adhesion_numbers(
 
     The law of attraction gives the pressure at contact s = A_H / (6 pi D0^3), the work of adhesion
     w, which is A_H / (12 pi D0^2) offset and A_H / (4 pi D0^2) clamped, and the range w / s; the
-    radius of a summit is 2 / h''. Liquid has the work p_c d_c and the range d_c: Tabor's parameter
-    is that of the stronger, rims attract with both.
+    radius of a summit is 2 / h''. Liquid has the work gamma (cos theta1 + cos theta2) and the
+    range d_c: Tabor's parameter is that of the stronger, rims attract with both.
     """
     law = settings.attraction
     cutoff = settings.gap_cutoff_nm
-    menisci = menisci_of(settings.air)
+    menisci = menisci_of(settings.air, hamaker)
     work = hamaker / (WORK_FACTOR[law] * math.pi * cutoff**2)
     reach = RANGE_IN_D0[law] * cutoff
     laws = [(work, reach)]
     if menisci:
         laws = [
             (menisci.dispersion * work, reach),
-            (menisci.pull_GPa * menisci.reach_nm, menisci.reach_nm),
+            (menisci.tension, menisci.reach_nm),
         ]
     if surface.curvature == 0.0:
         return (

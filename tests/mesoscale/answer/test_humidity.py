@@ -61,7 +61,7 @@ def test_humid_air_sticks_what_lets_go_in_dry_air():
     assert len(balance) == len(coarse) + HALVINGS
     # its step is halved
     assert stuck - free < 0.2 * np.diff(coarse)[np.searchsorted(coarse, stuck) - 1]
-    assert reach_nm(AirSettings(humidity=stuck)) > 0.31
+    assert reach_nm(AirSettings(humidity=stuck), 0.2) > 0.31
 
 
 def test_the_step_in_which_it_begins_to_stick():
@@ -100,7 +100,7 @@ def test_a_pad_is_computed_as_far_as_liquid_reaches():
     dry, humid = (pad.curves for pad in pads)
     # cells stand for some that touch first farther out
     touching = pads[1].first_contact_nm.max() + 5.0
-    beyond = humid.separation_nm > touching + menisci_of(air).reach_nm
+    beyond = humid.separation_nm > touching + menisci_of(air, 0.0).reach_nm
     assert beyond.sum() > 20
     wanted = np.interp(humid.separation_nm[beyond], dry.separation_nm, dry.closing[1])
     assert humid.closing[1][beyond] == pytest.approx(wanted, rel=0.05)  # both are interpolated
