@@ -311,7 +311,7 @@ def _write(file: Path, text: str) -> int:
             stream.write(text)
     except OSError as error:
         remedy = (
-            "remove it, or run it as it is"
+            "remove it, run it as it is, or choose another name (--scene of measured files)"
             if isinstance(error, FileExistsError)
             else "choose another name or folder"
         )

@@ -64,10 +64,10 @@ SWITCH_S = {"beam": 0.22, "plate": 0.02}
 """Of a switch on a pad, and on its halves."""
 UNDECIDED = 0.4
 """Share of points that four times as many cells must decide."""
-ANSWERED_TIMES = 0.7
+ANSWERED_TIMES = 1.1
 """Switches that the answer solves beside its points, for each of them: other devices, what frees
 those that stick."""
-PRESSED_AGAIN = 24
+PRESSED_AGAIN = 12
 """Pads of a point that the answer presses: other hardness, other numerical choices, and roughness
 that frees."""
 TRIED_HUMIDITIES = 10

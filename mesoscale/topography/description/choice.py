@@ -230,8 +230,8 @@ def _unit_doubt(name: str, values: Mapping[str, Any]) -> Iterator[Doubt]:
     else:
         return
     text = (
-        f"{name}: an RMS height of {rms_nm:.3g} nm over {length_nm:.3g} nm, {than}: is it another"
-        " unit?"
+        f"{name}: an RMS height of {rms_nm:.3g} nm over {length_nm:.3g} nm, {than}, as in another"
+        " unit"
     )
     remedy = (
         "positions and heights may have units of their own (unit: um, height_unit: nm; --unit"
