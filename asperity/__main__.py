@@ -159,9 +159,9 @@ def _parser() -> argparse.ArgumentParser:
     server.add_argument(
         "--host", default="127.0.0.1", help="address to listen on; default: this machine alone"
     )
-    server.add_argument("--port", type=int, default=4242)
+    server.add_argument("--port", type=_whole, default=4242)
     server.add_argument(
-        "--workers", type=int, default=1, help="processes that evaluate; default: 1"
+        "--workers", type=_whole, default=1, help="processes that evaluate; default: 1"
     )
     return parser
 
@@ -412,6 +412,13 @@ def _cores(text: str) -> str:
             f"{shown(text)}: accepted is a whole number of at least 1, or all"
         )
     return text
+
+
+def _whole(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{shown(text)}: accepted is a whole number") from None
 
 
 def _hours(text: str) -> float:

@@ -67,6 +67,8 @@ def described(
         tip_nm = None
         if words.tip_nm is not None:
             tip_nm = number_of(f"--tip-nm={words.tip_nm}", words.tip_nm, "nm")
+            if tip_nm < 0.0:
+                raise InputError(f"--tip-nm={words.tip_nm}: accepted is 0 or more, in nm")
         film = Film(readable(words.files, say, topography), tip_nm, **topography)
     else:
         for name in OF_FILES:

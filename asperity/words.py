@@ -21,7 +21,12 @@ KINDS = {None: "fixed", ":": "uniform", "+-": "normal"}
 SUBSTRATE_PPM_C = 2.6
 """Thermal expansion of silicon, on which the beam is taken to be anchored."""
 SCALAR_KEYS = tuple(
-    name for name in DeviceSettings.model_fields if name not in ("spread", "measured")
+    name
+    for name, field in DeviceSettings.model_fields.items()
+    if not any(
+        isinstance(kind, type) and issubclass(kind, Settings)
+        for kind in (field.annotation, *get_args(field.annotation))
+    )
 )
 """Keys of the device that a word can state; departures are rows of a scene."""
 OTHER_WORDS = {
@@ -118,11 +123,6 @@ def number_of(word: str, text: str, unit: str) -> float:
         raise InputError(f"{word}: a decimal comma; write {name}={plain.replace(',', '.')}")
     with_unit = re.fullmatch(rf"({NUMBER}) ?([^\W\d_].*|%)", plain)
     if with_unit is None:
-        if range_of := re.fullmatch(rf"({NUMBER})(:|\+-)({NUMBER})", plain):
-            raise InputError(
-                f"{word}: accepted is one number, such as {name}={range_of[1]}; departures from it"
-                " stand in a scene (device.spread)"
-            )
         raise InputError(f"{word}: {text!r} is no number; write for instance {name}=2.5")
     number, stated = with_unit.groups()
     if stated == unit:
@@ -298,6 +298,11 @@ def _device_value(word: str, name: str, value: str) -> Any:
         if not start or not end or ":" in end:
             raise InputError(f"{word}: accepted are two shares of the length: {name}=0.2:0.8")
         return (number_of(word, start, "1"), number_of(word, end, "1"))
+    if range_of := re.fullmatch(rf"({NUMBER})(:|\+-)({NUMBER})", value):
+        raise InputError(
+            f"{word}: accepted is one number, such as {name}={range_of[1]}; departures from it"
+            " stand in a scene (device.spread)"
+        )
     return number_of(word, value, unit_of(name))
 
 

@@ -7,7 +7,7 @@ from fnmatch import fnmatch
 import pytest
 import yaml
 
-from asperity.door import scene_lines, topography_of
+from asperity.door import described, scene_lines, topography_of
 from asperity.words import SCALAR_KEYS, assumed_lines, bodies, device_of, material_of
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
@@ -150,6 +150,13 @@ def files_with(**words):
     """Options of files as the command line has them."""
     names = ("channel", "unit", "size", "crop", "points", "detrend", "tip_nm")
     return Namespace(**dict.fromkeys(names) | words)
+
+
+@pytest.mark.parametrize("tip", ["-1", "3:1", "5%", "1,5", ""])
+def test_a_wrong_radius_of_the_tip_is_one_line_of_ours(tip):
+    given = files_with(files=["a.txt"], tip_nm=tip, material=[], device=[])
+    with pytest.raises(InputError, match=f"^--tip-nm={re.escape(tip)}: "):
+        described(given, print)
 
 
 def test_several_files_have_sizes_and_units_of_their_own(tmp_path, monkeypatch):
