@@ -34,17 +34,22 @@ class Body(Settings):
     poisson: float = key(..., "Poisson's ratio", "[0, 0.5)")
     density_g_cm3: float = key(..., "density", "[0.01, 30] g/cm^3")
     expansion_ppm_C: float = key(..., "thermal expansion", "[-1000, 1000] 1e-6/C")
+    beams_are_plated: bool = key(False, "whether its beams have the modulus of plated nickel")
     source: str = key(..., "where the numbers are from")
 
     @property
     def of_a_beam(self) -> dict[str, float]:
-        """Keys of a device whose beam is of it."""
-        return {
-            "youngs_modulus_GPa": self.young_GPa,
+        """Keys of a device whose beam is of it; the modulus of plated nickel is the device's own
+        default, with its scatter.
+        """
+        keys = {
             "poisson_ratio": self.poisson,
             "density_g_cm3": self.density_g_cm3,
             "excess_expansion_ppm_C": round(self.expansion_ppm_C - SUBSTRATE_PPM_C, 6),
         }
+        if not self.beams_are_plated:
+            keys["youngs_modulus_GPa"] = self.young_GPa
+        return keys
 
 
 @cache
@@ -202,6 +207,13 @@ def device_of(words: Sequence[str]) -> dict[str, Any]:
     except InputError as error:
         raise InputError(str(error).replace("DeviceSettings:", "device:")) from None
     return stated
+
+
+def beam_is_plated(words: Sequence[str]) -> bool:
+    """Whether words name a material whose beams are plated, and no modulus."""
+    named = [body_of(word, word[9:]) for word in words if word.startswith("material=")]
+    stated = any(word.startswith("youngs_modulus_GPa=") for word in words)
+    return not stated and any(body.beams_are_plated for body in named)
 
 
 def _value_and_error(word: str, name: str, text: str) -> tuple[float, float]:
