@@ -41,6 +41,7 @@ class Effect(Settings):
     hardness: float | None = key(
         None, "factor on the hardness of the film, or of the body without one", "(0, 10]"
     )
+    charge: bool = key(False, "whether it is none of a scene that states charge")
     varied_as: str = key("", "input that stands for it, where a scene varies it")
     changes: str = key("", "property of the device that it changes")
     factor: float = key(1.0, "times its value")
@@ -140,10 +141,14 @@ def budget(
     pressed = _Pressed(central.point.device, central.pad.curves, central.states)
     of_device = [*_of_device(pressed)]
     rows = [*of_device, *_computed(switch, {row["effect"] for row in of_device})]
+    if pressed.device.charged:
+        rows.append(_of_charge(pressed))
     if errors_V:
         rows.append(_numerical(errors_V))
     for name, effect in effects.items():
         if effect.changes and not pressed.device.has(effect.changes):
+            continue
+        if effect.charge and pressed.device.charged:
             continue
         if effect.varied_as and effect.varied_as in central.point.values:
             continue
@@ -246,6 +251,20 @@ class _Pressed:
         except InputError as error:
             return None, f"; no answer: {str(error).partition(';')[0]}"
         return max(releases) - min(releases), "; it may stick" * (min(releases) == 0.0)
+
+
+def _of_charge(pressed: _Pressed) -> dict[str, Any]:
+    """The charge that the scene states, beside none."""
+    volts, remark = pressed.reach_V(pressed.device.uncharged)
+    return {
+        "effect": "charge that the scene states",
+        "volts": volts,
+        "about": f"beside none, at central inputs{remark}",
+        "how": "computed",
+        "held": True,
+        "settle": "shift and narrowing of the C–V curve",
+        "source": "device.shift_V, charge_e_cm2 and uneven; solved again",
+    }
 
 
 def _of_device(pressed: _Pressed) -> Iterator[dict[str, Any]]:

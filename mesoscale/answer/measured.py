@@ -26,6 +26,7 @@ from mesoscale.settings import DeviceSettings
 from mesoscale.settings.device import MEASURABLE, unit_of
 from mesoscale.switch.beam import beam_of
 from mesoscale.switch.beam_motion import MovingBeam
+from mesoscale.switch.charge import shift_V
 from mesoscale.switch.resonance import lowest_kHz
 
 Array = NDArray[np.float64]
@@ -112,7 +113,7 @@ def observed(settings: DeviceSettings) -> dict[str, float]:
     return dict(
         zip(
             MEASURABLE,
-            (pull_in.voltage, capacitance_fF, lowest_kHz(beam, settings)),
+            (pull_in.voltage + shift_V(settings), capacitance_fF, lowest_kHz(beam, settings)),
             strict=True,
         )
     )

@@ -16,8 +16,11 @@ from mesoscale.answer.other_devices import by_capacitance, release_by_key
 from mesoscale.answer.switches import PadModel, Solved
 from mesoscale.errors import InputError
 from mesoscale.pad.adhesion import adhesion_of
-from mesoscale.pad.curves import attracting
-from mesoscale.switch import release_or_nan_V
+from mesoscale.pad.curves import PadCurves, attracting
+from mesoscale.settings import DeviceSettings
+from mesoscale.settings.device import EVEN_CHARGE
+from mesoscale.switch import release_or_nan_V, switch_of
+from mesoscale.switch.charge import shift_V
 from mesoscale.switch.switch import NEVER_CLOSES
 
 Array = NDArray[np.float64]
@@ -282,6 +285,9 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         by_key = release_by_key(settings, central.pad.curves)
         falls = by_capacitance(settings, central.pad.curves)
     reasons = _reasons(central)
+    reversed_drive = {}
+    if central.pad and central.states and shift_V(settings):
+        reversed_drive = {"reversed": _reversed(settings, central.pad.curves)}
     return {
         "electrode": ELECTRODES[settings.kind],
         "cells_computed": cells_computed,
@@ -293,6 +299,7 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         "adhesion": adhesion,
         "by_key": by_key,
         "by_capacitance": falls,
+        **reversed_drive,
         "gate": {"passed": not reasons, "reasons": reasons},
         "answer": content,
         "answer_status": status,
@@ -304,6 +311,17 @@ def _central(central: Solved) -> dict[str, float] | None:
     if central.states is None:
         return None
     return {**central.states.numbers, "error_V": central.error_V}
+
+
+def _reversed(settings: DeviceSettings, pad: PadCurves) -> dict[str, Any]:
+    """What the switch does driven with the other polarity, which its even charge shifts the other
+    way; a reason where it has no answer.
+    """
+    opposite = {name: -getattr(settings, name) for name in EVEN_CHARGE}
+    try:
+        return switch_of(settings.model_copy(update=opposite)).states(pad).numbers
+    except InputError as error:
+        return {"reason": str(error)}
 
 
 def _reasons(central: Solved) -> list[str]:

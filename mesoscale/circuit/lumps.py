@@ -3,10 +3,11 @@ between them.
 
 For each lump, s its separation, A its area, b the width of the electrode, mass per area rho t,
 
-    rho t s'' = p_pad(s, deepest) - eps0 V^2 / 2 [1 / e^2 + fringe / (b e)] + P0 (n / s - 1) - F / A
+    rho t s'' = p_pad(s, deepest) - eps0 W / 2 [1 / e^2 + fringe / (b e)] + P0 (n / s - 1) - F / A
+    W   = (V - V_s)^2 + U^2(s), with V_s and U of charge (docs/charging.md)
     F   = K u + (S / 2) (z.D z - z0.D z0) D z
     n'  = -(P - P0) P s^3 / (P0 mu b^2),    P = P0 n / s,    mu = viscosity / (1 + 9.638 Kn^1.159)
-    Q   = V eps0 sum A [1 / e + fringe / b ln(pi b / e)],    e = s + t / eps_r
+    Q   = (V - V_s) eps0 sum A [1 / e + fringe / b ln(pi b / e)],    e = s + t / eps_r
 
 with u = s - rest, z = z0 + u the height over the anchors, z0 that at rest, z.D z / 2 the elongation
 of the beam, and S its stretching stiffness, EA / L where anchors are rigid. The gas of a long
@@ -17,7 +18,7 @@ over s. A fringe of 2 / pi is that of a thin strip over a plane (Palmer, Trans. 
 Simulators integrate these equations (`mesoscale.circuit.spice`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,12 +28,16 @@ from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
 from mesoscale.switch.beam import Beam, assembled, beam_of, lumped_beam
 from mesoscale.switch.beam_switch import BeamStates, BeamSwitch
+from mesoscale.switch.charge import shift_V, uneven_V2
 from mesoscale.units import NM
 
 Array = NDArray[np.float64]
 
 CAPACITANCE_ERROR = 0.03
 """Allowed error of lumps beside the finite elements, of the held capacitance."""
+
+UNEVEN_FROM_NM, UNEVEN_NODES = 0.1, 120
+"""First separation, and number, of the nodes of uneven charge, 9 % apart."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,9 @@ class Lumps:
     gas_Pa : pressure of the gas around.
     loss_us : a moving electrode resists as if it were displaced by so much more of its velocity.
     fringe : see above.
+    shift_V : V_s of even charge and contact potential, which the electrode does not feel.
+    uneven_V2 : separations (nm), and what uneven charge adds to the square of the voltage there,
+        shape (2, n); n is 0 without it.
     """
 
     rest_nm: Array
@@ -68,6 +76,8 @@ class Lumps:
     gas_Pa: float
     loss_us: float
     fringe: float
+    shift_V: float = 0.0
+    uneven_V2: Array = field(default_factory=lambda: np.empty((2, 0)))
 
     @property
     def count(self) -> int:
@@ -102,7 +112,17 @@ def lumps_of(settings: DeviceSettings, count: int) -> Lumps:
         1e3 * settings.gas_kPa,
         1e6 / (CIRCUIT.quality * float(np.sqrt(slowest))),
         settings.fringe,
+        shift_V(settings),
+        _uneven(settings, float(beam.rest_m.max()) / NM),
     )
+
+
+def _uneven(settings: DeviceSettings, farthest_nm: float) -> Array:
+    """Nodes of U^2 between touch and rest."""
+    if settings.uneven is None:
+        return np.empty((2, 0))
+    separation_nm = np.concatenate([[0.0], np.geomspace(UNEVEN_FROM_NM, farthest_nm, UNEVEN_NODES)])
+    return np.stack([separation_nm, uneven_V2(settings, separation_nm)])
 
 
 def _paired_stiffness(beam: Beam) -> tuple[Array, Array]:

@@ -19,6 +19,7 @@ Nodes of `rough_switch`, for lump k:
     longer     nm            elongation since rest              ((b - z0) D (b - z0) - z0 D z0) / 2
     drawn{k}   Pa            pressure that draws the lump down  from `rough_lump`
     charge     fC            of all lumps
+    felt       V             of the electrode, less the shift by even charge; without it that of `top`
 
 The pressures on a lump of area A are drawn, -K b / A, -S longer slope / A, and -drag v.
 
@@ -91,7 +92,7 @@ Rcharge charge 0 1
 Ccharge charge sense 1f
 Vcharge sense 0 0
 Fcharge top bottom Vcharge 1
-.ends rough_switch
+{_shift(lumps)}.ends rough_switch
 
 {_lump(lumps)}
 
@@ -107,7 +108,7 @@ def _pair(lumps: Lumps, k: int) -> str:
     slope_at_rest = -(slopes @ lumps.height_nm)
     stretch = force * lumps.stretching_N_m * NM * SLOPE_PER_V / area_m2
     lines = [
-        f"Xlump{k} top bottom moved{k} drawn{k} charge rough_lump",
+        f"Xlump{k} {_electrode(lumps)} bottom moved{k} drawn{k} charge rough_lump",
         f"+   rest={lumps.rest_nm[k]:.9g} area={area_m2:.9g}",
         "+   gas={gas} viscosity={viscosity} fringe={fringe} follow={follow}",
         f"Cmoved{k} moved{k} 0 1u",
@@ -127,6 +128,16 @@ def _pair(lumps: Lumps, k: int) -> str:
         f" * (V(bent{k}) + {-lumps.height_nm[k]:.9g}) * V(slope{k})",
     ]
     return "\n".join(lines)
+
+
+def _electrode(lumps: Lumps) -> str:
+    """Node whose voltage the lumps feel."""
+    return "felt" if lumps.shift_V else "top"
+
+
+def _shift(lumps: Lumps) -> str:
+    """The source that takes the shift by even charge off the drive; nothing without it."""
+    return f"Vshift top felt {lumps.shift_V:.9g}\n" if lumps.shift_V else ""
 
 
 def _slopes(lumps: Lumps) -> np.ndarray:
@@ -151,6 +162,10 @@ def _lump(lumps: Lumps) -> str:
     film = f"max({{rest}} - V(moved), {CIRCUIT.least_film_nm:g})"
     dense = f"max(1 + V(excess), {CIRCUIT.least_density:g})"
     knudsen = f"{{{CIRCUIT.free_path_nm_Pa:.9g}/gas}} / ({dense} * {film})"
+    felt_V2 = "V(top,bottom)^2"
+    if lumps.uneven_V2.size:
+        uneven = _pwl("{rest} - V(moved)", Piece(*lumps.uneven_V2))
+        felt_V2 = f"(V(top,bottom)^2\n+   + {uneven})"
     return f"""* A pair of lumps; Verilog-A has the same.
 .subckt rough_lump {LUMP} params: rest=1 area=1 gas=1 viscosity=1 fringe=0 follow={CIRCUIT.follow_s:g}
 Gup 0 up 0 moved 1
@@ -164,7 +179,7 @@ Clost lost 0 1u
 Blost 0 lost I = {{{FLOW:g}*gas/(viscosity*{width**2:.9g})}} * {dense} * V(excess) * {film}^3
 +   * (1 + 9.638 * pow({knudsen}, 1.159))
 Rdrawn drawn 0 1
-Bdrawn 0 drawn I = {0.5 * VACUUM_PERMITTIVITY} * V(top,bottom)^2 * (1 + {{fringe/{width:.9g}}} * {electric})
+Bdrawn 0 drawn I = {0.5 * VACUUM_PERMITTIVITY} * {felt_V2} * (1 + {{fringe/{width:.9g}}} * {electric})
 +   / {electric}^2 - V(push) - {{gas}} * V(excess)
 .ends rough_lump"""
 

@@ -25,9 +25,11 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.cells import FIRST_SEED
 from mesoscale.pad.curves import PadCurves, on_deep_enough
 from mesoscale.settings import ContactSettings, DeviceSettings
-from mesoscale.settings.device import SPREAD
+from mesoscale.settings.device import EVEN_CHARGE, SPREAD
 from mesoscale.switch.beam import beam_of, lumped_beam
 from mesoscale.switch.beam_switch import BeamSwitch
+from mesoscale.switch.charge import shift_V
+from mesoscale.switch.shifted import as_driven, as_felt
 
 Array = NDArray[np.float64]
 
@@ -71,8 +73,10 @@ def central_switch(settings: DeviceSettings, pad: PadCurves) -> tuple[CircuitSwi
     """
     if settings.without_circuit:
         raise InputError(settings.without_circuit)
-    errors, continued = on_deep_enough(pad, partial(choose_lumps, settings))
-    row = {"switch": "central", "pull_in_V": errors.pull_in_V, "release_V": errors.release_V}
+    shift = shift_V(settings)
+    errors, continued = on_deep_enough(pad, partial(choose_lumps, as_felt(settings, shift)))
+    pull_in_V, release_V = as_driven(errors.pull_in_V, errors.release_V, shift)
+    row = {"switch": "central", "pull_in_V": pull_in_V, "release_V": release_V}
     return CircuitSwitch(row, settings.level, continued), errors
 
 
@@ -129,21 +133,28 @@ def _by_lumps(
     InputError : see `BeamSwitch.states_on`.
     """
     device = point.device.level
-    switch = BeamSwitch(device, lumped_beam(device, lumps))
+    shift = shift_V(device)
+    switch = BeamSwitch(as_felt(device, shift), lumped_beam(device, lumps))
     states, continued = on_deep_enough(pad, switch.states_on)
-    properties = {name: getattr(device, name) for name in SPREAD if name != "tilt_nm"}
+    pull_in_V, release_V = as_driven(states.pull_in_V, states.release_V, shift)
+    written = [name for name in SPREAD if name not in EVEN_CHARGE or name in device.varied]
+    properties = {name: getattr(device, name) for name in written if name != "tilt_nm"}
     inputs = {**point.values, "gap_cutoff_nm": point.gap_cutoff_nm, **properties}
-    volts = {"pull_in_V": states.pull_in_V, "release_V": states.release_V}
+    volts = {"pull_in_V": pull_in_V, "release_V": release_V}
     row = {"switch": name, "deviations": deviations, **inputs, **volts}
     return CircuitSwitch(row, device, continued)
 
 
 def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, float]]:
     """Rows of circuit/loop.csv: capacitance against voltage, up and down, central and of 90 % of the
-    draws.
+    draws; of both polarities where even charge makes them differ.
     """
     top = CIRCUIT.loop_top * max(switch.row["pull_in_V"] for switch in (central, *drawn))
     volts = np.linspace(0.0, top, LOOP_VOLTAGES)
+    if any(shift_V(switch.settings) for switch in (central, *drawn)):
+        most_V = max(abs(shift_V(switch.settings)) for switch in (central, *drawn))
+        outwards = np.linspace(0.0, top + 2.0 * most_V, LOOP_VOLTAGES)
+        volts = np.concatenate([-outwards[:0:-1], outwards])
     curves = [_loop_fF(central, volts)]
     for switch in drawn:
         with suppress(InputError):  # a beam that finds no balance on any mesh
@@ -168,12 +179,23 @@ def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, 
 
 def _loop_fF(switch: CircuitSwitch, volts: Array) -> Array:
     """The loop of one switch, shape (2, volts), by the first mesh on which the beam finds all its
-    balances.
+    balances; each polarity goes from 0 outwards and back.
     """
+    if volts[0] < 0.0:
+        negative = volts[volts < 0.0]
+        positive = volts[volts >= 0.0]
+        others = _outwards_fF(switch, negative[::-1])
+        return np.hstack([others[:, ::-1], _outwards_fF(switch, positive)])
+    return _outwards_fF(switch, volts)
+
+
+def _outwards_fF(switch: CircuitSwitch, volts: Array) -> Array:
+    """The loop of one polarity, from next to 0 to the highest voltage and back."""
+    felt_V = np.abs(volts - shift_V(switch.settings))
     for elements in LOOP_ELEMENTS:
         beam = BeamSwitch(switch.settings, beam_of(switch.settings, elements))
         try:
-            loop, _ = on_deep_enough(switch.pad, partial(beam.loop_fF, volts=volts))
+            loop, _ = on_deep_enough(switch.pad, partial(beam.loop_fF, volts=felt_V))
         except InputError:  # between straight pieces of the pad's curves, steps may cycle
             if elements == LOOP_ELEMENTS[-1]:
                 raise

@@ -131,10 +131,16 @@ def _function(name: str, piece: Piece) -> str:
 """
 
 
+def _uneven(lumps: Lumps) -> str:
+    """The function of what uneven charge adds to the square of the voltage; nothing without it."""
+    return _function("uneven", Piece(*lumps.uneven_V2)) if lumps.uneven_V2.size else ""
+
+
 def verilog_lump(lumps: Lumps, pad: PadCurves, cells: int) -> str:
     """Verilog-A module `rough_lump`."""
     tables = tables_of(pad, cubic=True)
     width = f"{lumps.width_m:.9g}"
+    felt_V2 = "(volts * volts + uneven(s))" if lumps.uneven_V2.size else "volts * volts"
     names = LUMP.replace(" ", ", ")
     return f"""// A pair of lumps of an electrostatic switch on a rough contact (Asperity, docs/circuit.md).
 // {note(tables, cells)}
@@ -156,7 +162,7 @@ module rough_lump({names});
     parameter real offset_nm = {pad.flats.offset_nm:.12g} from [0:inf);
 
     real volts, s, electric, deepest, film, excess, dense, thinner;
-{verilog_pressure(tables)}
+{verilog_pressure(tables)}{_uneven(lumps)}
     analog begin
         volts = V(top, bottom);
         s = rest - V(moved);
@@ -172,7 +178,7 @@ module rough_lump({names});
             * thinner / (viscosity * {lumps.width_m**2:.9g});
         I(charge) <+ -1.0e15 * volts * area * {VACUUM_PERMITTIVITY} * (1.0 / electric
             + fringe / {width} * ln(`M_PI * {width} / electric));
-        V(drawn) <+ 0.5 * {VACUUM_PERMITTIVITY} * volts * volts * (1.0 + fringe * electric / {width})
+        V(drawn) <+ 0.5 * {VACUUM_PERMITTIVITY} * {felt_V2} * (1.0 + fringe * electric / {width})
             / (electric * electric) - 1.0e9 * pressure(s, deepest, hamaker, offset_nm) - gas * excess;
         if (deepest < {tables.depth_nm[0]:.7g})
             $strobe("rough_lump: closed to %g nm, the table ends at {tables.depth_nm[0]:.4g} nm", deepest);

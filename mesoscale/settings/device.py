@@ -21,9 +21,19 @@ if TYPE_CHECKING:  # rules read settings, and are linted where Snakemake is alon
 REFERENCE_C = 20.0
 """Temperature at which stress and shape at rest are stated."""
 PartOfBeam = tuple[float, float]
-NOTHING = (("measured", None), ("release_at", "jump"), ("anchor_rad_per_uN_m", 0.0))
+NOTHING = (
+    ("measured", None),
+    ("release_at", "jump"),
+    ("anchor_rad_per_uN_m", 0.0),
+    ("shift_V", 0.0),
+    ("charge_e_cm2", 0.0),
+    ("uneven", None),
+)
 """Keys that say nothing, and are left out of results."""
+EVEN_CHARGE = ("shift_V", "charge_e_cm2")
+"""Properties that shift the voltage which the electrode feels."""
 Share = Annotated[float, Field(gt=0.0, lt=1.0)]
+Positive = Annotated[float, Field(gt=0.0)]
 
 
 class SpreadRow(DistributionRow):
@@ -87,6 +97,42 @@ class SpreadSettings(Settings):
     bow_nm: SpreadRow | None = _departs("bow_nm", _normal(200.0))
     tilt_nm: SpreadRow | None = _departs("tilt_nm", _normal(200.0))
     temperature_C: SpreadRow | None = _departs("temperature_C", None)
+    shift_V: SpreadRow | None = _departs("shift_V", None)
+    charge_e_cm2: SpreadRow | None = _departs("charge_e_cm2", None)
+
+    @model_serializer(mode="wrap")
+    def _without_charge(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Charge that does not vary is left out, so that results without it stay as they were."""
+        return {
+            name: row
+            for name, row in dump(self).items()
+            if row is not None or name not in EVEN_CHARGE
+        }
+
+
+class UnevenCharge(Settings):
+    """Charge at the surface of the dielectric that differs from place to place, about its mean.
+
+    It is stated by waves, or by round patches at random places.
+    """
+
+    waves: tuple[tuple[Positive, Positive], ...] = key(
+        (), "periods (nm), and root mean square density (1/cm^2) of the waves of each", "nm, 1/cm^2"
+    )
+    patch_nm: float | None = key(None, "radius of round patches at random places", "(0, 1e6] nm")
+    e_cm2: float = key(
+        0.0,
+        "root mean square departure of the density of patches from its mean",
+        "[0, 1e14] 1/cm^2",
+    )
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> "UnevenCharge":
+        if bool(self.waves) == (self.patch_nm is not None):
+            raise ValueError("give either waves, or patch_nm with e_cm2")
+        if self.waves and self.e_cm2:
+            raise ValueError("e_cm2 is that of patches; waves have a density of their own each")
+        return self
 
 
 _STATED = re.compile(r"(.+?)(?:\+-|±)(.+)")
@@ -104,7 +150,6 @@ def _value_and_error(stated: Any) -> Any:
         raise ValueError("accepted are a value and its standard error, as in 72 +- 2") from None
 
 
-Positive = Annotated[float, Field(gt=0.0)]
 ValueAndError = Annotated[
     tuple[Positive, Positive],
     BeforeValidator(_value_and_error, json_schema_input_type=tuple[Positive, Positive] | str),
@@ -136,7 +181,7 @@ SPREAD = tuple(SpreadSettings.model_fields)
 Kind = Literal["beam", "plate"]
 UNCERTAIN: dict[Kind, tuple[str, ...]] = {
     "beam": SPREAD,
-    "plate": ("gap_um", "dielectric_nm", "permittivity"),
+    "plate": ("gap_um", "dielectric_nm", "permittivity", *EVEN_CHARGE),
 }
 """Of these, the properties that act on each kind of switch."""
 DESIGNED: dict[Kind, tuple[str, ...]] = {
@@ -233,6 +278,20 @@ class DeviceSettings(Settings):
     )
     dielectric_nm: float = key(200.0, "thickness of the dielectric", "[0, 1e5] nm")
     permittivity: float = key(7.9, "relative permittivity of the dielectric", "[1, 1e5]")
+    shift_V: float = key(
+        0.0,
+        "shift of the voltage that the electrode feels, V - shift_V, by contact potential or even"
+        " charge; of the sign of the drive: it raises both voltages",
+        "[-1000, 1000] V",
+    )
+    charge_e_cm2: float = key(
+        0.0,
+        "even charge at the surface of the dielectric, whose shift adds to shift_V; with its sign",
+        "[-1e14, 1e14] 1/cm^2",
+    )
+    uneven: UnevenCharge | None = key(
+        None, "charge that differs from place to place; null: none (docs/charging.md)"
+    )
     density_g_cm3: float = key(
         8.9, "density of the electrode, which moves; default: nickel", "[0.01, 30] g/cm^3"
     )
@@ -278,6 +337,16 @@ class DeviceSettings(Settings):
         return self
 
     @model_validator(mode="after")
+    def _charge_in_a_dielectric(self) -> "DeviceSettings":
+        charged = self.charge_e_cm2 != 0.0 or self.spread.charge_e_cm2 or self.uneven
+        if charged and self.dielectric_nm == 0.0:
+            raise ValueError(
+                "charge_e_cm2 and uneven: a dielectric without thickness holds no charge; give"
+                " dielectric_nm, or state shift_V"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _parts_of_the_beam(self) -> "DeviceSettings":
         for name in ("electrode", "contact"):
             start, end = getattr(self, name)
@@ -292,6 +361,19 @@ class DeviceSettings(Settings):
     def kind(self) -> Kind:
         """Which switch the settings describe: a bending beam, or a plate on a spring."""
         return "beam" if self.spring_N_per_m is None else "plate"
+
+    @property
+    def charged(self) -> bool:
+        """Whether it has charge or a contact potential, or may have."""
+        return bool(
+            self.uneven
+            or any(getattr(self, name) or getattr(self.spread, name) for name in EVEN_CHARGE)
+        )
+
+    @property
+    def uncharged(self) -> "DeviceSettings":
+        """The same device without charge and contact potential."""
+        return self.model_copy(update=dict.fromkeys(EVEN_CHARGE, 0.0) | {"uneven": None})
 
     @property
     def level(self) -> "DeviceSettings":

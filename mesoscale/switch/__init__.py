@@ -5,6 +5,8 @@ import numpy as np
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.charge import shift_V
+from mesoscale.switch.shifted import ShiftedSwitch, as_felt
 from mesoscale.switch.switch import States, Switch
 
 __all__ = ["States", "Switch", "release_or_nan_V", "switch_of"]
@@ -19,10 +21,14 @@ def switch_of(settings: DeviceSettings, coarse: bool = False) -> Switch:
 
     Raises
     ------
-    InputError : it touches what it lands on at rest.
+    InputError : it touches what it lands on at rest, or its charge takes its hold voltage away.
     """
     kind = _kind_of(settings)
-    return kind.from_settings(settings, coarse)
+    shift = shift_V(settings)
+    if shift == 0.0:
+        return kind.from_settings(settings, coarse)
+    felt = kind.from_settings(as_felt(settings, shift), coarse)
+    return ShiftedSwitch(settings, felt, shift)
 
 
 def _kind_of(settings: DeviceSettings) -> type[Switch]:

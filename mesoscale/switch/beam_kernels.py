@@ -35,6 +35,9 @@ STILL_NM = 1e-3
 changes."""
 BALANCED_SHARE = 6.6e-5
 """Of the pull of the spring: pressure that may be left unbalanced, 1 Pa of the default switch."""
+UNEVEN_NM, UNEVEN_STEP = 5.0, 0.004
+"""Separations of the table of uneven charge: `UNEVEN_NM` sinh(k `UNEVEN_STEP`), dense where fine
+charge fades and in steps of 0.4 % far away."""
 SETTLED, BEYOND, FREE, UNSETTLED = range(4)
 """How a motion ends: in balance, below the computed closing, off the pad, or not within the allowed
 steps.
@@ -76,6 +79,17 @@ def least_gap_nm(dielectric_nm):
 
 
 @njit(cache=True)
+def _at_separation(separation_nm, table):
+    """Value of a table at `UNEVEN_NM` sinh(k `UNEVEN_STEP`), and its slope."""
+    s = max(separation_nm, 0.0)
+    place = np.arcsinh(s / UNEVEN_NM) / UNEVEN_STEP
+    k = min(int(place), table.size - 2)
+    change = table[k + 1] - table[k]
+    slope = change / UNEVEN_STEP / np.sqrt(s * s + UNEVEN_NM * UNEVEN_NM)
+    return table[k] + min(place - k, 1.0) * change, slope
+
+
+@njit(cache=True)
 def add_loads(separation_nm, pressure, slope, electric, places):
     """Take the electrostatic pull off where the electrode is, and put stoppers where the pad is
     not.
@@ -85,10 +99,11 @@ def add_loads(separation_nm, pressure, slope, electric, places):
     pressure, slope : of the pad (GPa, GPa/nm) at the separation of what lands on it; changed in
         place.
     electric : dielectric over its permittivity (nm), square of the voltage, vacuum permittivity,
-        fringe over width (1/nm).
+        fringe over width (1/nm), and what uneven charge adds to that square (V^2) at the
+        separations of `UNEVEN_NM`; empty without it.
     places : see `mesoscale.switch.beam.Beam.places`.
     """
-    dielectric_nm, squared_V2, permittivity, edge_per_nm = electric
+    dielectric_nm, squared_V2, permittivity, edge_per_nm, uneven_V2 = electric
     wired, lands, _, stopper_nm, stopper_GPa_nm = places
     least = least_gap_nm(dielectric_nm)
     for e in range(separation_nm.shape[0]):
@@ -98,7 +113,13 @@ def add_loads(separation_nm, pressure, slope, electric, places):
                 pressure[e, g] = stopper_GPa_nm * max(stopper_nm - s, 0.0)
                 slope[e, g] = -stopper_GPa_nm if s < stopper_nm else 0.0
             electric_nm = max(s + dielectric_nm, least)
-            pull = wired[e, g] * permittivity * squared_V2 / (2.0 * (electric_nm * NM) ** 2) / GPA
+            felt_V2 = squared_V2
+            if uneven_V2.size > 0:
+                more_V2, falls_V2_nm = _at_separation(s, uneven_V2)
+                felt_V2 += more_V2
+                of_square = wired[e, g] * permittivity / (2.0 * (electric_nm * NM) ** 2) / GPA
+                slope[e, g] -= of_square * falls_V2_nm * (1.0 + edge_per_nm * electric_nm)
+            pull = wired[e, g] * permittivity * felt_V2 / (2.0 * (electric_nm * NM) ** 2) / GPA
             pressure[e, g] -= pull * (1.0 + edge_per_nm * electric_nm)
             slope[e, g] += pull * (2.0 / electric_nm + edge_per_nm)
 

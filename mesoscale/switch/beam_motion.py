@@ -20,11 +20,14 @@ from mesoscale.switch.beam_kernels import (
     BEYOND,
     CLOSING_NM,
     SETTLED,
+    UNEVEN_NM,
+    UNEVEN_STEP,
     UNSETTLED,
     add_loads,
     creep,
     least_gap_nm,
 )
+from mesoscale.switch.charge import uneven_V2
 from mesoscale.units import GPA, NM, VACUUM_PERMITTIVITY
 
 Array = NDArray[np.float64]
@@ -57,6 +60,7 @@ UNHELD_SHARE = 0.05
 """Of the hold voltage: a beam that is still closed at less is tried without any."""
 MOST_V = 1e4
 """Largest voltage that a scene may state; more pulls no switch."""
+NOTHING_UNEVEN = np.empty(0)
 BESIDE = "place electrode nearer to contact, or take a softer beam"
 
 
@@ -104,6 +108,7 @@ class MovingBeam:
         self.dielectric_nm = settings.dielectric_gap_nm
         self.flat_nm = 1e3 * settings.gap_um
         self.edge_per_nm = settings.fringe / (1e3 * settings.width_um)
+        self.uneven_V2 = _table_of_uneven(settings, float(beam.rest_m.max()) / NM)
         self.nodal = np.zeros((beam.elements + 1, 2))
         self.deepest_nm = np.full(beam.rest_m.shape, np.inf)
         self.touch_nm = 0.0
@@ -140,9 +145,15 @@ class MovingBeam:
         """Local separations at the integration points."""
         return (self.beam.rest_m + self.beam.deflection_m(self.nodal)) / NM
 
-    def _electric(self, squared_V2: float) -> tuple[float, float, float, float]:
-        """What `add_loads` takes of the voltage."""
-        return self.dielectric_nm, squared_V2, VACUUM_PERMITTIVITY, self.edge_per_nm
+    def _electric(self, squared_V2: float) -> tuple[float, float, float, float, Array]:
+        """What `add_loads` takes of the voltage, and of uneven charge."""
+        return (
+            self.dielectric_nm,
+            squared_V2,
+            VACUUM_PERMITTIVITY,
+            self.edge_per_nm,
+            self.uneven_V2,
+        )
 
     def load(self, separation_m: Array, squared_V2: float) -> tuple[Array, Array]:
         """Pressure (Pa) and slope (Pa/m) of pad, stoppers and voltage together."""
@@ -165,7 +176,8 @@ class MovingBeam:
         pressure = np.zeros_like(separation_nm)
         slope = np.zeros_like(separation_nm)
         without_pad = (self.beam.wired, np.ones_like(separation_nm), 0.0, 0.0, 0.0)
-        add_loads(separation_nm, pressure, slope, self._electric(1.0), without_pad)
+        of_one_volt = (*self._electric(1.0)[:-1], NOTHING_UNEVEN)
+        add_loads(separation_nm, pressure, slope, of_one_volt, without_pad)
         return pressure * GPA
 
     def landed_share(self) -> float:
@@ -208,6 +220,8 @@ class MovingBeam:
         """
         _, per_V2 = self.beam.step(self.nodal, lambda s: self.load(s, 0.0), 0.0, self._pull_Pa())
         node = int(np.argmin(per_V2[:, 0]))
+        if per_V2[node, 0] >= 0.0 and self.uneven_V2.size:
+            raise self._collapse()
         if per_V2[node, 0] >= 0.0:
             raise InputError(
                 "device: a small voltage does not bring the beam down, since it does not rest"
@@ -259,10 +273,7 @@ class MovingBeam:
             way = self._again(node, way[max(top - 1, 0)], way[-1])
             top = _highest(way)
         if top == 0:
-            raise InputError(
-                "device: attraction alone pulls the beam down onto its pad, without any voltage"
-                " (collapse); raise gap_um or thickness_um, or lower length_um"
-            )
+            raise self._collapse()
         squares_V2 = [state.squared_V2 for state in way]
         if squares_V2[top] > MOST_V**2:
             raise InputError(
@@ -273,6 +284,14 @@ class MovingBeam:
             return PullIn(float(np.sqrt(squares_V2[top])), touches)
         self.nodal = way[top + 1].nodal
         return PullIn(float(np.sqrt(_vertex(*squares_V2[top - 1 : top + 2]))), touches)
+
+    def _collapse(self) -> InputError:
+        """That nothing but a voltage is needed to pull the beam down."""
+        pulls = "uneven charge" if self.uneven_V2.size else "attraction alone"
+        return InputError(
+            f"device: {pulls} pulls the beam down onto its pad, without any voltage (collapse);"
+            " raise gap_um or thickness_um, or lower length_um"
+        )
 
     def _way_down(self, node: int, steps: int) -> tuple[list[_Lowered], bool]:
         """Balances while a node is brought down from rest; whether the last of them touches.
@@ -495,6 +514,17 @@ class MovingBeam:
     def _return_to(self, held: _Held) -> None:
         self.nodal = held.nodal.copy()
         self.deepest_nm = held.deepest_nm.copy()
+
+
+def _table_of_uneven(settings: DeviceSettings, farthest_nm: float) -> Array:
+    """What uneven charge adds to the square of the voltage, at the separations of `add_loads`.
+
+    It is empty without such charge.
+    """
+    if settings.uneven is None:
+        return NOTHING_UNEVEN
+    count = int(np.arcsinh(farthest_nm / UNEVEN_NM) / UNEVEN_STEP) + 2
+    return uneven_V2(settings, UNEVEN_NM * np.sinh(UNEVEN_STEP * np.arange(count)))
 
 
 def _lower_V(voltage: float, hold_V: float) -> float:

@@ -2,15 +2,18 @@
 
 The plate at mean separation s from the dielectric is in balance when
 
-    F(s) = eps0 A V^2 / (2 (s + t/eps)^2)
+    F(s) = eps0 A (V^2 + U^2) / (2 (s + t/eps)^2)
 
 with F the force that opens it: that of its spring, k (g - s), and that of the pad, on which it lies
-flat. V^2 is then a single-valued function of s. A state is stable where it falls with s; where it
-turns are pull-in and release. Nothing is extrapolated: a held state beyond the computed closing, or
-an opening from a depth that was not computed, is refused.
+flat; U^2 is that of uneven charge (`mesoscale.switch.charge`). V^2 is then a single-valued function
+of s. A state is stable where it falls with s; where it turns are pull-in and release. Nothing is
+extrapolated: a held state beyond the computed closing, or an opening from a depth that was not
+computed, is refused.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +22,7 @@ from scipy.optimize import brentq
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import DeviceSettings
+from mesoscale.switch.charge import uneven_V2
 from mesoscale.switch.switch import States, Switch
 from mesoscale.units import GPA, NM, VACUUM_PERMITTIVITY
 
@@ -26,6 +30,9 @@ Array = NDArray[np.float64]
 
 FOLD_POINTS = 400
 """Separations between the end of the pad's table and the gap at rest that bracket the folds."""
+
+PULL_IN_POINTS = 4001
+"""Separations of the way of a plate over uneven charge."""
 
 
 @dataclass(frozen=True)
@@ -38,12 +45,14 @@ class Plate:
     gap_nm : separation g at rest.
     area_m2 : electrode area A.
     dielectric_nm : thickness t divided by the relative permittivity.
+    uneven_V2 : what uneven charge adds to the square of the voltage at separations.
     """
 
     spring_N_per_m: float
     gap_nm: float
     area_m2: float
     dielectric_nm: float
+    uneven_V2: Callable[[ArrayLike], Array] = np.zeros_like
 
     def spring_force_N(self, separation_nm: ArrayLike) -> Array:
         """Force of the spring, which opens the switch."""
@@ -93,11 +102,16 @@ class PlateSwitch(Switch):
             area_m2=settings.area_um2 * 1e-12,
             dielectric_nm=settings.dielectric_gap_nm,
         )
+        if settings.uneven is not None:
+            self.plate = replace(self.plate, uneven_V2=partial(uneven_V2, settings))
 
     @property
     def pull_in_V(self) -> float:
-        """Pull-in without a pad."""
-        return self.plate.pull_in_V
+        """Pull-in without a pad; 0 where uneven charge alone closes it."""
+        if self.settings.uneven is None:
+            return self.plate.pull_in_V
+        way_nm = np.linspace(0.0, self.plate.gap_nm, PULL_IN_POINTS)
+        return _volts(float(_balancing_V2(self.plate, way_nm, np.zeros_like(way_nm)).max()))
 
     def pressed_GPa(self, pad: PadCurves) -> float:
         """Nothing on top of its voltage, which alone presses with more."""
@@ -198,7 +212,7 @@ def _release_V2(
 def _balancing_V2(plate: Plate, separation_nm: ArrayLike, pressure_GPa: Array) -> Array:
     """Square of the voltage that balances spring and pad at separations."""
     force_N = plate.spring_force_N(separation_nm) + plate.area_m2 * pressure_GPa * GPA
-    return plate.balancing_V2(separation_nm, force_N)
+    return plate.balancing_V2(separation_nm, force_N) - plate.uneven_V2(separation_nm)
 
 
 def _volts(squared_V2: float) -> float:

@@ -26,6 +26,9 @@ SECOND_EMISSION = 6.830890e9
 IMAGE_FORCE = 1.439964e-9
 """e^3 / (4 pi eps0) in eV^2 per V/m: the field that pulls a barrier of 1 eV down to nothing."""
 
+PATCH_WAVES = (1e-2, 1e3)
+"""Least and largest wave number of patches, times their radius."""
+
 
 def charge_shift(density: Real, thickness: Real, permittivity: Real) -> Real:
     """Shift (V) by even charge at the surface: density t / (eps0 eps_r)."""
@@ -44,9 +47,30 @@ def felt_charge_wave(
     """
     across_gap = wave_number * gap
     across_dielectric = wave_number * thickness
-    screened = np.cosh(across_gap) + permittivity * np.sinh(across_gap) / np.tanh(across_dielectric)
-    field = amplitude / np.sqrt(2.0) / (VACUUM_PERMITTIVITY * screened)
+    # 1 / cosh without the overflow of a fine wave far away
+    fades = 2.0 * np.exp(-across_gap) / (1.0 + np.exp(-2.0 * across_gap))
+    screened = 1.0 + permittivity * np.tanh(across_gap) / np.tanh(across_dielectric)
+    field = amplitude / np.sqrt(2.0) * fades / (VACUUM_PERMITTIVITY * screened)
     return (gap + thickness / permittivity) * NM * field
+
+
+def waves_of_patches(radius: float, density: float) -> tuple[NDArray[np.float64], ...]:
+    """Wave numbers (1/nm) and amplitudes (C/m^2) of round patches at random places.
+
+    With J0 and J1 of Bessel, the waves up to k hold the share 1 - J0(kR)^2 - J1(kR)^2 of the
+    variance: the spectrum of a disc of radius R, integrated.
+
+    Parameters
+    ----------
+    density : root mean square departure of the density from its mean, C/m^2.
+    """
+    from scipy.special import j0, j1
+
+    edges = np.concatenate([[0.0], np.geomspace(*PATCH_WAVES, 600)])
+    held = np.append(1.0 - j0(edges) ** 2 - j1(edges) ** 2, 1.0)
+    middle = np.append(0.5 * (edges[1:] + edges[:-1]), edges[-1])
+    shares = np.maximum(np.diff(held), 0.0)
+    return middle / radius, density * np.sqrt(2.0 * shares)
 
 
 def emission_current(field: Real, barrier: Real) -> Real:

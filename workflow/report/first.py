@@ -163,7 +163,8 @@ def _conditions(results: Results) -> str:
         words = f"In air of {air['humidity']:.0%} humidity"
     else:
         words = "In dry air"
-    return f"{words}, at {device.temperature_C:g} °C, uncharged."
+    charge = "charged as the scene states" if device.charged else "uncharged"
+    return f"{words}, at {device.temperature_C:g} °C, {charge}."
 
 
 def _largest(answer: dict[str, Any], kind: str) -> list[tuple[str, int]]:

@@ -29,6 +29,8 @@ NAMES = {
     "bow_nm": ("bow", "the bow of the electrode at rest"),
     "tilt_nm": ("tilt", "the tilt of the electrode at rest"),
     "temperature_C": ("temperature", "the temperature of the switch"),
+    "shift_V": ("shift of the voltage", "the shift of the C–V curve"),
+    "charge_e_cm2": ("charge", "the shift of the C–V curve"),
     "length_um": ("length", "the length of the electrode"),
     "hold_voltage_V": ("hold voltage", "the hold voltage"),
     "spring_N_per_m": ("spring", "the stiffness of the spring"),

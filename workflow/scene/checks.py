@@ -181,6 +181,9 @@ def _no_switch(device: DeviceSettings) -> str:
         "dimple_nm",
         "spread",
         "measured",
+        "shift_V",
+        "charge_e_cm2",
+        "uneven",
     }
     if device.touching_at_rest or not unusual & device.model_fields_set:
         return device.touching_at_rest

@@ -1,7 +1,7 @@
 """Tables of the switch for circuit simulators."""
 
 from mesoscale.settings.definitions import RMS_SCATTER
-from mesoscale.settings.device import SPREAD, unit_of
+from mesoscale.settings.device import EVEN_CHARGE, SPREAD, unit_of
 from workflow.schemas.columns import INPUT_VALUES
 from workflow.schemas.table import Table, number, text
 
@@ -25,7 +25,12 @@ TABLES = (
             ),
             number("gap_cutoff_nm", "nm", "D0 of its pad"),
             *(
-                number(name, unit_of(name), f"device.{name} of its electrode")
+                number(
+                    name,
+                    unit_of(name),
+                    f"device.{name} of its electrode",
+                    optional=name in EVEN_CHARGE,
+                )
                 for name in SPREAD
                 if name != "tilt_nm"
             ),
@@ -35,7 +40,10 @@ TABLES = (
     ),
     Table(
         ("circuit/loop.csv",),
-        "One voltage of the slow loop: capacitance while it rises and while it falls.",
+        (
+            "One voltage of the slow loop: capacitance while it rises and while it falls. With even"
+            " charge, voltages of both polarities, each from 0 outwards and back."
+        ),
         (
             number("voltage_V", "V", "voltage"),
             *(

@@ -215,3 +215,30 @@ def test_the_contact_potential_is_the_difference_of_two_work_functions():
     assert SHIPPED["contact potential of the two metals"]["volts"] == pytest.approx(
         5.1 - 4.28, 0.05
     )
+
+
+def rows_of(device):
+    solved = central(device)
+    return {row["effect"]: row for row in budget(effects_of(SHIPPED), SWITCH_CONTENT, solved)}
+
+
+def test_a_scene_that_states_charge_has_its_row_in_place_of_the_conditions():
+    plain = rows_of(published_beam())
+    charged = rows_of(published_beam(shift_V=-1.0, uneven={"patch_nm": 1e6, "e_cm2": 1e11}))
+    conditions = {"charge in the dielectric, even", "charge in the dielectric, uneven"}
+    assert conditions <= plain.keys()
+    assert not conditions & charged.keys()
+    stated = charged["charge that the scene states"]
+    assert "charge that the scene states" not in plain
+    assert stated["held"]
+    # V_s and the square of U, 1 V and 0.21 V^2
+    release_V = switch_of(published_beam()).states(KnownPad.curves).release_V
+    lost_V = release_V - np.sqrt(release_V**2 - 0.21)
+    assert stated["volts"] == pytest.approx(1.0 + lost_V, abs=0.02)
+
+
+def test_the_row_of_even_charge_is_the_shift_that_the_switch_has():
+    row = rows_of(published_beam())["charge in the dielectric, even"]
+    charged = switch_of(published_beam(charge_e_cm2=1e11)).states(KnownPad.curves)
+    plain = switch_of(published_beam()).states(KnownPad.curves)
+    assert row["volts"] == pytest.approx(charged.release_V - plain.release_V, rel=1e-9)

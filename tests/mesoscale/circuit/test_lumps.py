@@ -19,7 +19,9 @@ from mesoscale.errors import InputError
 from mesoscale.pad.local import LocalPad
 from mesoscale.studies.answer_stability import made_up_pad, published_beam
 from mesoscale.switch.beam_switch import BeamSwitch
+from mesoscale.switch.charge import PER_CM2
 from mesoscale.switch.plate import PlateSwitch
+from mesoscale.theory.charging import charge_shift
 from mesoscale.units import GPA, NM, VACUUM_PERMITTIVITY
 from tests.mesoscale.circuit.motion import capacitance_F, gas_flow, held_Pa, move, pull_Pa, rates
 from tests.mesoscale.circuit.simulators import (
@@ -285,3 +287,31 @@ def test_the_example_of_the_docs_runs_in_batch(tmp_path):
     assert time_s[-1] == pytest.approx(250e-6)
     assert middle_nm.max() > lumps.rest_nm[-1] - PAD.at_nm[-1]  # on the pad
     assert abs(middle_nm[-1]) < 0.5 * lumps.rest_nm[-1]  # and off it after the step
+
+
+@needs_ngspice
+def test_charged_lumps_move_as_felt(tmp_path):
+    """First swings after a step: 42 V less a shift of 12 V is 30 V; 20 V of coarse charge add their
+    square.
+    """
+
+    def swing_nm(volts, **changes):
+        folder = tmp_path / f"{volts:g}{''.join(changes)}"
+        folder.mkdir()
+        return stepped(folder, lumps_of(published_beam(**changes), 4), volts, 15.0)[1].max()
+
+    volt = charge_shift(PER_CM2, BEAM.dielectric_nm, BEAM.permittivity)
+    coarse = {"waves": [(1e9, 20.0 / volt)]}
+    plain = swing_nm(30.0)
+    # the simulator begins at rest, and has moved a little in the microsecond before the step
+    assert swing_nm(42.0, shift_V=12.0) == pytest.approx(plain, rel=0.1)
+    assert swing_nm(30.0, uneven=coarse) == pytest.approx(swing_nm(np.sqrt(1300.0)), rel=0.1)
+    assert swing_nm(42.0) > 1.5 * plain
+
+
+def test_netlists_without_charge_have_no_trace_of_it():
+    text = spice_switch(lumps_of(BEAM, 4), EXACT, LAW, 256, EXACT.pull_in_V)
+    assert "felt" not in text
+    assert "uneven" not in verilog_lump(lumps_of(BEAM, 4), LAW, 256)
+    charged = lumps_of(published_beam(uneven={"patch_nm": 50.0, "e_cm2": 1e11}), 4)
+    assert "(volts * volts + uneven(s))" in verilog_lump(charged, LAW, 256)

@@ -70,3 +70,19 @@ def test_draws_make_the_band_of_the_slow_loop():
 def test_a_plate_on_a_spring_has_no_circuit():
     with pytest.raises(InputError, match="circuits are made of bending electrodes"):
         central_switch(published_beam(spring_N_per_m=10.0), pad())
+
+
+def test_even_charge_shifts_the_slow_loop_of_both_polarities():
+    law = pad()
+    plain, _ = central_switch(BEAM, law)
+    charged, _ = central_switch(published_beam(shift_V=6.0), law)
+    assert charged.row["pull_in_V"] == pytest.approx(plain.row["pull_in_V"] + 6.0)
+    assert charged.row["release_V"] == pytest.approx(plain.row["release_V"] + 6.0)
+    rows = loops(charged, [charged] * 2)
+    volts = np.array([row["voltage_V"] for row in rows])
+    up = np.array([row["up_central_fF"] for row in rows])
+    assert (np.diff(volts) > 0).all()
+    closed = volts[up > 2.0 * up.min()]
+    step = np.diff(volts).max()
+    assert closed[closed > 0].min() == pytest.approx(charged.row["pull_in_V"], abs=step)
+    assert closed[closed < 0].max() == pytest.approx(6.0 - plain.row["pull_in_V"], abs=step)
