@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import asperity as asp
+from asperity import pressed_map
+from mesoscale.contact.surface import random_surface
 
 PIXELS, SIDE, RADIUS, E_STAR = 128, 200.0, 1000.0, 100.0
 X = (np.arange(PIXELS) + 0.5) * SIDE / PIXELS - SIDE / 2
@@ -120,20 +122,41 @@ def test_a_pressed_map_is_drawn_and_says_what_it_is():
 
 
 @pytest.mark.parametrize(
-    ("periodic", "h_macro", "needed"),
+    ("periodic", "hardness", "needed"),
     [
-        (True, 5.0, "0.00256"),
-        (False, 5.0, "0.00944"),
-        (True, None, "0.00102"),
-        (False, None, "0.00229"),
+        (True, {"h_macro": 5.0, "h_prime": 1.0}, "0.00256"),
+        (False, {"h_macro": 5.0, "h_prime": 1.0}, "0.00944"),
+        (True, {"h_macro": 5.0}, "0.00102"),
+        (True, {}, "0.00102"),
+        (False, {}, "0.00229"),
     ],
 )
-def test_a_map_beyond_memory_is_refused(monkeypatch, periodic, h_macro, needed):
+def test_a_map_beyond_memory_is_refused(monkeypatch, periodic, hardness, needed):
     monkeypatch.setattr("mesoscale.checks.machine_MB", lambda: 1)
     with pytest.raises(
         asp.InputError, match=f"needs {needed} GB of memory, this machine has 0.001; take a part"
     ):
-        asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=periodic, h_macro=h_macro)
+        asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=periodic, **hardness)
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("h_macro", [None, 3.0])
+def test_loads_one_by_one_are_those_of_the_way(monkeypatch, periodic, h_macro):
+    heights = random_surface(INPUTS, GRID, 3)
+    loads = np.linspace(500.0, 4000.0, 5)
+
+    def pressed() -> asp.PressedMap:
+        return asp.press(heights, 250.0, loads, E_STAR, h_macro=h_macro, periodic=periodic)
+
+    monkeypatch.setattr(pressed_map, "_one_by_one", lambda *_: True)
+    alone = pressed()
+    monkeypatch.setattr(pressed_map, "_one_by_one", lambda *_: False)
+    way = pressed()
+    assert alone.converged
+    assert way.converged
+    np.testing.assert_array_equal(alone.pressure_GPa > 0.0, way.pressure_GPa > 0.0)
+    np.testing.assert_allclose(alone.separation_nm, way.separation_nm, atol=1e-5)
+    np.testing.assert_allclose(alone.loads_nN, way.loads_nN, rtol=1e-5)
 
 
 @pytest.mark.parametrize("periodic", [True, False])

@@ -1,4 +1,4 @@
-"""The elastic contact of a map under one load or at one separation, without the way there.
+"""The contact of a map under one load or at one separation, without the way there.
 
 The pressures p >= 0 with the sum of the load make the gap g = h + d + G p complementary to them:
 g = 0 where p > 0, g >= 0 where p = 0. The separation d of the mean planes is what the load
@@ -6,14 +6,21 @@ constraint costs. Active sets find it as in `grid`, each linear system by conjug
 pressures that leave the load as it is (Polonsky and Keer, doi:10.1016/S0043-1648(99)00113-1, take
 the same step). Nested grids, each of half the sites a side, find the sets where transforms cost
 little. Steps are in single precision and add to pressures and gaps in double precision.
+
+A surface that yields has p <= H, and g <= 0 where p = H (Almqvist et al.,
+doi:10.1016/j.triboint.2006.11.009): what would lie below the flat has flowed. A closing ends with
+these pressures, too, unless it relieves sites that have yielded. Such a load is found among
+separations.
 """
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from scipy import optimize
 
 from mesoscale.contact.coupled.base import Base
 from mesoscale.contact.coupled.stiffness import Stiffness
@@ -31,8 +38,15 @@ LOAD_MISSED = 1e-8  # share of the load that is put right at the end, with no fu
 UNSEEN = 0.1  # of the tolerance: smaller changes of pressure at the bounds move nothing
 GOAL_SHARE = 0.3  # of the tolerance, to which the last linear system is solved
 ROUNDING = 1e-7  # work over gain of a direction that moves nothing
+LOAD_LENGTH = 0.6  # of the roughness: over this separation a rough surface's load grows e times
+FIRST_DEPTH = 1e-3  # of the same length, from touch, of a surface that does not touch yet
+BEYOND = 1.2  # times the expected step: it shall go beyond the load
+LIGHTEST = 1e-3  # share of a load below which none counts as lighter
+DOUBLINGS = 40  # of the step, until separations lie around a load
+CLOSEST = 1e-12  # of the same length: nearer separations are one
 
 Array = np.ndarray
+Guess = Array | None
 
 
 class Pressed(NamedTuple):
@@ -56,27 +70,45 @@ class Pressed(NamedTuple):
 def press(heights: Array, load_nN: float, base: Base) -> Pressed:
     """Press a map (nx, ny) in nm, contact at the lowest, with a force."""
 
-    def search(level: Array, below: Base, guess: Array | None) -> Search:
+    def search(level: Array, below: Base, guess: Guess, separation: float) -> Search:
         pressed = guess if guess is not None else np.maximum(level.mean() - level, 0.0)
         if not pressed.any():
             pressed = np.ones(level.shape)
         return OneLoad(level, load_nN, below, pressed)
 
-    return _nested(heights, base, search)
+    return _nested(heights, base, 0.0, search)
 
 
-def press_to(heights: Array, separation: float, base: Base) -> Pressed:
-    """Press a map (nx, ny) in nm, contact at the lowest, to a separation (nm)."""
+def press_yielding(heights: Array, load_nN: float, hardness: float, base: Base) -> Pressed:
+    """As `press`, of a surface that yields at a pressure (GPa)."""
 
-    def search(level: Array, below: Base, guess: Array | None) -> Search:
+    def search(level: Array, below: Base, guess: Guess, separation: float) -> Search:
+        if guess is None:
+            elastic = press(level, load_nN, below)
+            guess = elastic.pressure
+            separation = elastic.separation
+        return OneYieldingLoad(level, load_nN, hardness, separation, below, guess)
+
+    return _nested(heights, base, 0.0, search)
+
+
+def press_to(heights: Array, separation: float, base: Base, hardness: float = math.inf) -> Pressed:
+    """Press a map (nx, ny) in nm, contact at the lowest, to a separation (nm); it may yield at a
+    pressure (GPa).
+    """
+
+    def search(level: Array, below: Base, guess: Guess, separation: float) -> Search:
         guess = np.zeros(level.shape) if guess is None else guess
-        return OneSeparation(level, separation, below, guess)
+        return OneSeparation(level, separation, below, guess, hardness)
 
-    return _nested(heights, base, search)
+    return _nested(heights, base, separation, search)
 
 
 def _nested(
-    heights: Array, base: Base, search: Callable[[Array, Base, Array | None], "Search"]
+    heights: Array,
+    base: Base,
+    separation: float,
+    search: Callable[[Array, Base, Guess, float], "Search"],
 ) -> Pressed:
     """Search on grids that are finer and finer, each from the answer of the last."""
     maps = [heights]
@@ -86,12 +118,13 @@ def _nested(
         bases.append(bases[-1].coarser(maps[-1].shape))
     pressure = None
     while len(maps) > 1:
-        coarse = search(maps.pop(), bases.pop(), pressure)
+        coarse = search(maps.pop(), bases.pop(), pressure, separation)
         coarse.solve(COARSE_TOLERANCE)
+        separation = coarse.separation
         field = coarse.pressure.reshape(coarse.shape).astype(np.float32)  # for its memory
         pressure = finer(field, maps[-1].shape, base)
         del coarse
-    contact = search(heights, base, pressure)
+    contact = search(heights, base, pressure, separation)
     settled = contact.solve(TOLERANCE)
     return contact.pressed(settled)
 
@@ -126,10 +159,12 @@ class Search(ABC):
     pressure : (nx * ny,), GPa.
     gap : (nx * ny,), nm, without the separation.
     separation : nm.
+    hardness : pressure at which the surface yields, GPa.
     """
 
-    def __init__(self, heights: Array, base: Base, pressure: Array):
+    def __init__(self, heights: Array, base: Base, pressure: Array, hardness: float = math.inf):
         """Take heights (nx, ny) in nm, contact at the lowest, and pressures to start from."""
+        self.hardness = hardness
         self.shape = heights.shape
         self.heights = heights
         self.base = base
@@ -183,7 +218,7 @@ class Search(ABC):
         length = 0.0  # of the last step along a direction: none is known yet
         for _ in range(NEWTON_STEPS):
             self.separate()
-            state = (self.pressure, self.gap, self.separation, stiffness)
+            state = (self.pressure, self.gap, self.separation, stiffness, self.hardness)
             sites, worst, largest, carried, moved = classify(*state)
             if worst <= tolerance * largest:
                 if self.exact() and ROUNDED * self.drift <= tolerance:
@@ -221,6 +256,8 @@ class Search(ABC):
         misfit[:] = 0.0
         change[:] = 0.0
         unit = take_misfit(sites, self.gap, self.closed(sites), misfit)
+        if unit == 0.0:
+            return 0.0
         left = 1.0
         length = 0.0
         last = 1.0
@@ -244,7 +281,7 @@ class Search(ABC):
 
     def pressed(self, settled: bool) -> Pressed:
         """The answer."""
-        pressure = np.maximum(self.pressure, 0.0, out=self.pressure)
+        pressure = np.clip(self.pressure, 0.0, self.hardness, out=self.pressure)
         gap = self.gap
         gap += self.separation
         np.maximum(gap, 0.0, out=gap)
@@ -303,8 +340,15 @@ class OneLoad(Search):
 class OneSeparation(Search):
     """A map at a separation: its load is what comes."""
 
-    def __init__(self, heights: Array, separation: float, base: Base, guess: Array):
-        super().__init__(heights, base, guess.astype(float))
+    def __init__(
+        self,
+        heights: Array,
+        separation: float,
+        base: Base,
+        guess: Array,
+        hardness: float = math.inf,
+    ):
+        super().__init__(heights, base, guess.astype(float), hardness)
         self.separation = separation
 
     def separate(self) -> None:
@@ -330,6 +374,67 @@ class OneSeparation(Search):
         return True
 
 
+class OneYieldingLoad(OneSeparation):
+    """A map that yields, under a load: separations are tried until it carries this.
+
+    At light loads a change of the separation changes the load by a factor, so that its logarithm
+    is what is followed.
+    """
+
+    def __init__(
+        self,
+        heights: Array,
+        load_nN: float,
+        hardness: float,
+        separation: float,
+        base: Base,
+        guess: Array,
+    ):
+        super().__init__(heights, separation, base, guess, hardness)
+        self.load = load_nN / base.site_area
+        self.length = LOAD_LENGTH * (float(heights.std()) or base.spacing)
+        self.touch = -float(heights.min())
+
+    def solve(self, tolerance: float) -> bool:
+        """Find the separation that carries the load to a tolerance; whether it was found.
+
+        What is far from it is solved coarsely.
+        """
+        if tolerance < COARSE_TOLERANCE:
+            self._find(COARSE_TOLERANCE)
+        return self._find(tolerance)
+
+    def _find(self, tolerance: float) -> bool:
+        tried: dict[float, float] = {}
+
+        def excess(separation: float) -> float:
+            """Logarithm of what is carried over the load; 0 within the tolerance."""
+            if separation not in tried:
+                self.separation = separation
+                settled = super(OneYieldingLoad, self).solve(tolerance)
+                share = max(float(self.pressure.sum()) / self.load, LIGHTEST)
+                met = settled and abs(share - 1.0) <= tolerance
+                tried[separation] = 0.0 if met else math.log(share)
+            return tried[separation]
+
+        near = min(self.separation, self.touch - FIRST_DEPTH * self.length)
+        if excess(near) == 0.0:
+            return True
+        # the load of a single summit grows with the depth
+        length = min(self.length, self.touch - near)
+        step = BEYOND * length * min(max(excess(near), -1.0), 1.0)
+        for _ in range(DOUBLINGS):
+            far = near + step
+            if excess(far) == 0.0:
+                return True
+            if excess(near) * excess(far) < 0.0:
+                separation = optimize.brentq(excess, near, far, xtol=CLOSEST * self.length)
+                return excess(float(np.asarray(separation))) == 0.0
+            near = far
+            step *= 2.0
+        return False
+
+
 @njit(cache=True)
 def mean_gap(pressure, gap):
     """Mean gap of the sites under pressure."""
@@ -343,8 +448,11 @@ def mean_gap(pressure, gap):
 
 
 @njit(cache=True)
-def classify(pressure, gap, separation, stiffness):
-    """Sites that touch by pressure and gap together.
+def classify(pressure, gap, separation, stiffness, hardness):
+    """Sites that touch and do not yield, by pressure and gap together.
+
+    A site does not yield before its pressure as an elastic one is beyond the hardness: by its gap
+    alone it may yield and part in turns.
 
     Returns
     -------
@@ -359,11 +467,14 @@ def classify(pressure, gap, separation, stiffness):
     moved = 0
     for k in range(gap.size):
         site_pressure = pressure[k]
-        new_pressure = max(site_pressure - stiffness * (gap[k] + separation), 0.0)
+        expected = max(site_pressure - stiffness * (gap[k] + separation), 0.0)
+        new_pressure = min(expected, hardness)
         worst = max(worst, abs(site_pressure - new_pressure))
         largest = max(largest, site_pressure)
-        moved += (new_pressure > 0.0) != (site_pressure != 0.0)
-        if new_pressure > 0.0:
+        yielding = site_pressure >= hardness and expected >= hardness
+        came = (new_pressure > 0.0) != (site_pressure != 0.0)
+        moved += came or site_pressure > hardness or (site_pressure == hardness and not yielding)
+        if new_pressure > 0.0 and not yielding:
             sites[count] = k
             count += 1
             carried += max(site_pressure, 0.0)
@@ -371,14 +482,19 @@ def classify(pressure, gap, separation, stiffness):
 
 
 @njit(cache=True)
-def bind(pressure, gap, separation, stiffness, factor, change):
-    """Take the pressures off all sites that do not touch, and keep the load; the largest change."""
+def bind(pressure, gap, separation, stiffness, hardness, factor, change):
+    """Take the pressures off all sites that do not touch, and give the hardness to those that
+    yield; the largest change.
+    """
     largest = 0.0
     for k in range(gap.size):
         site_pressure = pressure[k]
+        expected = site_pressure - stiffness * (gap[k] + separation)
         new = 0.0
-        if site_pressure - stiffness * (gap[k] + separation) > 0.0:
-            new = factor * max(site_pressure, 0.0)
+        if min(site_pressure, expected) >= hardness:
+            new = hardness
+        elif expected > 0.0:
+            new = min(factor * max(site_pressure, 0.0), hardness)
         change[k] = new - site_pressure
         largest = max(largest, abs(new - site_pressure))
         pressure[k] = new

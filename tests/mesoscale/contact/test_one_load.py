@@ -1,6 +1,7 @@
 """One load without the way there: the same contact as the engine's, which knows another way."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from mesoscale.contact.coupled.base import Alone, Base, Repeated
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.coupled.free import FreeContact
 from mesoscale.contact.coupled.grid import Grid
+from mesoscale.contact.path import trace
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import MaterialSettings
@@ -189,3 +191,80 @@ def test_maps_of_a_few_sites_carry_their_load(shape):
     area = np.prod(pressed.lengths_nm)
     assert pressed.converged
     assert pressed.pressure_GPa.mean() * area == pytest.approx(20.0, rel=1e-6)
+
+
+def check_yielding(heights: np.ndarray, load: float, hardness: float) -> one_load.Pressed:
+    """Compare a load on a surface that yields with the end of a closing."""
+    base = Repeated(heights.shape, SIDE / 128, E_STAR)
+    pressed = one_load.press_yielding(heights, load, hardness, base)
+    assert pressed.settled
+    settings = ContactSettings(model="plastic", mechanics="coupled").model_copy(
+        update={"pixels": 128, "length_nm": SIDE}
+    )
+    contact = CoupledContact(heights.copy(), replace(INPUTS, h_macro=hardness), settings)
+    assert trace(contact, 40, True, stop_force=load).reached
+    pressure, gap = contact.fields()
+    np.testing.assert_array_equal(pressed.pressure > 0.0, pressure > 0.0)
+    np.testing.assert_array_equal(pressed.pressure == hardness, pressure == hardness)
+    np.testing.assert_allclose(pressed.pressure.mean(), pressure.mean(), rtol=3e-6)
+    missed = np.abs(pressed.pressure - pressure).mean() / pressure.mean()
+    assert missed < 1e-5
+    np.testing.assert_allclose(pressed.gap, gap, atol=1e-5 * pressure.max() * base.spring + 1e-5)
+    return pressed
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_load_that_yields_has_the_contact_of_a_closing(seed):
+    random = np.random.default_rng(100 + seed)
+    hardness = 10 ** random.uniform(-0.5, 1.5)
+    load = random.uniform(0.01, 0.5) * hardness * SIDE**2
+    pressed = check_yielding(rough(seed), min(load, 4e4), hardness)
+    assert pressed.pressure.max() <= hardness
+
+
+def test_a_hard_surface_does_not_yield():
+    heights = rough(2)
+    base = Repeated(heights.shape, SIDE / 128, E_STAR)
+    elastic = one_load.press(heights, 2000.0, base)
+    pressed = one_load.press_yielding(heights, 2000.0, 1e3, base)
+    np.testing.assert_array_equal(pressed.pressure > 0.0, elastic.pressure > 0.0)
+    np.testing.assert_allclose(pressed.pressure, elastic.pressure, atol=1e-5 * 1e3)
+
+
+def test_a_surface_far_too_soft_to_bend_touches_by_its_heights():
+    """Its lowest sites carry the hardness, as many as the load needs."""
+    heights = rough(4)
+    hardness = 1e-6
+    base = Repeated(heights.shape, SIDE / 128, E_STAR)
+    load = 1000.5 * hardness * base.site_area
+    pressed = one_load.press_yielding(heights, load, hardness, base)
+    lowest = np.argsort(heights.ravel())[:1001]
+    assert pressed.settled
+    assert set(np.flatnonzero(pressed.pressure)) == set(lowest)
+
+
+@pytest.mark.parametrize("kind", [Repeated, Alone])
+def test_a_separation_of_a_surface_that_yields_gives_the_load_that_gives_it(kind):
+    heights = rough(8)
+    base = kind(heights.shape, SIDE / 128, E_STAR)
+    pressed = one_load.press_yielding(heights, 3e3, 2.0, base)
+    again = one_load.press_to(heights, pressed.separation, base, 2.0)
+    assert pressed.settled
+    assert again.settled
+    assert again.pressure.sum() * base.site_area == pytest.approx(3e3, rel=1e-5)
+    np.testing.assert_array_equal(again.pressure > 0.0, pressed.pressure > 0.0)
+
+
+@pytest.mark.parametrize("heights", [STEPS, RIDGES, TWO_SCALES, 1e3 * rough(7)])
+def test_hard_maps_that_yield_have_the_contact_of_a_closing(heights):
+    check_yielding(np.ascontiguousarray(heights), 500.0, 1.0)
+
+
+@pytest.mark.parametrize("load", [2000.0, 4500.0])
+def test_a_punch_that_one_load_does_not_find_is_closed(load):
+    """Most of what a flat top carries comes at one separation."""
+    pressed = asp.press(PUNCH, SIDE, load, E_STAR, h_macro=1.0, contact_at="lowest")
+    assert pressed.converged
+    assert pressed.loads_nN[0] == pytest.approx(load, rel=1e-5)
+    top = np.count_nonzero(PUNCH) / PUNCH.size
+    assert pressed.area_share[0] == pytest.approx(top, rel=1e-9)
