@@ -38,7 +38,7 @@ TYPICAL_S = {  # on one core of a server
     "report": 8.0,
     "calibration": 60.0,
     "circuit": 30.0,
-    "failure": 3000.0,
+    "failure": 700.0,
     "lifetime": 200.0,
     "study": 25.0,
 }
