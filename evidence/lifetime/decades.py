@@ -1,9 +1,9 @@
 """By how many volts of the hold does a switch charge ten times as fast, and what has a say in it?
 
-A pad of few cells is pressed at the central inputs of a scene, whose inputs are there. Its RMS height
-is that of the scene, and a part of it. Rates are the three guesses of the defaults; each row also has
-the rates of places that touch, and of those that do not, alone. Published lives of capacitive
-switches shorten ten times for 5 to 7 V.
+A pad of few cells is pressed at the central inputs of a scene, whose inputs are there. Its RMS
+height is that of the scene, and a part of it. Rates are the three guesses of the defaults, of all
+places, of those that touch, and of those that do not. Published lives of capacitive switches
+shorten ten times for 5 to 7 V.
 """
 
 from argparse import ArgumentParser, Namespace
@@ -85,9 +85,7 @@ def _life(folder: Path, cells: int, part: float) -> SwitchLife:
 
 
 def _time_s(life: SwitchLife, hold_V: float, rates: Any, places: slice) -> float | None:
-    """Time in which the mean shift of these places has grown to `SHIFTED_V`,
-    over their own area.
-    """
+    """Time in which the mean shift of these places has grown to `SHIFTED_V`."""
     shares = life.gaps.shares[:-1][places]
     shifts = shifts_V(hold_V, GAPS_NM[places], TIMES_S, life.gaps.device, SETTINGS, rates)
     mean = np.tensordot(shares, shifts, 1) / shares.sum()
@@ -103,8 +101,8 @@ def figures(rows: list[dict[str, str]]) -> dict[str, str]:
     said = {}
     for row in rows:
         if row["guess"] == "central" and row["places"] == "all":
-            film = f"{row['scene']}_{float(row['rms_part']):g}"
-            said[f"{film}_held"] = f"{float(row['volts_a_decade_at_1']):.0f} V"
+            film = row["scene"] if float(row["rms_part"]) == 1.0 else f"{row['scene']}_smoother"
+            said[f"{film}_held"] = f"{float(row['volts_a_decade_at_1']):.1f} V"
             said[f"{film}_half"] = f"{float(row['volts_a_decade_at_0.5']):.1f} V"
             said[f"{film}_factor"] = f"{float(row['contact_factor']):.2f}"
             said[f"{film}_hold"] = f"{float(row['hold_V']):.0f} V"
