@@ -159,9 +159,9 @@ def _parser() -> argparse.ArgumentParser:
     server.add_argument(
         "--host", default="127.0.0.1", help="address to listen on; default: this machine alone"
     )
-    server.add_argument("--port", type=int, default=4242)
+    server.add_argument("--port", type=_whole, default=4242)
     server.add_argument(
-        "--workers", type=int, default=1, help="processes that evaluate; default: 1"
+        "--workers", type=_whole, default=1, help="processes that evaluate; default: 1"
     )
     return parser
 
@@ -174,10 +174,15 @@ def _add_words(command: argparse.ArgumentParser) -> None:
     command.add_argument("--channel", help="name of the height channel, of files that have several")
     command.add_argument(
         "--unit",
-        help="length unit of a file that states none: um, or um,nm of positions and heights",
+        action="append",
+        help="length unit of files that state none: um, or um,nm of positions and heights; of one"
+        " file: scan.txt=um,nm, an option for each",
     )
     command.add_argument(
-        "--size", help="size of a map or line that states none, in --unit or the file's: 10 or 10x5"
+        "--size",
+        action="append",
+        help="size of maps or lines that state none, in --unit or the file's: 10 or 10x5; of one"
+        " file: scan.txt=10x5, an option for each",
     )
     words = (
         "cut maps to their largest rectangle without missing points, or to pixels along x and y:"
@@ -306,7 +311,7 @@ def _write(file: Path, text: str) -> int:
             stream.write(text)
     except OSError as error:
         remedy = (
-            "remove it, or run it as it is"
+            "remove it, run it as it is, or choose another name (--scene of measured files)"
             if isinstance(error, FileExistsError)
             else "choose another name or folder"
         )
@@ -407,6 +412,13 @@ def _cores(text: str) -> str:
             f"{shown(text)}: accepted is a whole number of at least 1, or all"
         )
     return text
+
+
+def _whole(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{shown(text)}: accepted is a whole number") from None
 
 
 def _hours(text: str) -> float:

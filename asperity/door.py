@@ -2,19 +2,25 @@
 on them.
 """
 
+import glob
 import json
+import math
 import os
 import re
 from argparse import Namespace
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from fnmatch import fnmatch
+from pathlib import Path
 from typing import Any, get_args
 
 from asperity.film import MATERIAL, Film, pixels_for
 from asperity.guards.bundle import ROOT
+from asperity.guards.foreign_text import did_you_mean
 from asperity.words import (
     NUMBER,
     SCALAR_KEYS,
     assumed_lines,
+    beam_of,
     device_of,
     material_of,
     number_of,
@@ -26,10 +32,13 @@ from mesoscale.settings import DeviceSettings, InputRow, InstrumentSettings, Top
 from mesoscale.settings.definitions import definition
 from mesoscale.settings.topography import LengthUnit
 from mesoscale.topography.measurements import check_count, files_in
-from mesoscale.topography.measurements.loading import load_measurements
+from mesoscale.topography.measurements.loading import MIN_SIDE, load_measurements
 
 OF_FILES = ("tip_nm", "channel", "unit", "size", "crop", "points", "detrend")
 """Options of the command line that tell how measured files are."""
+
+KNOWN_IF_STATED = ("youngs_modulus_GPa", "residual_stress_MPa")
+"""Keys of the device that count as known where they stand in a scene."""
 
 
 def described(
@@ -56,15 +65,17 @@ def described(
     if words.files:
         topography = topography_of(words)
         tip_nm = None
-        if words.tip_nm:
+        if words.tip_nm is not None:
             tip_nm = number_of(f"--tip-nm={words.tip_nm}", words.tip_nm, "nm")
+            if tip_nm < 0.0:
+                raise InputError(f"--tip-nm={words.tip_nm}: accepted is 0 or more, in nm")
         film = Film(readable(words.files, say, topography), tip_nm, **topography)
     else:
         for name in OF_FILES:
             if getattr(words, name):
                 raise InputError(f"--{name.replace('_', '-')}: tells of measured files; name some")
     text = "\n".join(scene_lines(film, material, device)) + "\n"
-    assumed = list(assumed_lines(material, device))
+    assumed = list(assumed_lines(material, device, beam_of(words.device)))
     if film is None:
         untold = [
             f"{name} {values[0]:g} to {values[1]:g}"
@@ -80,49 +91,106 @@ def topography_of(words: Namespace) -> dict[str, Any]:
     """Keys of the section `topography` from the options --channel, --unit, --size, --crop, --points
     and --detrend.
 
+    A unit or size is of all files, or with a name in front (scan.txt=10) of those it fits.
+
     Raises
     ------
-    InputError : no unit of length, no size, or a size for several files.
+    InputError : no unit of length, no size, or places of points for several files.
     """
     keys = {name: getattr(words, name) for name in ("channel", "detrend") if getattr(words, name)}
-    added: dict[str, Any] = {}
-    if words.unit:
-        units = with_u_for_micro(words.unit).split(",")
-        known = get_args(LengthUnit)
-        if len(units) > 2 or not set(units) <= set(known):
-            raise InputError(
-                f"--unit {words.unit}: accepted are {', '.join(known)}, or two of them such as"
-                " um,nm"
-            )
-        added |= dict(zip(("unit", "height_unit"), units, strict=False))
-    if words.size:
-        sides = re.fullmatch(rf"({NUMBER})(?:x({NUMBER}))?", words.size)
-        if sides is None:
-            raise InputError(
-                f"--size {words.size}: accepted is a number or two (10 or 10x5), in --unit or the"
-                " file's"
-            )
-        _check_alone(words, "--size")
-        added["size"] = tuple(float(side) for side in sides.groups() if side)
+    of_all: dict[str, Any] = {}
     if words.points:
-        places = re.fullmatch(r"(\d+)x(\d+)", words.points)
-        if places is None:
-            raise InputError(
-                f"--points {words.points}: accepted are two numbers such as 64x64, places along x"
-                " and y"
-            )
-        _check_alone(words, "--points")
-        added["points"] = int(places[1]), int(places[2])
+        of_all["points"] = _places(words)
     if words.crop:
-        corners = re.fullmatch(r"(\d+):(\d+),(\d+):(\d+)", words.crop)
-        if corners is None and words.crop != "largest":
-            raise InputError(
-                f"--crop {words.crop}: accepted is nothing (the largest rectangle without missing"
-                " points), or the pixels to keep along x and y, such as 10:500,0:480; give files"
-                " before it"
-            )
-        added["crop"] = tuple(int(end) for end in corners.groups()) if corners else "largest"
-    return keys | ({"instruments": (InstrumentSettings(files="*", **added),)} if added else {})
+        of_all["crop"] = _part(words.crop)
+    of_file: dict[str, dict[str, Any]] = {}
+    for option, understood in (("unit", _units), ("size", _sides)):
+        for word in getattr(words, option) or ():
+            name, of_one, value = word.rpartition("=")
+            stated = understood(f"--{option} {word}", value)
+            if of_one:
+                pattern = _pattern(f"--{option} {word}", name, words.files)
+                of_file.setdefault(pattern, {}).update(stated)
+            else:
+                of_all |= stated
+    named = [
+        InstrumentSettings(files=pattern, **of_all | stated) for pattern, stated in of_file.items()
+    ]
+    others = [InstrumentSettings(files="*", **of_all)] if of_all else []
+    if named or others:
+        keys["instruments"] = (*named, *others)
+    return keys
+
+
+def _units(option: str, value: str) -> dict[str, Any]:
+    """Units of positions and heights."""
+    units = with_u_for_micro(value).split(",")
+    known = get_args(LengthUnit)
+    if len(units) > 2 or not set(units) <= set(known):
+        raise InputError(
+            f"{option}: accepted are {', '.join(known)}, or two of them such as um,nm; of one"
+            " file: --unit scan.txt=um,nm"
+        )
+    return dict(zip(("unit", "height_unit"), units, strict=False))
+
+
+def _sides(option: str, value: str) -> dict[str, Any]:
+    """Sides of a map, or the length of a line."""
+    sides = re.fullmatch(rf"({NUMBER})(?:x({NUMBER}))?", value)
+    if sides is None:
+        raise InputError(
+            f"{option}: accepted is a number or two (10 or 10x5), in --unit or the file's; of one"
+            " file: --size scan.txt=10x5"
+        )
+    lengths = tuple(float(side) for side in sides.groups() if side)
+    if not all(0.0 < length < math.inf for length in lengths):
+        raise InputError(f"{option}: a side is above 0, in --unit or the file's")
+    return {"size": lengths}
+
+
+def _places(words: Namespace) -> tuple[int, int]:
+    """Places along x and y for points on no regular grid."""
+    places = re.fullmatch(r"(\d+)x(\d+)", words.points)
+    if places is None or min(int(number) for number in places.groups()) < MIN_SIDE:
+        raise InputError(
+            f"--points {words.points}: accepted are two numbers such as 64x64, places along x"
+            f" and y, of {MIN_SIDE} or more"
+        )
+    _check_alone(words, "--points")
+    return int(places[1]), int(places[2])
+
+
+def _part(crop: str) -> str | tuple[int, ...]:
+    """The part of a map to keep."""
+    if crop == "largest":
+        return crop
+    corners = re.fullmatch(r"(\d+):(\d+),(\d+):(\d+)", crop)
+    if corners is None:
+        raise InputError(
+            f"--crop {crop}: accepted is nothing (the largest rectangle without missing"
+            " points), or the pixels to keep along x and y, such as 10:500,0:480; give files"
+            " before it"
+        )
+    left, right, low, high = (int(end) for end in corners.groups())
+    if left >= right or low >= high:
+        raise InputError(f"--crop {crop}: each range rises, such as 10:500,0:480")
+    return left, right, low, high
+
+
+def _pattern(option: str, name: str, files: Sequence[str]) -> str:
+    """The pattern of an instrument that fits a file by its name, or all that * stands for.
+
+    Raises
+    ------
+    InputError : it fits none of the files.
+    """
+    given = [Path(file).name for folder in files for file in files_in(folder)]
+    base = Path(name).name
+    if base in given:
+        return glob.escape(base)
+    if not any(fnmatch(file, name) for file in given):
+        raise InputError(f"{option}: no such file is given{did_you_mean(base, given)}")
+    return name
 
 
 def _check_alone(words: Namespace, option: str) -> None:
@@ -218,8 +286,7 @@ def scene_lines(
     for name in SCALAR_KEYS:
         value = device.get(name, getattr(defaults, name))
         about = DeviceSettings.model_fields[name].description
-        # a modulus that stands in a scene counts as known
-        untold = "# " * (name == "youngs_modulus_GPa" and name not in device)
+        untold = "# " * (name in KNOWN_IF_STATED and name not in device)
         yield f"  {untold}{name}: {_as_yaml(value)}  # {about}"
     if measured := device.get("measured"):
         yield "  measured:  # value and standard error, which narrow the device"

@@ -1,6 +1,7 @@
 """A measured map pressed as it is: pressure and gap at each load."""
 
 import math
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, get_args
@@ -35,11 +36,14 @@ from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
+from mesoscale.topography.description.choice import STEEP_SHARE
 
 PressureOfGaps = Callable[[np.ndarray], Any]
 
 MAP_MB = 16e-6
 """Of a site at a load: its pressure and its gap."""
+LEAST_PIXEL_NM = 0.02
+"""Of a map whose length is in nm: atoms are 0.2 nm apart."""
 FEW_LOADS = 4
 """Loads or approaches that are found one by one on any map; the way past them costs more."""
 MORE_LOADS = 150.0
@@ -317,7 +321,21 @@ def map_on_sides(
     surface = checked_heights(heights, float(sides.max()), square=False)
     if sides.size == 1:
         sides = np.array([sides[0], sides[0] * surface.shape[1] / surface.shape[0]])
+    _remark_on_sides(surface, sides)
     return surface, sides
+
+
+def _remark_on_sides(surface: np.ndarray, sides: np.ndarray) -> None:
+    """Warn where a length is most likely in another unit than nm."""
+    rms_nm = float(surface.std())
+    side_nm = float(sides[0])
+    pixel_nm = side_nm / len(surface)
+    if 0.0 < pixel_nm < LEAST_PIXEL_NM or rms_nm > STEEP_SHARE * side_nm > 0.0:
+        warnings.warn(
+            f"side_nm = {side_nm:g}: pixels of {pixel_nm:.2g} nm under an RMS height of"
+            f" {rms_nm:.3g} nm; lengths are in nm, is this one in um?",
+            stacklevel=5,  # the caller of asp.press or asp.cycle
+        )
 
 
 def _one_by_one(

@@ -13,7 +13,7 @@ from asperity.guards.settings import Settings, key
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings, InputRow
 from mesoscale.settings.contact import MaterialSettings, base_modulus
-from mesoscale.settings.definitions import definition
+from mesoscale.settings.definitions import BY_NAME, definition
 from mesoscale.settings.device import MEASURABLE, unit_of
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
@@ -21,9 +21,40 @@ KINDS = {None: "fixed", ":": "uniform", "+-": "normal"}
 SUBSTRATE_PPM_C = 2.6
 """Thermal expansion of silicon, on which the beam is taken to be anchored."""
 SCALAR_KEYS = tuple(
-    name for name in DeviceSettings.model_fields if name not in ("spread", "measured")
+    name
+    for name, field in DeviceSettings.model_fields.items()
+    if not any(
+        isinstance(kind, type) and issubclass(kind, Settings)
+        for kind in (field.annotation, *get_args(field.annotation))
+    )
 )
 """Keys of the device that a word can state; departures are rows of a scene."""
+OTHER_WORDS = {
+    "E": "youngs_modulus_GPa",
+    "modulus": "youngs_modulus_GPa",
+    "nu": "poisson_ratio",
+    "height": "gap_um",
+    "span": "length_um",
+    "insulator": "dielectric_nm",
+    "eps": "permittivity",
+    "epsilon": "permittivity",
+    "stiffness": "spring_N_per_m",
+    "voltage": "hold_voltage_V",
+    "sigma": "residual_stress_MPa",
+    "T": "temperature_C",
+    "metal": "material",
+}
+"""Words that engineers use for keys of the device, and that resemble none of them."""
+OTHER_WORDS_OF_INPUTS = {
+    "hardness": "h_macro",
+    "H": "h_macro",
+    "E": "e_star",
+    "modulus": "e_star",
+    "roughness": "rms",
+    "D0": "gap_cutoff",
+    "RH": "humidity",
+}
+"""The same for inputs of the contact."""
 
 
 class Body(Settings):
@@ -90,7 +121,7 @@ def number_of(word: str, text: str, unit: str) -> float:
         return float(plain)
     if re.fullmatch(NUMBER.replace(r"\.", ","), plain) and "," in plain:
         raise InputError(f"{word}: a decimal comma; write {name}={plain.replace(',', '.')}")
-    with_unit = re.fullmatch(rf"({NUMBER}) ?([^\d\s].*)", plain)
+    with_unit = re.fullmatch(rf"({NUMBER}) ?([^\W\d_].*|%)", plain)
     if with_unit is None:
         raise InputError(f"{word}: {text!r} is no number; write for instance {name}=2.5")
     number, stated = with_unit.groups()
@@ -112,7 +143,15 @@ def material_of(words: Sequence[str]) -> dict[str, InputRow]:
     """
     rows: dict[str, InputRow] = {}
     for word in words:
-        name, _, value = word.partition("=")
+        name, equals, value = word.partition("=")
+        if not equals:
+            raise InputError(f"{word}: accepted is NAME=VALUE, such as e_star=75")
+        if name in SCALAR_KEYS or name == "material":
+            raise InputError(f"{word}: the device's, not the contact's; write --device {word}")
+        if name in OTHER_WORDS_OF_INPUTS:
+            raise InputError(
+                f"{word}: {name} is no input; did you mean {OTHER_WORDS_OF_INPUTS[name]}?"
+            )
         unit = definition(name).unit
         if name in rows:
             raise InputError(f"{word}: {name} is given twice; leave one of them out")
@@ -120,13 +159,14 @@ def material_of(words: Sequence[str]) -> dict[str, InputRow]:
             rows[name] = _modulus_of_bodies(word, value)
             continue
         first, sign, second = re.fullmatch(r"(.*?)(?:(:|\+-)(.*))?", value).groups()  # pyright: ignore[reportOptionalMemberAccess]
-        if not value or second == "":
+        if not first or second == "" or re.search(r":|\+-", second or ""):
             raise InputError(
                 f"{word}: accepted are {name}=75, {name}=70:80 (from, to) and {name}=75+-4"
                 " (deviation)"
             )
         values = tuple(number_of(word, text, unit) for text in (first, second) if text is not None)
         _check_accepted(word, values[:1] if sign == "+-" else values)
+        _check_order(word, sign, values)
         stated: Any = {"distribution": KINDS[sign], "values": values, "source": "command line"}
         rows[name] = InputRow(**stated)
     return rows
@@ -149,6 +189,22 @@ def _check_accepted(word: str, values: Sequence[float]) -> None:
             raise InputError(
                 f"{word}: is {value:g}{unit}; accepted is {about.accepted}{unit}{meant}"
             )
+
+
+def _check_order(word: str, sign: str | None, values: Sequence[float]) -> None:
+    """See that a range rises, and that a deviation is none below 0.
+
+    Raises
+    ------
+    InputError
+    """
+    name = word.partition("=")[0]
+    if sign == ":" and values[0] > values[1]:
+        raise InputError(
+            f"{word}: its first number is the larger; write {name}={values[1]:g}:{values[0]:g}"
+        )
+    if sign == "+-" and values[1] < 0.0:
+        raise InputError(f"{word}: a deviation of {values[1]:g}; accepted is 0 or more")
 
 
 def _modulus_of_bodies(word: str, names: str) -> InputRow:
@@ -181,8 +237,6 @@ def device_of(words: Sequence[str]) -> dict[str, Any]:
             continue
         if name in keys or name == "material":
             raise InputError(f"{word}: {name} is given twice; leave one of them out")
-        if name == "humidity":
-            raise InputError(f"{word}: the air's, not the device's; write --material {word}")
         if name in measured:
             raise InputError(f"{word}: {name} is given twice; leave one of them out")
         if name in MEASURABLE:
@@ -190,7 +244,15 @@ def device_of(words: Sequence[str]) -> dict[str, Any]:
             continue
         if name not in SCALAR_KEYS:
             known = "material", *SCALAR_KEYS, *MEASURABLE
-            if meant := did_you_mean(name, known):
+            if name in BY_NAME:
+                whose = {"humidity": "air"}.get(name, "contact")
+                raise InputError(
+                    f"{word}: the {whose}'s, not the device's; write --material {word}"
+                )
+            meant = did_you_mean(name, known)
+            if name in OTHER_WORDS:
+                meant = f"; did you mean {OTHER_WORDS[name]}?"
+            if meant:
                 raise InputError(f"{word}: {name} is no key of the device{meant}")
             raise InputError(f"{word}: accepted is KEY=VALUE, with a key of {', '.join(known)}")
         keys[name] = _device_value(word, name, value)
@@ -202,6 +264,12 @@ def device_of(words: Sequence[str]) -> dict[str, Any]:
     except InputError as error:
         raise InputError(str(error).replace("DeviceSettings:", "device:")) from None
     return stated
+
+
+def beam_of(words: Sequence[str]) -> str:
+    """The material that the words of a device name, as they write it; empty where they do not."""
+    stated = (word.partition("=") for word in words)
+    return next((value for name, _, value in stated if name == "material"), "")
 
 
 def _value_and_error(word: str, name: str, text: str) -> tuple[float, float]:
@@ -221,13 +289,20 @@ def _device_value(word: str, name: str, value: str) -> Any:
     if choices and not or_number:
         if value not in choices:
             meant = did_you_mean(value, choices)
+            if float in _choices(kind):
+                choices.append(f"a number such as {name}=0.5")
             raise InputError(f"{word}: accepted are {', '.join(choices)}{meant}")
         return value
     if name in ("electrode", "contact"):
-        start, colon, end = value.partition(":")
-        if not colon:
+        start, _, end = value.partition(":")
+        if not start or not end or ":" in end:
             raise InputError(f"{word}: accepted are two shares of the length: {name}=0.2:0.8")
         return (number_of(word, start, "1"), number_of(word, end, "1"))
+    if range_of := re.fullmatch(rf"({NUMBER})(:|\+-)({NUMBER})", value):
+        raise InputError(
+            f"{word}: accepted is one number, such as {name}={range_of[1]}; departures from it"
+            " stand in a scene (device.spread)"
+        )
     return number_of(word, value, unit_of(name))
 
 
@@ -237,8 +312,15 @@ def _choices(kind: Any) -> Iterator[Any]:
         yield from _choices(member) if get_args(member) else (member,)
 
 
-def assumed_lines(material: Mapping[str, Any], device: Mapping[str, Any]) -> Iterator[str]:
-    """What nobody stated, a line each for material and device, with values and sources."""
+def assumed_lines(
+    material: Mapping[str, Any], device: Mapping[str, Any], beam: str = ""
+) -> Iterator[str]:
+    """What nobody stated, a line each for material and device, with values and sources.
+
+    Parameters
+    ----------
+    beam : the material that the device is said to be of; its contact has a second body.
+    """
     missing = {name: row for name, row in MATERIAL.items() if name not in material}
     if missing:
         words = []
@@ -247,6 +329,11 @@ def assumed_lines(material: Mapping[str, Any], device: Mapping[str, Any]) -> Ite
             values = between.join(f"{value:g}" for value in row.values or ())
             words.append(f"{name} {values} ({row.source})")
         yield f"not stated, taken (--material): {'; '.join(words)}"
+    if beam and "e_star" not in material:
+        yield (
+            f"{beam} is the beam's alone: the contact keeps e_star and hardness above; both bodies"
+            f" give e_star, as in --material e_star={beam}/silicon_nitride"
+        )
     defaults = DeviceSettings()
     names = ("length_um", "width_um", "thickness_um", "gap_um", "youngs_modulus_GPa")
     untold = [f"{name} {getattr(defaults, name):g}" for name in names if name not in device]

@@ -176,10 +176,14 @@ def main() -> None:
         finished = os.path.isfile(folder / "scene.yaml")
         # a stranger's folder may hold a file that is named as a record is
         if not finished and all(is_damaged(result) for result in recorded(folder)):
-            parser.error(
-                f"{shown(str(folder))}: no results of a scene are there; give two folders such as"
-                " results/ci"
+            reason = "no results of a scene are there"
+            if not os.path.isdir(folder):
+                reason = "no such folder"
+            print(
+                f"ERROR {shown(str(folder))}: {reason}; give two folders such as results/ci",
+                file=sys.stderr,
             )
+            sys.exit(2)
         print(shown(_said(folder)))
     lines = list(differences(chosen.first, chosen.second))
     for line in lines or ["no difference beyond provenance and machine times"]:

@@ -5,12 +5,14 @@ Snakemake.
 import difflib
 import re
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from urllib.parse import quote, unquote
 
 PLAIN = re.compile(r"[A-Za-z0-9_./-]*[A-Za-z][A-Za-z0-9_./-]*")
 ENCODED = "percent:"
 COLUMNS = 80
+LEAST_PART = 3
+"""Letters from which on a part of a name may stand for it."""
 COMPUTED = "=+@\uff1d\uff0b\uff20\uff0d-"
 """Begin what a spreadsheet computes; those of full width do in the Excel of East Asia. The last is
 one in brackets.
@@ -39,8 +41,24 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """End of a line on an unknown word: the nearest of the known ones; empty where it is known or
     none is near.
     """
-    close = difflib.get_close_matches(word, list(known), n=1)
+    names = list(known)
+    close = difflib.get_close_matches(word, names, n=1) or _with_its_parts(word, names)
     return f"; did you mean {close[0]}?" if close and close[0] != word else ""
+
+
+def _with_its_parts(word: str, known: Sequence[str]) -> list[str]:
+    """Known words that a part of a name stands for, the shortest first, as hold does for
+    hold_voltage_V.
+    """
+    if len(word) < LEAST_PART:
+        return []
+    beginnings = word.lower().split("_")
+    named = []
+    for name in known:
+        name_parts = name.lower().split("_")
+        if all(any(part.startswith(begins) for part in name_parts) for begins in beginnings):
+            named.append(name)
+    return sorted(named, key=len)
 
 
 def as_cell(text: str) -> str:

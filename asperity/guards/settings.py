@@ -4,8 +4,9 @@ their classes.
 
 import inspect
 import re
+import types
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
@@ -16,6 +17,28 @@ from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
 
 _BOUNDS = {"[": "ge", "(": "gt", "]": "le", ")": "lt"}  # the keywords of `pydantic.Field`
 _INTERVAL = re.compile(r"([\[(])(\S+), (\S+)([\])])(?: (.+))?")
+_ACCEPTED = {
+    "greater_than": "above {gt:g}{unit}",
+    "greater_than_equal": "{ge:g}{unit} or more",
+    "less_than": "below {lt:g}{unit}",
+    "less_than_equal": "{le:g}{unit} or less",
+    "finite_number": "a finite number",
+    "float_type": "a number",
+    "float_parsing": "a number",
+    "int_type": "a whole number",
+    "int_parsing": "a whole number",
+    "int_from_float": "a whole number",
+    "bool_type": "true or false",
+    "bool_parsing": "true or false",
+    "string_type": "text",
+    "tuple_type": "a list",
+    "literal_error": "{expected}",
+    "too_short": "{min_length} entries or more, not {actual_length}",
+    "too_long": "{max_length} entries or fewer",
+    "string_too_short": "text of {min_length} characters or more",
+    "string_too_long": "text of {max_length} characters or fewer",
+}
+"""What is accepted instead, by pydantic's kind of mistake."""
 
 
 def key(default: Any, meaning: str, accepted: str = "", **field_options: Any) -> Any:
@@ -59,12 +82,74 @@ class _OneLine(type(BaseModel)):
             try:
                 return super().__call__(*arguments, **values)
             except ValidationError as error:
-                mistakes = [
-                    f"{'.'.join(map(str, item['loc'])) or 'settings'} = {_shown(item['input'])}: "
-                    f"{_suggestion(cls, item) or item['msg']}"
-                    for item in error.errors()
-                ]
-                raise InputError(f"{cls.__name__}: {'; '.join(mistakes)}") from None
+                mistakes = "; ".join(_explained(cls, error.errors()))
+                raise InputError(f"{cls.__name__}: {mistakes}") from None
+
+
+def _explained(kind: type[BaseModel], errors: list[Any]) -> list[str]:
+    """Mistakes, each with key, value, and what is accepted in place of it."""
+    accepted: dict[str, list[str]] = {}
+    for item in _innermost(errors):
+        name = _name_of(kind, item)
+        words = _accepted(kind, item)
+        if item["type"] == "missing":
+            name = f"{name}: is missing"
+            words = "it has no default"
+        elif name:
+            name = f"{name} = {_shown(item['input'])}"
+        accepted.setdefault(name, []).append(words)
+    lines = []
+    for name, words in accepted.items():
+        text = " or ".join([words[0], *(other.removeprefix("accepted is ") for other in words[1:])])
+        lines.append(f"{name}: {text}" if name else text)
+    return lines
+
+
+def _innermost(errors: list[Any]) -> list[Any]:
+    """Mistakes without those of a list whose entry is the mistake."""
+    places = [item["loc"] for item in errors]
+    return [
+        item
+        for item in errors
+        if not any(
+            len(item["loc"]) < len(at) and at[: len(item["loc"])] == item["loc"] for at in places
+        )
+    ]
+
+
+def _accepted(kind: type[BaseModel], item: Any) -> str:
+    """What is accepted in place of a value."""
+    if suggestion := _suggestion(kind, item):
+        return suggestion
+    if item["type"] in _ACCEPTED:
+        words = _ACCEPTED[item["type"]].format(**item.get("ctx", {}), unit=_unit_of(kind, item))
+        return f"accepted is {words}"
+    return item["msg"].removeprefix("Value error, ")
+
+
+def _name_of(kind: type[BaseModel], item: Any) -> str:
+    """The key of a mistake; of a value with a choice of types without the type that was tried."""
+    place = item["loc"]
+    field = kind.model_fields.get(str(place[0])) if place else None
+    if field is not None and len(place) == 2 and _has_a_choice(field.annotation):
+        place = place[:1]
+    return " ".join(".".join(map(str, place)).split())
+
+
+def _has_a_choice(annotation: Any) -> bool:
+    """Whether a value may be of several types, None apart."""
+    if get_origin(annotation) not in (Union, types.UnionType):
+        return False
+    return len([member for member in get_args(annotation) if member is not type(None)]) > 1
+
+
+def _unit_of(kind: type[BaseModel], item: Any) -> str:
+    """The unit of a key of the settings themselves, behind a blank; empty without one."""
+    place = item["loc"]
+    field = kind.model_fields.get(str(place[0])) if len(place) == 1 else None
+    extra = field.json_schema_extra if field else None
+    unit = extra.get("unit") if isinstance(extra, dict) else None
+    return f" {unit}" if unit else ""
 
 
 def _suggestion(kind: type[BaseModel], error: Any) -> str:
@@ -139,11 +224,4 @@ def load_settings(kind: type[Content], path: Path, what: str, example: str) -> C
     except MistakenYaml as error:
         raise InputError(f"{path}: {error}; see {example}") from None
     except ValidationError as error:
-        first = error.errors()[0]
-        where = " ".join(".".join(map(str, first["loc"])).split())
-        message = first["msg"].removeprefix("Value error, ")
-        if where:
-            message = f"{where}: {message}"
-        if first["type"] not in ("missing", "value_error"):
-            message = f"{message} (got {first['input']!r:.80})"
-        raise InputError(f"{path}: {message}") from None
+        raise InputError(f"{path}: {_explained(kind, error.errors())[0]}") from None

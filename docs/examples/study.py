@@ -14,6 +14,7 @@ import asperity as asp
 film = asp.ContactInputs(
     hamaker=0.2, e_star=90.0, h_macro=2.0, h_prime=0.0, q0=0.02, hurst=0.8, rms=4.0
 )
+# a random surface touches at its lowest points, a measured map at its highest: hence the minus
 heights = -asp.random_surface(film, asp.ContactSettings(pixels=128), seed=1)
 
 # %%

@@ -14,13 +14,17 @@ from mesoscale.answer.spread import departed
 from mesoscale.answer.switches import Solved
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import PadCurves
-from mesoscale.settings import DeviceSettings
+from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.switch import States, switch_of
 from mesoscale.theory.charging import charge_shift
 
 HERE = "this scene's points"
 ANCHORS = ("anchor_um_per_N", "anchor_rad_per_uN_m")
 """Properties of which `of_own` is a share of what the beam itself has."""
+KEYS = {f"contact.{name}" for name in ContactSettings.model_fields} | {
+    f"device.{name}" for name in DeviceSettings.model_fields
+}
+"""Keys of a scene that can state an effect."""
 SETTLE = {"common": "measure it", "each": "control it from device to device"}
 
 
@@ -43,6 +47,7 @@ class Effect(Settings):
     )
     charge: bool = key(False, "whether it is none of a scene that states charge")
     varied_as: str = key("", "input that stands for it, where a scene varies it")
+    stated_as: str = key("", "key of a scene that states it, such as contact.air")
     changes: str = key("", "property of the device that it changes")
     factor: float = key(1.0, "times its value")
     step: float = key(0.0, "and so much more")
@@ -58,6 +63,8 @@ class Effect(Settings):
             )
         if self.changes and self.changes not in DeviceSettings.model_fields:
             raise ValueError(f"changes = {self.changes}: no property of the device")
+        if self.stated_as and self.stated_as not in KEYS:
+            raise ValueError(f"stated_as = {self.stated_as}: no key of contact or device")
         if self.of_own and self.changes not in ANCHORS:
             raise ValueError(f"of_own is of {' and '.join(ANCHORS)}, not of {self.changes}")
         ways = [
@@ -88,6 +95,16 @@ def effects_of(rows: Mapping[str, Any]) -> dict[str, Effect]:
         except (InputError, TypeError) as error:
             raise InputError(f"effects: {name}: {error}") from None
     return effects
+
+
+def left_open(effects: Mapping[str, Effect], stated: Collection[str]) -> dict[str, Effect]:
+    """The effects that a scene does not state itself.
+
+    Parameters
+    ----------
+    stated : its keys, such as contact.air and device.residual_stress_MPa.
+    """
+    return {name: effect for name, effect in effects.items() if effect.stated_as not in stated}
 
 
 NUMERICAL = "finite elements and grid"

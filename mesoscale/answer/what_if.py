@@ -7,11 +7,13 @@ that presses harder has them continued.
 from dataclasses import replace
 
 from mesoscale.answer.points import Design, Point
-from mesoscale.answer.switches import PadModel, Solved, solved_on
+from mesoscale.answer.switches import PadModel, Solved, solved_without_error
 
 
 def with_device(model: PadModel, central: Point, design: Design) -> PadModel:
     """The model with the switches of another device on its pads.
+
+    Errors by the number of cells are left out: they hardly differ from those of the model.
 
     Parameters
     ----------
@@ -28,4 +30,4 @@ def _solved_again(before: Solved, point: Point) -> Solved:
     """The switch of a point on the pad of another; without a pad its reason stays."""
     if before.pad is None:
         return replace(before, point=point)
-    return solved_on(point, before.pad)
+    return solved_without_error(point, before.pad)

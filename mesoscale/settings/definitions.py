@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from asperity.guards.foreign_text import did_you_mean
 from mesoscale.errors import InputError
 
 
@@ -203,6 +204,7 @@ def definition(name: str) -> InputDefinition:
     """
     if name not in BY_NAME:
         raise InputError(
-            f"{name}: no such input of the contact model; accepted: {', '.join(BY_NAME)}"
+            f"{name}: no such input of the contact model{did_you_mean(name, BY_NAME)} (accepted:"
+            f" {', '.join(BY_NAME)})"
         )
     return BY_NAME[name]

@@ -10,6 +10,8 @@ RmsScatter = Annotated[float, Field(ge=0, le=2)]
 
 PILOTS = 16
 """Most cells of a pad that are closed side by side, to find the range of separations."""
+MORE_CELLS = 4
+"""Times as many cells has a point that is undecided."""
 POINTS_PER_JOB = {"asperity": 16, "coupled": 16, "adhesive": 2}
 """Points of the joint distribution per job and file, by mechanics."""
 

@@ -2,14 +2,17 @@
 
 import re
 from argparse import Namespace
+from fnmatch import fnmatch
 
 import pytest
 import yaml
 
-from asperity.door import scene_lines, topography_of
-from asperity.words import assumed_lines, bodies, device_of, material_of
+from asperity.door import described, scene_lines, topography_of
+from asperity.words import SCALAR_KEYS, assumed_lines, bodies, device_of, material_of
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
+from mesoscale.settings.definitions import BY_NAME
+from mesoscale.settings.device import MEASURABLE
 
 
 @pytest.mark.parametrize(
@@ -50,6 +53,16 @@ def test_words_of_an_engineer_are_keys_of_the_device():
         ("gap_um=", "'' is no number"),
         ("gap_u=2", "gap_u is no key of the device; did you mean gap_um?"),
         ("hold_voltage_V=-5", "device: hold_voltage_V = -5.0: "),
+        ("hold=35V", "hold is no key of the device; did you mean hold_voltage_V?"),
+        ("stress=40MPa", "stress is no key of the device; did you mean residual_stress_MPa?"),
+        ("pull_in=72", "did you mean pull_in_V?"),
+        ("E=70", "did you mean youngs_modulus_GPa?"),
+        ("e_star=75", "the contact's, not the device's; write --material e_star=75"),
+        ("gap_um=-1", "device: gap_um = -1.0: accepted is above 0.01 um"),
+        ("gap_um=3:1", "accepted is one number, such as gap_um=3; departures from it"),
+        ("electrode=1:", "two shares of the length: electrode=0.2:0.8"),
+        ("release_at=2", "device: release_at = 2.0: accepted is 'jump' or below 1"),
+        ("release_at=half", "accepted are jump, a number such as release_at=0.5"),
         ("colour=2", "accepted is KEY=VALUE, with a key of material, ends"),
         ("pull_in_V=72", "value and standard error, pull_in_V=72+-2"),
         ("pull_in_V=72+-2%", "pull_in_V is in V, not in %"),
@@ -85,6 +98,105 @@ def test_words_of_a_material_are_rows_of_inputs(word, values):
 def test_a_material_that_is_not_understood_is_one_line(word):
     with pytest.raises(InputError, match=re.escape(f"{word}: ")):
         material_of([word])
+
+
+@pytest.mark.parametrize(
+    ("word", "line"),
+    [
+        ("h_macro=3:1", "its first number is the larger; write h_macro=1:3"),
+        ("e_star=75+--4", "a deviation of -4; accepted is 0 or more"),
+        ("e_star=70:75:80", "accepted are e_star=75, e_star=70:80 (from, to)"),
+        ("hardness=2", "hardness is no input; did you mean h_macro?"),
+        ("e_stra=75", "no such input of the contact model; did you mean e_star?"),
+        ("gap_um=2", "the device's, not the contact's; write --device gap_um=2"),
+        ("gold", "accepted is NAME=VALUE, such as e_star=75"),
+    ],
+)
+def test_a_wrong_word_of_a_material_is_told_with_what_is_wrong_in_it(word, line):
+    with pytest.raises(InputError, match=re.escape(line)):
+        material_of([word])
+
+
+ODD_VALUES = ("0", "-1", "3:1", "1:2:3", "1,5", "5%", "5xx", "nan", "1e400", "5+--1", "+-", ":", "")
+WORDS_OF_LIBRARIES = re.compile(
+    "Input should|Value error|validation|Traceback|constrained|literal\\["
+)
+
+
+@pytest.mark.parametrize("value", ODD_VALUES)
+def test_an_odd_value_of_any_key_is_a_line_of_ours(value):
+    """Of every key of device and material: taken, or one line with key and what is accepted."""
+    stated = [(device_of, name) for name in (*SCALAR_KEYS, *MEASURABLE)]
+    stated += [(material_of, name) for name in BY_NAME]
+    for read, name in stated:
+        try:
+            read([f"{name}={value}"])
+        except InputError as error:
+            line = str(error)
+            assert name in line
+            assert "\n" not in line
+            assert not WORDS_OF_LIBRARIES.search(line), line
+
+
+def test_a_beam_of_a_material_leaves_the_contact_as_it_is_and_says_so():
+    device = device_of(["material=aluminium"])
+    *_, line, _ = assumed_lines({}, device, "aluminium")
+    assert "--material e_star=aluminium/silicon_nitride" in line
+    stated = material_of(["e_star=aluminium/silicon_nitride"])
+    assert not any("aluminium" in line for line in assumed_lines(stated, device, "aluminium"))
+
+
+def files_with(**words):
+    """Options of files as the command line has them."""
+    names = ("channel", "unit", "size", "crop", "points", "detrend", "tip_nm")
+    return Namespace(**dict.fromkeys(names) | words)
+
+
+@pytest.mark.parametrize("tip", ["-1", "3:1", "5%", "1,5", ""])
+def test_a_wrong_radius_of_the_tip_is_one_line_of_ours(tip):
+    given = files_with(files=["a.txt"], tip_nm=tip, material=[], device=[])
+    with pytest.raises(InputError, match=f"^--tip-nm={re.escape(tip)}: "):
+        described(given, print)
+
+
+def test_several_files_have_sizes_and_units_of_their_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("a.txt", "b[1].txt", "c.txt"):
+        (tmp_path / name).write_text("")
+    given = files_with(
+        files=["a.txt", "b[1].txt", "c.txt"],
+        size=["10", "b[1].txt=5x2.5"],
+        unit=["um,nm", "c.txt=nm"],
+    )
+    instruments = topography_of(given)["instruments"]
+    first = {
+        name: next(item for item in instruments if fnmatch(name, item.files))
+        for name in given.files
+    }
+    assert [first[name].size for name in given.files] == [(10.0,), (5.0, 2.5), (10.0,)]
+    units = [(first[name].unit, first[name].height_unit) for name in given.files]
+    assert units == [("um", "nm"), ("um", "nm"), ("nm", "nm")]
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        ({"size": ["0"]}, "--size 0: a side is above 0"),
+        ({"size": ["-1x2"]}, "--size -1x2: a side is above 0"),
+        ({"size": ["1,5"]}, "--size 1,5: accepted is a number or two"),
+        ({"size": ["10um"]}, "--size 10um: accepted is a number or two"),
+        ({"size": ["b.txt=10"]}, "--size b.txt=10: no such file is given; did you mean a.txt?"),
+        ({"size": ["a.txt="]}, "--size a.txt=: accepted is a number or two"),
+        ({"unit": ["a.txt=inch"]}, "--unit a.txt=inch: accepted are m, mm"),
+        ({"points": "0x0"}, "--points 0x0: accepted are two numbers such as 64x64"),
+        ({"crop": "5:2,0:10"}, "--crop 5:2,0:10: each range rises"),
+    ],
+)
+def test_a_wrong_option_of_files_is_one_line_of_ours(tmp_path, monkeypatch, words, line):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.txt").write_text("")
+    with pytest.raises(InputError, match=f"^{re.escape(line)}"):
+        topography_of(files_with(files=["a.txt"], **words))
 
 
 def test_bodies_have_a_source_and_are_beams():
@@ -131,7 +243,7 @@ def test_what_nobody_stated_is_told_with_its_source():
 def test_micrometres_have_either_micro_sign(unit):
     given = Namespace(
         channel=None,
-        unit=f"{unit},nm",
+        unit=[f"{unit},nm"],
         size=None,
         crop=None,
         points=None,

@@ -1,5 +1,7 @@
 """A map of one's own: its roughness in numbers, and its closing and opening."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -28,6 +30,16 @@ def test_the_roughness_of_a_sinusoid_is_that_of_its_amplitude():
 def test_no_map_is_refused(heights, side_nm):
     with pytest.raises(asp.InputError):
         asp.roughness(heights, side_nm)
+
+
+def test_a_side_in_micrometres_is_remarked():
+    with pytest.warns(UserWarning, match="side_nm = 1: .* is this one in um"):
+        asp.roughness(WAVES, SIDE_NM / 1000.0)
+    with pytest.warns(UserWarning, match="side_nm = 10: .* RMS height"):
+        asp.roughness(WAVES, 10.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        asp.roughness(WAVES, SIDE_NM)
 
 
 def test_a_cycle_is_that_of_the_library_with_the_same_numbers():

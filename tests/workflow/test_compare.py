@@ -105,7 +105,7 @@ def test_a_change_is_named(folders, change, line):
     [
         (None, 0, "no difference"),
         (change_curve, 1, "curves.h5"),
-        (shutil.rmtree, 2, "no results of a scene"),
+        (shutil.rmtree, 2, "no such folder; give two folders"),
     ],
 )
 def test_the_command_says_it_by_its_exit_code(folders, change, code, says):

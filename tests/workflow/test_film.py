@@ -15,6 +15,7 @@ import yaml
 
 import asperity as asp
 from asperity.__main__ import main
+from asperity.door import KNOWN_IF_STATED
 from asperity.words import SCALAR_KEYS
 from mesoscale.topography.measurements.loading import load_measurements, write_gwy
 from mesoscale.topography.measurements.opening import write_channels
@@ -102,8 +103,7 @@ def test_options_on_a_file_reach_its_scene(scans, started, tmp_path, monkeypatch
     assert (scene.topography.detrend, scene.topography.channel) == ("none", "Default")
     text = Path("bare.yaml").read_text(encoding="utf-8")
     for name in SCALAR_KEYS:
-        # a modulus that stands in a scene counts as known
-        untold = "# " * (name == "youngs_modulus_GPa")
+        untold = "# " * (name in KNOWN_IF_STATED)
         assert f"\n  {untold}{name}: " in text
     assert main(["bare.txt", *words[:-2]]) == 1  # the scene of other words stays
 
@@ -193,7 +193,7 @@ def test_every_option_that_a_refusal_prints_works(
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["scans", "--size", "10"], "--size: accepted for one file"),
+        (["scans/place_1.gwy", "--size", "0"], "--size 0: a side is above 0"),
         (["scans", "--unit", "inch"], "--unit inch: accepted are m, mm"),
         (["scans/place_1.gwy", "--size", "ten"], "--size ten: accepted is a number or two"),
         (

@@ -9,7 +9,7 @@ import pytest
 
 from workflow.run.cost import Costs, refusal, wall_seconds
 from workflow.run.progress import Terminal, duration, speak
-from workflow.scene import load_scene
+from workflow.scene import Scene, load_scene
 
 
 class OneSecondEach:
@@ -217,6 +217,44 @@ def test_costs_grow_with_what_a_job_does(tmp_path):
     assert large.seconds("compute_runs", {}) > 2 * small.seconds("compute_runs", {})
     assert large.seconds("run_closing", {"run": "a"}) == 7
     assert small.seconds("no_such_rule", {}) < 10
+
+
+BRIDGE = {
+    "length_um": 300.0,
+    "width_um": 100.0,
+    "thickness_um": 1.0,
+    "gap_um": 1.5,
+    "youngs_modulus_GPa": 70.3,
+    "residual_stress_MPa": 40.0,
+    "dielectric_nm": 150.0,
+    "permittivity": 7.0,
+    "hold_voltage_V": 35.0,
+}
+
+
+def test_pads_cost_by_their_cells_points_and_device(tmp_path):
+    contact = {
+        "mechanics": "coupled",
+        "attraction": "offset",
+        "pixels": 512,
+        "q1_per_nm": 0.5,
+    }
+    stated = {"extends": "table1", "contact": contact, "device": BRIDGE}
+    plate = stated | {"device": {"spring_N_per_m": 800.0}}
+    small = stated | {"pad": {"cells": 16, "points": 40, "point_cells": 4}}
+
+    def seconds(content, rule, **wildcards):
+        scene = Scene.model_validate(content)
+        return Costs(scene, {}, tmp_path / "none.json").seconds(rule, wildcards)
+
+    # 46 s and 14 s of a busy core were measured, about twice those of an idle one
+    assert 20.0 < seconds(stated, "press_pads", chunk="000") < 46.0
+    assert 7.0 < seconds(small, "press_pads", chunk="000") < 28.0
+    assert seconds(plate, "press_pads", chunk="000") > 4 * seconds(
+        stated, "press_pads", chunk="000"
+    )
+    assert seconds(small, "answer") < 0.6 * seconds(stated, "answer")
+    assert seconds(stated, "press_pads", chunk="central") < 20.0
 
 
 def test_a_plan_learns_from_what_jobs_took(tmp_path):

@@ -70,6 +70,7 @@ def test_the_command_writes_a_table_and_a_picture(here, capsys):
     assert main(["tiny.yaml", "gap_um=3,3.49,3.7"]) == 0
     lines = capsys.readouterr().out
     assert "gap_um=3.7: closes at" in lines.replace("\n ", "")
+    assert "± is the standard error of the median" in lines.replace("\n ", "")
     with (here / "tiny_gap_um_3_3.49_3.7.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert rows[0]["device"] == AS_RUN
@@ -98,7 +99,8 @@ def test_a_voltage_below_pull_in_closes_some_of_the_devices(here):
     assert 0.2 < half["never_close"] < 0.8
     closing = half["switches"] + half["no_answer"]
     assert closing == round(36 * (1.0 - half["never_close"]))
-    assert "of the devices never close and are left out" in line_of(half)
+    assert f"of {half['switches']} switches that close" in line_of(half)
+    assert "of all 36 never close and are left out" in line_of(half)
     assert few["switches"] < 8
     assert "release_V" not in few
     assert "no interval: " in line_of(few)

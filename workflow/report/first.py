@@ -198,18 +198,23 @@ def _known(answer: dict[str, Any], bands: dict[str, Any]) -> str:
             f"What is not known and what differs from device to device cannot be told apart by"
             f" {fitted}. More switches would (pad.points). {_sticking(answer)}"
         )
-    typical, device = (
-        " to ".join(_with_error(bands[kind][end]) for end in ("0.05", "0.95")) for kind in BANDS
-    )
+    typical, device = (_span(bands[kind]) for kind in BANDS)
     return (
-        f"Not known: where the typical device lets go, {typical} V. From device to device:"
-        f" {device} V, all else known. Both by {fitted}, with its error. {_sticking(answer)}"
+        f"Not known: where the typical device lets go, {typical}. From device to device:"
+        f" {device}, all else known. Both by {fitted}, with its error. {_sticking(answer)}"
     )
+
+
+def _span(band: dict[str, dict[str, float]]) -> str:
+    """The ends of a band with their errors; a release of 0 is a switch that sticks."""
+    low, high = band["0.05"], band["0.95"]
+    if high["value"] == 0.0:
+        return "it sticks"
+    first = _with_error(low) if low["value"] else "from sticking"
+    return f"{first} to {_with_error(high)} V"
 
 
 def _with_error(end: dict[str, float]) -> str:
-    if end["value"] == 0.0:
-        return "0"
     return f"{show(end['value'])}\u00a0±\u00a0{show(end['error'], 1)}"
 
 

@@ -1,4 +1,10 @@
 EFFECTS = str(CONFIG / "effects.yaml")
+STATED_OF_SWITCH = [
+    f"{section}.{name}"
+    for section in ("contact", "device")
+    for name in sorted(getattr(SCENE, section).model_fields_set)
+    if getattr(getattr(SCENE, section), name) is not None
+]
 
 
 rule answer:
@@ -19,6 +25,7 @@ rule answer:
     params:
         **ON_PADS,
         contents=contents(EFFECTS),
+        stated=STATED_OF_SWITCH,
     message:
         "say what the switch does"
     script:

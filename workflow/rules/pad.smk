@@ -8,7 +8,9 @@ POINT_CHUNKS = {"central": (0, 1)} | {
         SCENE.pad.points, POINTS_PER_JOB[SCENE.contact.mechanics]
     ).items()
 }
-ALL_CHUNKS = f"central, 000 to {len(POINT_CHUNKS) - 2:03}"
+ALL_CHUNKS = "central"
+if SCENE.pad.points:
+    ALL_CHUNKS += f", 000 to {len(POINT_CHUNKS) - 2:03}"
 
 
 # the posterior of a measured device, made once

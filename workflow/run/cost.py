@@ -10,7 +10,10 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 from typing import Any
 
-from mesoscale.settings import SceneContact
+from scipy.constants import epsilon_0
+
+from mesoscale.settings import DeviceSettings, SceneContact
+from mesoscale.settings.pad import MORE_CELLS, POINTS_PER_JOB
 from workflow.scene import Scene
 
 TIMES = Path(".snakemake/asperity_seconds.json")
@@ -31,9 +34,6 @@ TYPICAL_S = {  # on one core of a server
     "scan_crystal": 35.0,
     "analyse_scans": 9.0,
     "judge_scans": 10.0,
-    "press_pads": 15.0,
-    "press_prior_pads": 15.0,
-    "answer": 25.0,
     "uncertainty": 20.0,
     "report": 8.0,
     "calibration": 60.0,
@@ -47,18 +47,125 @@ CYCLES = {  # contacts that a job closes and opens, to the largest force of the 
     "compute_runs": 200,
     "compute_direct_runs": 200,
     "observe_cycles": 200,
-    "press_pads": 250,
-    "press_prior_pads": 250,
     "study": 500,
-    "humidity": 1000,
     "history": 100,
 }
+
+
+START_S = 6.0
+"""Of a job on pads: imports, and code that is compiled."""
+CELL_S_PER_MPA = {"asperity": 0.0013, "coupled": 0.003, "adhesive": 0.043}
+"""Of a cell of a pad with `CELL_PIXELS` a side, for each MPa that its switch presses with."""
+CELL_PIXELS = 256
+CELL_POWER = 1.4
+"""Of the number of pixels a side."""
+PRESSES_MPA = (5.0, 200.0)
+"""Pressures of the switches that this was measured on."""
+SWITCH_S = {"beam": 0.22, "plate": 0.02}
+"""Of a switch on a pad, and on its halves."""
+UNDECIDED = 0.4
+"""Share of points that four times as many cells must decide."""
+ANSWERED_TIMES = 1.1
+"""Switches that the answer solves beside its points, for each of them: other devices, what frees
+those that stick."""
+PRESSED_AGAIN = 12
+"""Pads of a point that the answer presses: other hardness, other numerical choices, and roughness
+that frees."""
+TRIED_HUMIDITIES = 10
+"""Of a humidity that is not known exactly."""
+PLAIN_CELL_NM = 1000.0
+"""Side of a cell where a scene leaves it open."""
+UNKNOWN_CUTOFF_HALVES = 1
+"""Times that a grid is halved for pads where only a measurement tells the cut-off."""
 
 
 def typical_cycle_s(contact: SceneContact) -> float:
     """Seconds of one closing and opening."""
     on_1024 = {"asperity": 0.06, "coupled": 2.5, "adhesive": 36.0}
     return on_1024[contact.mechanics] * (contact.pixels / 1024) ** 3
+
+
+def _cell_s(scene: Scene) -> float:
+    """Seconds of a cell of a pad, on the grid that pads have (docs/pad.md)."""
+    finer = (_pad_pixels(scene) / CELL_PIXELS) ** CELL_POWER
+    return CELL_S_PER_MPA[scene.contact.mechanics] * _presses_MPa(scene.device) * finer
+
+
+def _presses_MPa(device: DeviceSettings) -> float:
+    """Rough pressure of the closed switch on its pad, by the field across the dielectric."""
+    gap_m = 1e-6 * device.gap_um
+    area_m2 = 1e-12 * device.length_um * device.width_um
+    volts = device.hold_voltage_V
+    if volts is None:  # pull-in of a plate on a spring
+        volts = math.sqrt(8.0 * _spring_N_m(device) * gap_m**3 / (27.0 * epsilon_0 * area_m2))
+    across_m = max(1e-9 * device.dielectric_nm / device.permittivity, 1e-9)
+    least, most = PRESSES_MPA
+    return min(max(1e-6 * 0.5 * epsilon_0 * (volts / across_m) ** 2, least), most)
+
+
+def _spring_N_m(device: DeviceSettings) -> float:
+    """Stiffness against an even load, without stretch."""
+    if device.spring_N_per_m is not None:
+        return device.spring_N_per_m
+    slender = device.thickness_um / device.length_um
+    bending = {"clamped": 32.0, "cantilever": 2.0 / 3.0}[device.ends]
+    of_bending = bending * 1e9 * device.youngs_modulus_GPa * slender**2
+    of_stress = 8e6 * max(device.residual_stress_MPa, 0.0)
+    return (of_bending + of_stress) * 1e-6 * device.width_um * slender
+
+
+def _pad_pixels(scene: Scene) -> int:
+    """Pixels a side of a pad's cells: the fewest that hold all waves."""
+    contact = scene.contact
+    side_nm = contact.length_nm or PLAIN_CELL_NM
+    stated = scene.inputs.rows().get("q1")
+    shortest = contact.q1_per_nm
+    if stated is not None:
+        shortest = stated.reaches
+        if shortest is None:
+            return contact.pixels // 2**UNKNOWN_CUTOFF_HALVES
+    if shortest is None:
+        return contact.pixels
+    pixels = contact.pixels
+    while pixels % 2 == 0 and math.pi * (pixels // 2) / side_nm >= shortest:
+        pixels //= 2
+    return pixels
+
+
+def _pressing_s(scene: Scene, wildcards: Mapping[str, str]) -> float:
+    """Seconds of a chunk of pads with their switches."""
+    switch_s = SWITCH_S[scene.device.kind]
+    if wildcards.get("chunk") == "central":
+        return START_S + scene.pad.cells * _cell_s(scene) + switch_s
+    points = min(POINTS_PER_JOB[scene.contact.mechanics], scene.pad.points)
+    cells = scene.pad.point_cells * (1.0 + UNDECIDED * MORE_CELLS)
+    return START_S + points * (cells * _cell_s(scene) + (1.0 + UNDECIDED) * switch_s)
+
+
+def _answering_s(scene: Scene, wildcards: Mapping[str, str]) -> float:
+    """Seconds of the answer."""
+    switches = ANSWERED_TIMES * scene.pad.points * SWITCH_S[scene.device.kind]
+    return START_S + switches + PRESSED_AGAIN * scene.pad.point_cells * _cell_s(scene)
+
+
+def _wetting_s(scene: Scene, wildcards: Mapping[str, str]) -> float:
+    """Seconds of the switch against humidity, with twice the cells, by both limits of opening."""
+    row = scene.inputs.rows().get("humidity")
+    count = TRIED_HUMIDITIES
+    if row is None or row.distribution == "fixed":
+        count = 1
+    pads = 2 * count
+    each_s = 2 * scene.pad.point_cells * _cell_s(scene) + SWITCH_S[scene.device.kind]
+    return START_S + pads * each_s
+
+
+OF_PADS = {
+    "press_pads": _pressing_s,
+    "press_prior_pads": _pressing_s,
+    "answer": _answering_s,
+    "humidity": _wetting_s,
+}
+"""Seconds of the jobs on pads, by rule."""
 
 
 class Costs:
@@ -109,6 +216,8 @@ class Costs:
     def _typical_s(self, rule: str, wildcards: Mapping[str, str]) -> float:
         if "closing" in rule and "run" in wildcards:
             return self._closing_s[wildcards["run"]]
+        if rule in OF_PADS:
+            return OF_PADS[rule](self._scene, wildcards)
         cycles_s = CYCLES.get(rule, 0) * typical_cycle_s(self._scene.contact)
         return TYPICAL_S.get(rule, COLLECTING_S) + cycles_s
 

@@ -181,15 +181,20 @@ def _answered(model: PadModel) -> dict[str, Any]:
             return {"reason": str(error)}
         low, high = known.stuck
         first, last = (volts(value) for value in known.median_V)
-        median = first if first == last else f"{first} to {last}"
+        median = f"median {first}"
+        if first != last:
+            median = f"median between {first.replace('sticks', 'sticking')} and {last}"
         if known.median_V[1] == math.inf:
-            median = "not known"
+            median = "median not known"
+        closing = known.solved + known.refused
         return {
             "stuck_low": low,
             "stuck_high": high,
             "switches": known.solved,
             "no_answer": known.refused,
-            "reason": f"{low:.0%} to {high:.0%} stick, median {median}: {error}",
+            "reason": (
+                f"of the {closing} that close, {low:.0%} to {high:.0%} stick, {median}: {error}"
+            ),
         }
 
 
@@ -212,6 +217,13 @@ def numbers_of(answer: Mapping[str, Any]) -> dict[str, float]:
     }
 
 
+LEGEND = (
+    "medians over the switches of the points; ± is the standard error of the median, by the number"
+    " of switches; a switch that sticks counts as the lowest release"
+)
+"""What the lines mean, said once behind them."""
+
+
 def line_of(row: dict[str, Any]) -> str:
     """A row in words."""
     if row["reason"]:
@@ -221,9 +233,16 @@ def line_of(row: dict[str, Any]) -> str:
     words = f"{row['device']}: closes at {show(row['pull_in_V'])} V and {does(row['release_V'])}"
     if row["release_V"]:
         words += f" ± {show(row['median_error_V'], 1)} V"
-    words += f" {interval}, {row['stuck']:.0%} stick"
+    closing = row["switches"] + row["no_answer"]
+    words += f" {interval}; of {row['switches']} switches"
     if row["never_close"]:
-        words += f"; {row['never_close']:.0%} of the devices never close and are left out"
+        words += f" that close, {row['stuck']:.0%} stick"
+        count = round(closing / (1.0 - row["never_close"]))
+        words += f"; {row['never_close']:.0%} of all {count} never close and are left out"
+    else:
+        words += f" {row['stuck']:.0%} stick"
+    if row["no_answer"]:
+        words += f"; {row['no_answer']} have no answer"
     if row["continued"]:
         words += f"; {row['continued']} of {row['switches']} press harder than their pads were"
     return words
@@ -294,6 +313,7 @@ def main(arguments: list[str] | None = None) -> int:
         for row in what_if(scene, chosen.changes):
             rows.append(row)
             print(wrapped(shown(line_of(row))), flush=True)
+        print(wrapped(LEGEND))
         write_answers(scene.name, chosen.changes, rows)
     except (InputError, SceneError, UnfitTable, OSError) as error:
         print(f"ERROR {shown(str(error))}", file=sys.stderr)

@@ -8,7 +8,7 @@ answer/rough_pad.va, answer/rough_pad.sub.
 from pathlib import Path
 
 from asperity.guards.foreign_yaml import load_mapping
-from mesoscale.answer.budget import TWIN, budget, effects_of, with_twins
+from mesoscale.answer.budget import TWIN, budget, effects_of, left_open, with_twins
 from mesoscale.answer.other_devices import release_by_hardness
 from mesoscale.answer.release import switch_on_pad
 from mesoscale.answer.reserve import central_reserve, freed_by_surface
@@ -39,10 +39,7 @@ with job(snakemake) as run:
         switch["measured"] = what_remains(points.device)
     write_json(snakemake.output.switch, switch, run.provenance)
     effects = effects_of(load_mapping(Path(snakemake.input.effects), "table of effects"))
-    if points.contact.air or "humidity" in points.table.names:
-        effects.pop("humid air", None)  # the answer holds it
-    if points.device.residual_stress_MPa != 0.0:
-        effects.pop("mean stress of the film", None)  # it is stated
+    effects = left_open(effects, snakemake.params.stated)
     if computed := snakemake.input.get("hardness"):
         effects = with_twins(effects, load_json(computed)["twins"])
     else:

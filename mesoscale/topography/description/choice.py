@@ -57,6 +57,15 @@ STEPS_TO_TELL = {
 """Steps of a measurement that a user should hear of: code of the doubt and remedy."""
 
 
+HIGH_NM = 1000.0
+HIGH_SHARE = 0.005
+"""RMS height, and its share of the length, from both of which on the unit may be mistaken: an
+optical map of 1 mm may have 2 um.
+"""
+STEEP_SHARE = 0.3
+"""Share of the length that no RMS height has: the length may be in another unit."""
+FLAT_NM = 0.01
+"""RMS height below that of cleaved crystals, which have 0.03 nm."""
 TREATED = {
     "smoothed": (
         "smoothed or filtered: its spectrum falls as that of no measured map; what the filter took"
@@ -209,7 +218,30 @@ def description_doubts(
         yield Doubt("no_power_law", text, remedy, "q0")
 
 
+def _unit_doubt(name: str, values: Mapping[str, Any]) -> Iterator[Doubt]:
+    """A map that is most likely in another unit than it says."""
+    rms_nm = float(values["rms_nm"])
+    length_nm = float(values["length_x_nm"])
+    high = rms_nm > max(HIGH_NM, HIGH_SHARE * length_nm)
+    if high or rms_nm > STEEP_SHARE * length_nm:
+        than = "higher than films have"
+    elif 0.0 < rms_nm < FLAT_NM:
+        than = "less than atoms leave"
+    else:
+        return
+    text = (
+        f"{name}: an RMS height of {rms_nm:.3g} nm over {length_nm:.3g} nm, {than}, as in another"
+        " unit"
+    )
+    remedy = (
+        "positions and heights may have units of their own (unit: um, height_unit: nm; --unit"
+        " um,nm)"
+    )
+    yield Doubt("unit_unlikely", text, remedy, "rms")
+
+
 def _doubts_of_record(name: str, values: Mapping[str, Any]) -> Iterator[Doubt]:
+    yield from _unit_doubt(name, values)
     share, skewness = (float(values.get(f"alignment_{key}", 0.0)) for key in ("share", "skewness"))
     # clean maps reach 0.33 and, where they are grainy, 0.4; their RMS heights are right
     # nevertheless

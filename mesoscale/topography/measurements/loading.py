@@ -165,7 +165,7 @@ def _alone(path: Path, file: Path, name: str, settings: TopographySettings) -> M
         file = text.copy(file.name)
     file = converted(file, head)
     if instrument.unit and _lacks_a_unit(where, file):
-        file = with_unit(file, instrument.unit)
+        file = with_unit(file, instrument.height_unit or instrument.unit)
         instrument = instrument.model_copy(update={"unit": None})
     return _of_channels(path, file, name, text, settings, instrument)
 
@@ -411,7 +411,7 @@ def _given(where: str, channel: Any, instrument: InstrumentSettings) -> dict[str
         if stated and added:
             raise InputError(
                 f"{where}: states {name} itself; leave out that of topography.instruments (--unit,"
-                " --size)"
+                " --size), or state it of the others alone (--size other.txt=10)"
             )
     if sized or not instrument.size:
         return {}
@@ -625,7 +625,7 @@ def _lacking(name: str, item: Any, instrument: InstrumentSettings) -> tuple[str,
     if not sized:
         missing.append(size_words)
     if not named:
-        missing.append(("length unit", "unit: um", "--unit um"))
+        missing.append(("length unit", "unit: um, height_unit: nm", "--unit um,nm"))
     lacks = " and no ".join(words for words, _, _ in missing)
     keys = ", ".join([f"files: {name!r}", *(key for _, key, _ in missing)])
     options = " ".join(option for _, _, option in missing)

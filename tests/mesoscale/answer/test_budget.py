@@ -16,6 +16,7 @@ from mesoscale.answer.budget import (
     _Pressed,
     budget,
     effects_of,
+    left_open,
     with_twins,
 )
 from mesoscale.answer.points import Point
@@ -57,6 +58,7 @@ def central(device):
         ({"share": 0.5}, "humid air: .*state one of volts"),
         ({"changes": "colour", "volts": None}, "humid air: .*no property of the device"),
         ({"how": "guessed"}, "humid air: .*how = 'guessed'"),
+        ({"stated_as": "device.colour"}, "humid air: .*no key of contact or device"),
     ],
 )
 def test_rows_without_source_or_with_no_or_two_statements_are_one_line(change, line):
@@ -105,6 +107,14 @@ def test_every_number_is_that_of_its_own_calculation():
     assert known == sorted(known, reverse=True)
     assert volts[len(known) :] == [None] * (len(volts) - len(known))
     assert np.isfinite(known).all()
+
+
+def test_what_a_scene_states_is_no_open_effect():
+    """Also a stress of 0, and by keys of the data file alone."""
+    effects = effects_of(SHIPPED)
+    left = left_open(effects, {"device.residual_stress_MPa", "contact.air"})
+    assert set(effects) - set(left) == {"mean stress of the film", "humid air"}
+    assert left_open(effects, {"device.gap_um"}) == effects
 
 
 def test_a_plate_has_no_stress_and_a_switch_that_sticks_has_no_budget():

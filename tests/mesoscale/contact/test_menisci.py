@@ -560,8 +560,8 @@ def test_humidity_is_an_uncertain_input():
 @pytest.mark.parametrize(
     ("air", "said"),
     [
-        ({"humidity": 1.0}, "air.humidity = 1.0: Input should be less than 1"),
-        ({"humidity": -0.1}, "air.humidity = -0.1: Input should be greater than or equal to 0"),
+        ({"humidity": 1.0}, "air.humidity = 1.0: accepted is below 1"),
+        ({"humidity": -0.1}, "air.humidity = -0.1: accepted is 0 or more"),
         (
             {"contact_angles_deg": (0.0, 181.0)},
             "181 is no contact angle; accepted are 0 to 180 degrees",

@@ -209,7 +209,7 @@ def test_all_that_a_file_leaves_open_is_asked_at_once(tmp_path):
         "topography.channel",
         "--channel",
         "size: [1, 1], unit: um",
-        "--size 1x1 --unit um",
+        "--size 1x1 --unit um,nm",
     ):
         assert word in str(asked.value)
     stated = InstrumentSettings(files="*.h5", channel="second", unit="nm", size=(200.0, 200.0))

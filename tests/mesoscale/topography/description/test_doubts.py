@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import asperity as asp
+from mesoscale.topography.description.choice import _unit_doubt
 from mesoscale.topography.description.heights import Z
 from mesoscale.topography.height_synthesis import synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan
@@ -106,6 +107,34 @@ CAUSES = {
 @pytest.mark.parametrize("code", CAUSES)
 def test_it_fires_where_its_cause_is(code):
     assert code in codes(CAUSES[code]())
+
+
+@pytest.mark.parametrize(
+    ("factor", "length_nm"),
+    [
+        (1e3, 3000.0),  # heights in nm, taken as um
+        (1e3, 1e5),
+        (1.0, 10.0),  # a length in um, taken as nm
+        (1e-3, 3000.0),  # heights in nm, taken as pm
+    ],
+)
+def test_a_map_that_is_most_likely_in_another_unit_is_doubted(factor, length_nm):
+    record = {
+        "rms_nm": factor * PLAIN["rms"],
+        "length_x_nm": length_nm,
+    }
+    (doubt,) = _unit_doubt("map", record)
+    assert doubt.code == "unit_unlikely"
+    assert "--unit um,nm" in doubt.remedy
+
+
+@pytest.mark.parametrize(
+    ("rms_nm", "length_nm"),
+    [(4.0, 3000.0), (15.0, 250.0), (0.05, 500.0), (2000.0, 1e6), (0.0, 1000.0)],
+)
+def test_a_plain_map_is_in_its_unit(rms_nm, length_nm):
+    """Mica has 0.05 nm, an optical map of 1 mm may have 2 um."""
+    assert not list(_unit_doubt("map", {"rms_nm": rms_nm, "length_x_nm": length_nm}))
 
 
 def test_an_overhanging_line_is_named(tmp_path):

@@ -560,7 +560,7 @@ def test_a_channel_without_unit_takes_one(tmp_path):
 def test_numpy_files_take_a_size_and_a_unit(tmp_path):
     np.save(tmp_path / "a.npy", surface())
     asked = refusal(tmp_path / "a.npy")
-    assert "--size 1x1 --unit um" in asked
+    assert "--size 1x1 --unit um,nm" in asked
     scan = load(tmp_path / "a.npy", size=(500.0, 500.0), unit="nm")
     assert scan.lengths_nm == pytest.approx((500.0, 500.0))
     assert scan.heights_nm == pytest.approx(surface())
