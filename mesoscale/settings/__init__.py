@@ -6,6 +6,7 @@ from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.failure import FailureSettings
 from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import TABLE_1, DistributionRow, InputRow, InputsSettings
+from mesoscale.settings.lifetime import LifetimeSettings
 from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
 from mesoscale.settings.pad import PadSettings
 from mesoscale.settings.topography import (
@@ -25,6 +26,7 @@ __all__ = [
     "InputRow",
     "InputsSettings",
     "InstrumentSettings",
+    "LifetimeSettings",
     "MeasurementTable",
     "MeasurementsSettings",
     "PadSettings",

@@ -113,7 +113,7 @@ class SpreadSettings(Settings):
 class UnevenCharge(Settings):
     """Charge at the surface of the dielectric that differs from place to place, about its mean.
 
-    It is stated by waves, or by round patches at random places.
+    It is stated by waves, by round patches at random places, or by what a flat electrode feels.
     """
 
     waves: tuple[tuple[Positive, Positive], ...] = key(
@@ -126,12 +126,22 @@ class UnevenCharge(Settings):
         "[0, 1e14] 1/cm^2",
     )
 
+    felt: tuple[tuple[float, float], ...] = key(
+        (),
+        "separations (nm), rising, and what the charge adds to the square of the voltage there"
+        " (V^2)",
+        "nm, V^2",
+    )
+
     @model_validator(mode="after")
-    def _one_of_both(self) -> "UnevenCharge":
-        if bool(self.waves) == (self.patch_nm is not None):
-            raise ValueError("give either waves, or patch_nm with e_cm2")
-        if self.waves and self.e_cm2:
+    def _one_of_three(self) -> "UnevenCharge":
+        if bool(self.waves) + (self.patch_nm is not None) + bool(self.felt) != 1:
+            raise ValueError("give one of waves, felt, and patch_nm with e_cm2")
+        if self.patch_nm is None and self.e_cm2:
             raise ValueError("e_cm2 is that of patches; waves have a density of their own each")
+        places = [separation for separation, _ in self.felt]
+        if places != sorted(set(places)) or any(square < 0.0 for _, square in self.felt):
+            raise ValueError("felt: separations rise, and squares are not below 0")
         return self
 
 

@@ -144,6 +144,16 @@ class BeamSwitch(Switch):
             landed_share=landed_share,
         )
 
+    def held_nm(self, pad: PadCurves) -> tuple[Array, Array]:
+        """See `Switch.held_nm`; without a dimple, whose place is as its pad."""
+        moving = self._on(LocalPad(pad))
+        pull_in_V = moving.come_down().voltage
+        moving.creep(self.settings.hold_voltage_V or pull_in_V)
+        separation_nm = moving.separation_nm()
+        electric_nm = np.maximum(separation_nm, 0.0) + self.settings.dielectric_gap_nm
+        pulls = self.beam.wired * self.beam.weights_m / electric_nm**2
+        return separation_nm - self.beam.dimple_nm, pulls / pulls.sum()
+
     def closed_on(self, pad: PadCurves) -> Callable[[float, float], bool]:
         """Whether the closed beam is still closed at a voltage, with so many times the attraction
         of the pad; a function of both.

@@ -32,6 +32,8 @@ def uneven_V2(settings: DeviceSettings, separation_nm: ArrayLike) -> Array:
     gaps = np.maximum(np.asarray(separation_nm, float), 0.0)
     if settings.uneven is None:
         return np.zeros_like(gaps)
+    if settings.uneven.felt:
+        return np.interp(gaps, *np.array(settings.uneven.felt).T)
     if settings.uneven.patch_nm is None:
         periods_nm, densities = np.array(settings.uneven.waves).T
         wave_numbers = 2.0 * np.pi / periods_nm

@@ -127,6 +127,10 @@ class PlateSwitch(Switch):
         """
         return closed_on_pad(self.plate, pad, self.settings.hold_voltage_V, self.held_share)
 
+    def held_nm(self, pad: PadCurves) -> tuple[Array, Array]:
+        """See `Switch.held_nm`; it lies flat."""
+        return np.array([self.states_on(pad).hold_nm]), np.ones(1)
+
 
 def closed_on_pad(
     plate: Plate, pad: PadCurves, hold_voltage_V: float | None, held_share: float = 0.0

@@ -93,6 +93,10 @@ class ShiftedSwitch(Switch):
         pull_in_V, release_V = as_driven(states.pull_in_V, states.release_V, self.shift_V)
         return replace(states, pull_in_V=pull_in_V, release_V=release_V)
 
+    def held_nm(self, pad: PadCurves) -> tuple[Array, Array]:
+        """See `Switch.held_nm`."""
+        return self.felt.held_nm(pad)
+
     def closed_on(self, pad: PadCurves) -> Callable[[float, float], bool]:
         """See `Switch.closed_on`."""
         with self._told():

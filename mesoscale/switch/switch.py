@@ -128,8 +128,17 @@ class Switch(ABC):
         InputError : it never lands, or is not held.
         """
 
+    @abstractmethod
+    def held_nm(self, pad: PadCurves) -> tuple[Array, Array]:
+        """Separations of the places of the held electrode, and their shares of its pull.
+
+        Raises
+        ------
+        NotComputed, InputError : see `states_on`.
+        """
+
     def states(self, pad: PadCurves) -> States:
-        """The same on a pad that is continued as far as the switch presses it.
+        """`states_on` a pad that is continued as far as the switch presses it.
 
         Raises
         ------

@@ -27,6 +27,7 @@ NAMES = (
     "circuit",
     "humidity",
     "history",
+    "lifetime",
     "calibration",
 )
 OF_ALL_STAGES = {"accuracy", "stability", "report"}
@@ -34,7 +35,7 @@ ALIASES = {"sensitivity"}
 OTHER_FILES = {  # results that stand in no folder of their stage
     "inputs": {"inputs.csv"},
 }
-PARTS_OF_ROOMS = {"humidity": "answer"}
+PARTS_OF_ROOMS = {"humidity": "answer", "lifetime": "charging"}
 """Stages that are a module of a room, not a room."""
 OTHER_ROOMS_OF_EVIDENCE = {"attacks", "predictions", "switch"}
 """The door, all stages together, and a room of `mesoscale` that no stage has the name of."""
@@ -138,7 +139,6 @@ def test_a_result_of_before_has_a_place_now(before, now):
     ("target", "words"),
     [
         ("uq", "`uq` is `uncertainty` since 0.3.0"),
-        ("lifetime", "`lifetime` is `history` since 0.3.0"),
         (
             "results/paper/device/failure.json",
             "`results/paper/device/failure.json` is `results/paper/failure/failure.json` since"
@@ -152,12 +152,7 @@ def test_a_target_of_before_gives_one_line(workflow_in, target, words):
     assert done.stderr.splitlines()[-1] == f"ERROR {words}"
 
 
-def test_a_scene_and_a_tail_of_before_give_one_line(workflow_in):
-    (workflow_in.folder / "mine.yaml").write_text("extends: lifetime\n")
-    for scene in ("lifetime", "mine.yaml"):
-        done = workflow_in.run(scene, "inputs")
-        (line,) = (line for line in done.stderr.splitlines() if line.startswith("ERROR"))
-        assert line.endswith("scene=lifetime: `lifetime` is `history` since 0.3.0")
+def test_a_tail_of_before_gives_one_line(workflow_in):
     (workflow_in.folder / "mine.yaml").write_text("tails: [law, pad]\n")
     done = workflow_in.run("mine.yaml", "inputs")
     (line,) = (line for line in done.stderr.splitlines() if line.startswith("ERROR"))

@@ -79,6 +79,11 @@ def test_humidity_is_swept_where_a_scene_has_humid_air(plan):
     assert "humidity" in plan("humid") & plan("humid", "humidity")
 
 
+def test_a_life_is_found_where_a_scene_asks_for_it(plan):
+    assert "lifetime" not in plan("paper") | plan("ci") | plan("reduced") | plan("history")
+    assert "lifetime" in plan("lifetime") & plan("lifetime", "lifetime")
+
+
 def test_failures_of_a_plate_are_planned_without_the_circuit_that_it_has_not(workflow_in):
     path = workflow_in.folder / "plate.yaml"
     path.write_text("extends: ci\ndevice: {spring_N_per_m: 170}\nfailure: {probability: 1.0e-3}\n")
@@ -110,11 +115,13 @@ def test_every_target_of_every_scene_is_planned_or_refused_for_a_true_reason(eve
         "calibration": (
             "measurements.tables: none; name the tables of measurements (docs/calibration.md)"
         ),
+        "lifetime": "lifetime.years = null: give the life that is asked for, such as 10",
         "failure": (
             "failure.probability = null: give the share of the switches that may fail, such as 1e-6"
         ),
     }
     serves = {("humid", "humidity"), ("history", "history"), ("made_up", "calibration")}
+    serves |= {("lifetime", "lifetime")}
     refused = {pair: words for pair, words in every_plan.items() if words}
     expected = {
         (scene, target): f"ERROR {scene}: {reasons[target]}"

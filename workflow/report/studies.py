@@ -21,6 +21,7 @@ STAGES = {  # with a result that tells whether the scene has the stage
     "answer": "answer/pad_switch.json",
     "circuit": "circuit/circuit.json",
     "failure": "failure/failure.json",
+    "lifetime": "lifetime/lifetime.json",
 }
 OWN = {"contact": "contact/errors.csv", "answer": "answer/errors.csv"}
 """Tables that every run makes; others are those of the target `accuracy`."""

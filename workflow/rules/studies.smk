@@ -20,6 +20,7 @@ OF_STAGE = {
     "answer": (PRESSED, "switch" in SCENE.tails),
     "circuit": (PRESSED, "switch" in SCENE.tails),
     "failure": (PRESSED, "switch" in SCENE.tails and SCENE.failure.probability is not None),
+    "lifetime": (PRESSED, "switch" in SCENE.tails and SCENE.lifetime.years is not None),
 }
 IN_VOLTS = PRESSED if "switch" in SCENE.tails else {}
 ALSO_READ = {  # by one study alone
@@ -76,6 +77,7 @@ rule study:
             section: settings(section)
             for section in ("topography", "uncertainty", "failure", "hardness", "elastic")
         },
+        **({"lifetime": RESOLVED["lifetime"]} if "lifetime" in RESOLVED else {}),
         work=f"{RESULTS}/work/{{kind}}_{{stage}}",
     message:
         "study {wildcards.kind} of {wildcards.stage}"

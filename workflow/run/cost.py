@@ -39,6 +39,7 @@ TYPICAL_S = {  # on one core of a server
     "calibration": 60.0,
     "circuit": 30.0,
     "failure": 3000.0,
+    "lifetime": 200.0,
     "study": 25.0,
 }
 CYCLES = {  # contacts that a job closes and opens, to the largest force of the scene

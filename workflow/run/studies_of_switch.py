@@ -1,10 +1,11 @@
-"""The studies of pad, answer, circuit and failure: rows of their tables of accuracy and
+"""The studies of pad, answer, circuit, failure and lifetime: rows of their tables of accuracy and
 stability.
 """
 
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from mesoscale.settings import LifetimeSettings
 from mesoscale.studies import (
     answer_accuracy,
     answer_stability,
@@ -12,10 +13,13 @@ from mesoscale.studies import (
     circuit_stability,
     failure_accuracy,
     failure_stability,
+    lifetime_accuracy,
+    lifetime_stability,
     pad_accuracy,
     pad_stability,
 )
 from mesoscale.studies.driver import Progress, StudyRow, stability_rows
+from workflow.run.job import settings_from_job
 from workflow.run.pads import load_model, points_of_job, population_of_job
 
 
@@ -73,6 +77,19 @@ def stability_of_failure(snakemake: Any, progress: Progress) -> Iterator[StudyRo
     return stability_rows(failure_stability.hard_cases(population), progress)
 
 
+def accuracy_of_lifetime(snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Of the shift of held switches of the scene."""
+    points, _ = points_of_job(snakemake)
+    settings = settings_from_job(LifetimeSettings, snakemake.params.lifetime)
+    model = load_model([snakemake.input.model], points)
+    return lifetime_accuracy.accuracy_points(model, points.on_grid, settings, progress)
+
+
+def stability_of_lifetime(_snakemake: Any, progress: Progress) -> Iterator[StudyRow]:
+    """Extreme lives of made-up switches."""
+    return stability_rows(list(lifetime_stability.hard_cases()), progress)
+
+
 STUDIES_OF_SWITCH: dict[tuple[str, str], Callable[[Any, Progress], Iterator[StudyRow]]] = {
     ("accuracy", "pad"): accuracy_of_pad,
     ("stability", "pad"): stability_of_pad,
@@ -82,4 +99,6 @@ STUDIES_OF_SWITCH: dict[tuple[str, str], Callable[[Any, Progress], Iterator[Stud
     ("stability", "circuit"): stability_of_circuit,
     ("accuracy", "failure"): accuracy_of_failure,
     ("stability", "failure"): stability_of_failure,
+    ("accuracy", "lifetime"): accuracy_of_lifetime,
+    ("stability", "lifetime"): stability_of_lifetime,
 }

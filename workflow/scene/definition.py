@@ -2,9 +2,9 @@
 instead.
 """
 
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from atomistic.settings import ElasticSettings, HardnessSettings
 from mesoscale.settings import (
@@ -12,6 +12,7 @@ from mesoscale.settings import (
     FailureSettings,
     HistorySettings,
     InputsSettings,
+    LifetimeSettings,
     MeasurementsSettings,
     PadSettings,
     SceneContact,
@@ -57,7 +58,14 @@ class Scene(Settings):
     device: DeviceSettings = DeviceSettings()
     failure: FailureSettings = FailureSettings()
     history: HistorySettings = HistorySettings()
+    lifetime: LifetimeSettings = LifetimeSettings()
     measurements: MeasurementsSettings = MeasurementsSettings()
+
+    @model_serializer(mode="wrap")
+    def _without_life(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """A life that nobody asks for is left out, so that results without it stay as they were."""
+        asked = self.lifetime.years is not None
+        return {name: of for name, of in dump(self).items() if asked or name != "lifetime"}
 
     def stages(self) -> set[str]:
         """The stages among hardness, elastic and topography that this scene computes."""

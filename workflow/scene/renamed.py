@@ -9,11 +9,10 @@ STAGES = {
     "calibrate": "calibration",
     "curves": "contact",
     "device": "answer",
-    "lifetime": "history",
     "uq": "uncertainty",
 }
 """Targets, and folders of results where the stage had one."""
-SCENES = {"lifetime": "history"}
+SCENES: dict[str, str] = {}
 TAILS = {"pad": "switch"}
 MOVED = {
     "device/failure.json": "failure/failure.json",

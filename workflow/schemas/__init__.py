@@ -17,6 +17,7 @@ from workflow.schemas import (
     humidity,
     inputs,
     law,
+    lifetime,
     pad,
     studies,
     topography,
@@ -39,6 +40,7 @@ STAGES: dict[str, tuple[Table, ...]] = {
     "Circuit": circuit.TABLES,
     "Humidity": humidity.TABLES,
     "History": history.TABLES,
+    "Lifetime": lifetime.TABLES,
     "Calibration": calibration.TABLES,
     "Studies of all stages": studies.TABLES,
 }

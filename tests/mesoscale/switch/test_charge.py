@@ -239,8 +239,9 @@ def test_charge_of_a_device_can_vary():
 @pytest.mark.parametrize(
     ("changes", "line"),
     [
-        ({"uneven": {}}, "give either waves, or patch_nm"),
-        ({"uneven": {"patch_nm": 10.0, "waves": [(100.0, 1e11)]}}, "give either waves"),
+        ({"uneven": {}}, "give one of waves, felt, and patch_nm"),
+        ({"uneven": {"felt": [(2.0, 1.0), (1.0, 1.0)]}}, "separations rise"),
+        ({"uneven": {"patch_nm": 10.0, "waves": [(100.0, 1e11)]}}, "give one of waves"),
         (
             {"uneven": {"waves": [(100.0, 1e11)], "e_cm2": 1e11}},
             "waves have a density of their own",

@@ -17,6 +17,7 @@ from workflow.report.stages import (
     humidity,
     inputs,
     law,
+    lifetime,
     pad,
     sensitivity,
     topography,
@@ -25,7 +26,7 @@ from workflow.report.stages import (
 
 PARTS = (
     ("budget", "What it costs in volts", (budget,)),
-    ("switch", "The switch", (answer, pad, humidity, circuit, failure, history)),
+    ("switch", "The switch", (answer, pad, humidity, circuit, failure, lifetime, history)),
     ("contact", "The contact", (contact, law, uncertainty, sensitivity)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

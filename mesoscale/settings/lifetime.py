@@ -1,0 +1,69 @@
+"""Settings of the life of a switch that is held."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from asperity.guards.settings import Settings, key
+
+Positive = Annotated[float, Field(gt=0.0)]
+Range = tuple[Positive, Positive]
+RANGES = ("injection_A_m2", "barrier_eV", "traps_e_cm2")
+
+
+class LifetimeSettings(Settings):
+    """Charge that enters the dielectric while the switch is held (docs/lifetime.md); off by
+    default.
+
+    A range is the least and the largest value of what is one unknown for all devices.
+    """
+
+    years: float | None = key(
+        None, "life that is asked for; null: the stage is not run", "(0, 1000] years"
+    )
+    injection_A_m2: Range = key(
+        (1e-12, 4e-5),
+        "current that stays in the dielectric where it touches, at 1 MV/cm; largest: the whole"
+        " leakage of a film (Persano et al., J. Appl. Phys. 107 (2010) 114502), least: assumption",
+        "A/m^2",
+    )
+    barrier_eV: Range = key(
+        (4.33, 5.15),
+        "barrier of emission through gaps; titanium to nickel (Michaelson, J. Appl. Phys. 48 (1977)"
+        " 4729)",
+        "eV",
+    )
+    traps_e_cm2: Range = key(
+        (1e12, 1e13), "most charge that the surface holds; assumption", "1/cm^2"
+    )
+    electrode: Literal["negative", "positive"] = key(
+        "negative", "sign of the drive of the moving electrode; a positive one emits nothing"
+    )
+    contactless_V: float = key(
+        0.0,
+        "shift of the other sign by charge that needs no contact, a decade of time from 1 s on;"
+        " 1 V in minutes was seen at 25 V (Michalas et al. 2015, doi 10.2298/FUEE1501113M)",
+        "[0, 100] V",
+    )
+    optical_permittivity: float = key(
+        4.0, "relative permittivity of the dielectric to light, for its traps", "[1, 100]"
+    )
+    duty: float = key(1.0, "share of the time for which the switch is held", "(0, 1]")
+    other_polarity: float = key(
+        0.0,
+        "share of the time held with the other polarity, which undoes as much; not 0.5",
+        "[0, 1]",
+    )
+
+    @model_validator(mode="after")
+    def _rising(self) -> "LifetimeSettings":
+        for name in RANGES:
+            least, largest = getattr(self, name)
+            if least > largest:
+                raise ValueError(f"{name} = [{least:g}, {largest:g}]: give the least value first")
+        if self.other_polarity == 0.5:
+            raise ValueError(
+                "other_polarity = 0.5: the polarities sum to nothing, so that nothing is left to"
+                " follow; give another share"
+            )
+        return self

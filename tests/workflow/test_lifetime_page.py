@@ -1,0 +1,45 @@
+"""The section of the life of a held switch."""
+
+import pytest
+
+from workflow.report.stages.lifetime import _allowed, three_sentences
+
+ROWS = [
+    {"guess": guess, "time_s": time, "release_q50_V": str(volts)}
+    for guess, end in (("least", 12.0), ("central", 20.0), ("most", 40.0))
+    for time, volts in (("0.0", 10.0), ("1.0", 11.0), ("3e8", end))
+]
+
+
+def life(decades, holds):
+    guesses = {
+        name: {"volts_a_decade": decade, "highest_hold_V": hold, "tried_V": 90.0}
+        for name, decade, hold in zip(("least", "central", "most"), decades, holds, strict=True)
+    }
+    return {
+        "years": 10.0,
+        "hold_V": 70.0,
+        "touching": 0.0123,
+        "contact_factor": 1.5,
+        "guesses": guesses,
+    }
+
+
+def test_three_sentences_say_what_a_life_does():
+    said = three_sentences(life((8.0, 9.0, 11.0), (90.0, 60.0, None)), ROWS)
+    assert said.count(". ") == 2
+    assert "from 10.0 V to 20.0 V (12.0 V to 40.0 V" in said
+    assert "1.23% of the pulled area touches" in said.replace(" %", "%")
+    assert "for each 8.0 to 11 V more of hold; published lives" in said
+
+
+@pytest.mark.parametrize("decades", [(None, None, None)])
+def test_a_rate_that_no_volt_changes_is_said(decades):
+    assert "does not depend on the hold voltage here" in three_sentences(
+        life(decades, (None, None, None)), ROWS
+    )
+
+
+def test_the_largest_hold_is_said_by_guess():
+    said = _allowed(life((8.0, 9.0, 11.0), (90.0, 60.0, None)))
+    assert "at least 90.0 V (least charge), 60.0 V (central charge), none (most charge)" in said

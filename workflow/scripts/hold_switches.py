@@ -1,0 +1,21 @@
+"""Hold the switches of all points for a life, and say what charge does to them.
+
+In: inputs.csv, pad/model.h5.  Out: lifetime/lifetime.csv and lifetime/holds.csv (V, s),
+lifetime/lifetime.json.
+"""
+
+from mesoscale.charging.lifetime import hold_rows, life_rows, lives_of, summary
+from mesoscale.settings import LifetimeSettings
+from workflow.files.results import write_csv, write_json
+from workflow.run.job import job, settings_from_job
+from workflow.run.pads import load_model, points_of_job
+
+with job(snakemake) as run:
+    points, _ = points_of_job(snakemake)
+    settings = settings_from_job(LifetimeSettings, snakemake.params.lifetime)
+    model = load_model([snakemake.input.model], points)
+    lives = lives_of(model, points.on_grid, settings, run.progress)
+    write_csv(snakemake.output.life, life_rows(lives))
+    holds = list(hold_rows(lives))
+    write_csv(snakemake.output.holds, holds)
+    write_json(snakemake.output.summary, summary(lives, holds), run.provenance)
