@@ -126,15 +126,15 @@ def test_a_pressed_map_is_drawn_and_says_what_it_is():
     [
         (True, {"h_macro": 5.0, "h_prime": 1.0}, "0.00256"),
         (False, {"h_macro": 5.0, "h_prime": 1.0}, "0.00944"),
-        (True, {"h_macro": 5.0}, "0.00102"),
-        (True, {}, "0.00102"),
+        (True, {"h_macro": 5.0}, "0.000819"),
+        (True, {}, "0.000819"),
         (False, {}, "0.00229"),
     ],
 )
 def test_a_map_beyond_memory_is_refused(monkeypatch, periodic, hardness, needed):
-    monkeypatch.setattr("mesoscale.checks.machine_MB", lambda: 1)
+    monkeypatch.setattr("mesoscale.checks.machine_MB", lambda: 0.5)
     with pytest.raises(
-        asp.InputError, match=f"needs {needed} GB of memory, this machine has 0.001; take a part"
+        asp.InputError, match=f"needs {needed} GB of memory, this machine has 0.0005; take a part"
     ):
         asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=periodic, **hardness)
 

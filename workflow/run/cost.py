@@ -68,7 +68,7 @@ UNDECIDED = 0.4
 ANSWERED_TIMES = 1.1
 """Switches that the answer solves beside its points, for each of them: other devices, what frees
 those that stick."""
-PRESSED_AGAIN = 12
+PRESSED_AGAIN = 24
 """Pads of a point that the answer presses: other hardness, other numerical choices, and roughness
 that frees."""
 TRIED_HUMIDITIES = 10

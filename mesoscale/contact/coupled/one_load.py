@@ -116,17 +116,20 @@ def _nested(
     while min(maps[-1].shape) >= 2 * COARSEST:
         maps.append(coarser(maps[-1]))
         bases.append(bases[-1].coarser(maps[-1].shape))
-    pressure = None
+    guess = None
     while len(maps) > 1:
-        coarse = search(maps.pop(), bases.pop(), pressure, separation)
-        coarse.solve(COARSE_TOLERANCE)
-        separation = coarse.separation
-        field = coarse.pressure.reshape(coarse.shape).astype(np.float32)  # for its memory
-        pressure = finer(field, maps[-1].shape, base)
-        del coarse
-    contact = search(heights, base, pressure, separation)
+        guess, separation = _coarse(search(maps.pop(), bases.pop(), guess, separation))
+        guess = finer(guess, maps[-1].shape, base)
+    contact = search(heights, base, guess, separation)
+    del guess  # a large map needs its memory
     settled = contact.solve(TOLERANCE)
     return contact.pressed(settled)
+
+
+def _coarse(contact: "Search") -> tuple[Array, float]:
+    """Pressures, in single precision, and separation of a coarse grid."""
+    contact.solve(COARSE_TOLERANCE)
+    return contact.pressure.reshape(contact.shape).astype(np.float32), contact.separation
 
 
 def coarser(heights: Array) -> Array:
@@ -276,6 +279,7 @@ class Search(ABC):
             length = gained / work
             left = self.left(*advance(sites, length, unit, change, moved, misfit, self.pressure))
             add(length * unit, moved, self.gap)
+            del moved  # the next one takes its memory
             self._drift(length * unit * size(sites, change))
         return length
 
