@@ -7,7 +7,12 @@ from typing import Any
 import numpy as np
 
 from asperity.film import Shown
-from asperity.pressed_map import map_on_sides, material_of_map, surface_of_maps
+from asperity.pressed_map import (
+    map_on_sides,
+    material_of_map,
+    remark_on_sides,
+    surface_of_maps,
+)
 from mesoscale.contact.compiling import announced
 from mesoscale.contact.cycle import Cycle, run_cycle
 from mesoscale.contact.surface import ContactAt
@@ -74,6 +79,7 @@ def roughness(
     from SurfaceTopography import Topography  # slow to import
 
     surface, sides = map_on_sides(heights, side_nm)
+    remark_on_sides(surface, sides, calls=1)
     if not (sides > 0.0).all():
         raise InputError(f"side_nm = {side_nm!r:.60}: accepted are lengths in nm, above 0")
     topography = Topography(surface, tuple(sides.tolist()), periodic=periodic)

@@ -321,12 +321,16 @@ def map_on_sides(
     surface = checked_heights(heights, float(sides.max()), square=False)
     if sides.size == 1:
         sides = np.array([sides[0], sides[0] * surface.shape[1] / surface.shape[0]])
-    _remark_on_sides(surface, sides)
     return surface, sides
 
 
-def _remark_on_sides(surface: np.ndarray, sides: np.ndarray) -> None:
-    """Warn where a length is most likely in another unit than nm."""
+def remark_on_sides(surface: np.ndarray, sides: np.ndarray, calls: int) -> None:
+    """Warn where a length is most likely in another unit than nm.
+
+    Parameters
+    ----------
+    calls : between this one and the user's line, which the warning names.
+    """
     rms_nm = float(surface.std())
     side_nm = float(sides[0])
     pixel_nm = side_nm / len(surface)
@@ -334,7 +338,7 @@ def _remark_on_sides(surface: np.ndarray, sides: np.ndarray) -> None:
         warnings.warn(
             f"side_nm = {side_nm:g}: pixels of {pixel_nm:.2g} nm under an RMS height of"
             f" {rms_nm:.3g} nm; lengths are in nm, is this one in um?",
-            stacklevel=5,  # the caller of asp.press or asp.cycle
+            stacklevel=2 + calls,
         )
 
 
@@ -478,6 +482,7 @@ def surface_of_maps(
     (nm).
     """
     surface, sides = map_on_sides(heights, side_nm)
+    remark_on_sides(surface, sides, calls=2)
     shape = surface.shape
     spacing = float(sides[0]) / shape[0]
     if not abs(sides[1] / shape[1] / spacing - 1.0) <= 1e-3:

@@ -65,17 +65,22 @@ class Body(Settings):
     poisson: float = key(..., "Poisson's ratio", "[0, 0.5)")
     density_g_cm3: float = key(..., "density", "[0.01, 30] g/cm^3")
     expansion_ppm_C: float = key(..., "thermal expansion", "[-1000, 1000] 1e-6/C")
+    beams_are_plated: bool = key(False, "whether its beams have the modulus of plated nickel")
     source: str = key(..., "where the numbers are from")
 
     @property
     def of_a_beam(self) -> dict[str, float]:
-        """Keys of a device whose beam is of it."""
-        return {
-            "youngs_modulus_GPa": self.young_GPa,
+        """Keys of a device whose beam is of it; the modulus of plated nickel is the device's own
+        default, with its scatter.
+        """
+        keys = {
             "poisson_ratio": self.poisson,
             "density_g_cm3": self.density_g_cm3,
             "excess_expansion_ppm_C": round(self.expansion_ppm_C - SUBSTRATE_PPM_C, 6),
         }
+        if not self.beams_are_plated:
+            keys["youngs_modulus_GPa"] = self.young_GPa
+        return keys
 
 
 @cache
@@ -270,6 +275,13 @@ def beam_of(words: Sequence[str]) -> str:
     """The material that the words of a device name, as they write it; empty where they do not."""
     stated = (word.partition("=") for word in words)
     return next((value for name, _, value in stated if name == "material"), "")
+
+
+def beam_is_plated(words: Sequence[str]) -> bool:
+    """Whether words name a material whose beams are plated, and no modulus."""
+    name = beam_of(words)
+    stated = any(word.startswith("youngs_modulus_GPa=") for word in words)
+    return bool(name) and not stated and body_of(f"material={name}", name).beams_are_plated
 
 
 def _value_and_error(word: str, name: str, text: str) -> tuple[float, float]:

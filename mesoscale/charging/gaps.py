@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 GAPS_NM = np.concatenate([[0.0], np.arange(0.25, 60.0, 0.5)])
 """Gaps whose charge is computed; the first touches. Across 60 nm nothing is emitted."""
-EDGES_NM = np.array([0.0, 4.0, 8.0, 12.0, 16.0, 22.0])
+EDGES_NM = np.array([0.0, 4.0, 8.0, 12.0, 16.0, 22.0, np.inf])
 """Upper ends of the classes of gaps whose charge is uneven beside that of the others."""
 SEPARATIONS = 5
 """Of the held electrode, which stand for all, equally pulled."""

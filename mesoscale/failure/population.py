@@ -50,14 +50,21 @@ class FailureNumerics:
     fewest: int = 32
     """Of these may be solved at least."""
 
-    rounds: int = 5
+    rounds: int = 8
     """Switches are added so often where a failure is likely."""
+
+    own_rounds: int = 3
+    """The last of these are at the scene's own hold voltage and attraction: a curved limit is then
+    known where it counts most."""
 
     batch: int = 16
     """So many at once."""
 
     runs: int = 64
-    """Switches that correct a probability."""
+    """Switches that correct a probability at most."""
+
+    known: float = 0.15
+    """Relative error of that correction that is enough; that of the samples is near 0.1."""
 
     wide: float = 2.0
     """Half of the first switches have this many times the deviations of the inputs: rare events are
@@ -183,33 +190,39 @@ class Population:
         reserves = np.full(len(z), np.nan)
         for k, point in enumerate(self.points(z, hold_V)):
             with suppress(InputError):
-                pad = self.press(point, 1, _surface(z[k])) if pads is None else pads[k]
-                switch = Attracted(point.device, pad.curves, self.release_V, coarse=True)
-                reserves[k] = switch.reserve()
+                pad = self.press(point, 1, surface_of(z[k])) if pads is None else pads[k]
+                reserves[k] = self._quickly(point, pad.curves).reserve()
         return reserves
 
     def failed(self, z: Array, hold_V: float, times: float) -> NDArray[np.bool_]:
         """Which switches fail, shape (m,); one that cannot be solved has failed."""
         points = self.points(z, hold_V)
         return np.array(
-            [self._fails(point, _surface(row), times) for row, point in zip(z, points, strict=True)]
+            [
+                self._fails(point, surface_of(row), times)
+                for row, point in zip(z, points, strict=True)
+            ]
         )
 
     def _fails(self, point: Point, surface: int, times: float) -> bool:
-        def fails(pad: PadCurves, coarse: bool = False) -> bool:
-            return Attracted(point.device, pad, self.release_V, coarse).fails(times)
+        def fails(pad: PadCurves) -> bool:
+            return Attracted(point.device, pad, self.release_V).fails(times)
 
         try:
             pad = self.press(point, 1, surface)
             failed = fails(pad.curves)
-            if any(fails(half, coarse=True) != failed for half in pad.halves):
+            if any(self._quickly(point, half).fails(times) != failed for half in pad.halves):
                 surer = self.press(point, FAILURE.surer_cells, surface)
                 failed = fails(surer.curves)
         except InputError:
             return True
         return failed
 
+    def _quickly(self, point: Point, pad: PadCurves) -> Attracted:
+        """A switch that is only compared with others."""
+        return Attracted(point.device, pad, self.release_V, coarse=True, quickly=True)
 
-def _surface(z: Array) -> int:
+
+def surface_of(z: Array) -> int:
     """Number of the surfaces of a switch."""
     return crc32(z.tobytes()) % FAILURE.surfaces

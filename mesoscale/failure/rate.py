@@ -10,7 +10,7 @@ likely. Such switches also correct it.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from mesoscale.answer.points import values_at
 from mesoscale.answer.release import WORKS
 from mesoscale.errors import InputError
 from mesoscale.failure.population import FAILURE, Population
+from mesoscale.failure.springs import Sprung, least_spring
 from mesoscale.switch import switch_of
 from mesoscale.uncertainty.rare_events import (
     LEAST,
@@ -148,8 +149,10 @@ def learn(population: Population, tell: Tell, seed: int = 0) -> ReserveResponse:
         if rounds == FAILURE.rounds:
             return response
         # then such as nearly fail by the response so far
-        drawn_V = float(rng.uniform(curve_V[0], curve_V[-1]))
-        times = WORKS[rounds % len(WORKS)]
+        times, drawn_V = 1.0, scene_V
+        if rounds < FAILURE.rounds - FAILURE.own_rounds:
+            times = WORKS[rounds % len(WORKS)]
+            drawn_V = float(rng.uniform(curve_V[0], curve_V[-1]))
         likely = response.sample(times, drawn_V, seed + rounds).points
         chosen = rng.permutation(len(likely))[: FAILURE.batch]
         batches = [(likely[chosen], drawn_V)]
@@ -185,13 +188,21 @@ def corrected(
     response: ReserveResponse, times: float, hold_V: float, seed: int = 0, runs: int = FAILURE.runs
 ) -> Corrected:
     """Probability of a failure with `times` the attraction, the response corrected by so many
-    runs.
+    runs, or fewer where these know enough (`FAILURE.known`).
     """
     sampled = response.sample(times, hold_V, seed, repeats=REPEATS)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0xC0]))
     chosen = rng.permutation(len(sampled.points))[:runs]
-    failed = response.population.failed(sampled.points[chosen], hold_V, times)
-    return correct(sampled, failed, sampled.chance[chosen])
+    failed = np.zeros(0, bool)
+    probability = correct(sampled, failed, sampled.chance[:0])
+    while failed.size < chosen.size and (
+        not probability.events or probability.scatter > FAILURE.known
+    ):
+        batch = chosen[failed.size : failed.size + FAILURE.batch]
+        more = response.population.failed(sampled.points[batch], hold_V, times)
+        failed = np.concatenate([failed, more])
+        probability = correct(sampled, failed, sampled.chance[chosen[: failed.size]])
+    return probability
 
 
 def furthest_allowed(values: Array, probability: Array, allowed: float) -> float | None:
@@ -248,43 +259,6 @@ def just_allowed(response: ReserveResponse, hold_V: float, allowed: float) -> fl
     return float(np.exp(high))
 
 
-def least_spring(
-    response: ReserveResponse, likely: Sampled, times: float, hold_V: float, allowed: float
-) -> float | None:
-    """Least spring, in the unit of its setting, all else varying, with which no more switches fail
-    than allowed.
-
-    A weaker spring makes those fail that nearly fail with more attraction. So some of `likely` are
-    solved with other springs, and correct its probability as in `corrected`. None where even the
-    largest of `FAILURE.springs` is too weak, or where none is likely.
-
-    Parameters
-    ----------
-    likely : the failures with about the allowed probability; see `just_allowed`.
-    """
-    if not len(likely.points):
-        return None
-    population = response.population
-    now = getattr(population.settings, population.spring)
-    rng = np.random.default_rng(np.random.SeedSequence([0, 0x5B1]))
-    chosen = rng.permutation(len(likely.points))[: FAILURE.spring_runs]
-
-    def too_many(logarithm: float) -> bool:
-        changed = population.settings.model_copy(
-            update={population.spring: now * float(np.exp(logarithm))}
-        )
-        failed = replace(population, settings=changed).failed(likely.points[chosen], hold_V, times)
-        return likely.probability * float(np.mean(failed / likely.chance[chosen])) > allowed
-
-    low, high = np.log(FAILURE.springs).tolist()
-    if too_many(high):
-        return None
-    while high - low > FAILURE.near:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if too_many(middle) else (low, middle)
-    return now * float(np.exp(high))
-
-
 def failure_rate(
     population: Population, allowed: float, tell: Tell
 ) -> tuple[dict[str, Any], list[dict[str, float]]]:
@@ -303,12 +277,13 @@ def failure_rate(
     likely = response.sample(
         just_allowed(response, population.hold_V, allowed), population.hold_V, 0
     )
+    sprung = Sprung(population, likely, population.hold_V)
     step = 0.8 / len(WORKS)
     laws = []
     for number, times in enumerate(WORKS):
         curve = [row for row in rows if row["attraction"] == times]
         tell_of_law = _within(tell, 0.2 + number * step, step)
-        laws.append(_of_law(response, times, allowed, likely, curve, tell_of_law))
+        laws.append(_of_law(response, times, allowed, sprung, curve, tell_of_law))
     return {
         "release_V": population.release_V,
         "allowed": allowed,
@@ -354,7 +329,7 @@ def _of_law(
     response: ReserveResponse,
     times: float,
     allowed: float,
-    likely: Sampled,
+    sprung: Sprung,
     curve: Sequence[dict[str, float]],
     tell: Tell,
 ) -> dict[str, Any]:
@@ -362,7 +337,7 @@ def _of_law(
 
     Parameters
     ----------
-    likely : the failures with about the allowed probability; see `just_allowed`.
+    sprung : switches that fail with about the allowed probability; see `just_allowed`.
     curve : rows of this attraction.
     tell : of this law alone.
     """
@@ -374,7 +349,7 @@ def _of_law(
     rates = response.rates(times, hold_V)
     failing = asdict(corrected(response, times, hold_V))
     tell(0.2, f"{law}, least spring")
-    spring = least_spring(response, likely, times, hold_V, allowed)
+    spring = least_spring(sprung, times, allowed)
     tell(0.8, f"{law}, largest hold voltage")
     there = None
     if largest_V is not None:

@@ -375,8 +375,11 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
     unknowns = mechanics.unknowns
     freedoms = slice(2, 2 + unknowns)
     bends = assembled(mechanics.bending_N_m)[freedoms, freedoms]
-    pulls = assembled(mechanics.pulled)[freedoms, freedoms]
+    all_pulls = assembled(mechanics.pulled)
+    pulls = all_pulls[freedoms, freedoms]
     z0 = mechanics.rest.ravel()[freedoms]
+    # the ends of a tilted beam are not at the height of its middle
+    pulled_at_rest = (all_pulls @ mechanics.rest.ravel())[freedoms]
     share = np.concatenate([[0.0], np.cumsum(stated.sizes_m)]) / stated.length_m
     excess_N = -(stated.tension_N + heat) - euler_MPa(settings) * newton_MPa
     u = np.zeros(unknowns)
@@ -391,8 +394,8 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
         u = side * height * buckled - z0
     moved_nm = np.inf
     for _ in range(REST_STEPS):
-        gradient = pulls @ (z0 + u)
-        more = heat + stretching * (0.5 * u @ pulls @ u + z0 @ pulls @ u)
+        gradient = pulls @ u + pulled_at_rest
+        more = heat + stretching * (0.5 * u @ pulls @ u + pulled_at_rest @ u)
         left = bends @ u + stated.tension_N * (pulls @ u) + more * gradient
         stiffness = (
             bends + (stated.tension_N + more) * pulls + stretching * np.outer(gradient, gradient)

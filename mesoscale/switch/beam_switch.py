@@ -12,7 +12,7 @@ from mesoscale.pad.curves import PadCurves, attracting, continued
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
 from mesoscale.switch.beam import COARSE_ELEMENTS, ELEMENTS, Beam, beam_of
-from mesoscale.switch.beam_kernels import OPENING_NM
+from mesoscale.switch.beam_kernels import CLOSING_NM, OPENING_NM
 from mesoscale.switch.beam_motion import MovingBeam, PullIn
 from mesoscale.switch.switch import States, Switch, never_closes
 
@@ -154,17 +154,23 @@ class BeamSwitch(Switch):
         pulls = self.beam.wired * self.beam.weights_m / electric_nm**2
         return separation_nm - self.beam.dimple_nm, pulls / pulls.sum()
 
-    def closed_on(self, pad: PadCurves) -> Callable[[float, float], bool]:
+    def closed_on(self, pad: PadCurves, quickly: bool = False) -> Callable[[float, float], bool]:
         """Whether the closed beam is still closed at a voltage, with so many times the attraction
         of the pad; a function of both.
 
         The beam is closed with its hold voltage, at least with that of its pull-in. Pressures are
         linear in the attraction, so that the tables of the pad are made once.
 
+        Parameters
+        ----------
+        quickly : it opens in the steps of closing, which moves the logarithm of the attraction that
+            it bears by 0.03 at most (24 switches of `ci`).
+
         Raises
         ------
         InputError : see `states_on`; the function raises NotComputed, too.
         """
+        opening_nm = CLOSING_NM if quickly else OPENING_NM
         local = LocalPad(pad)
         bare = LocalPad(attracting(pad, 0.0))
         snapped = self._on(local)
@@ -176,7 +182,7 @@ class BeamSwitch(Switch):
             if not moving.creep(close_V):
                 return False
             held_fF = self.held_share * moving.capacitance_fF()
-            return moving.still_held(voltage, OPENING_NM, held_fF)
+            return moving.still_held(voltage, opening_nm, held_fF)
 
         return still_closed
 

@@ -23,15 +23,22 @@ class Attracted:
     ----------
     release_V : a switch that is still closed at this voltage has failed.
     coarse : see `switch_of`.
+    quickly : see `closed_on` of a beam.
     """
 
     def __init__(
-        self, settings: DeviceSettings, pad: PadCurves, release_V: float, coarse: bool = False
+        self,
+        settings: DeviceSettings,
+        pad: PadCurves,
+        release_V: float,
+        coarse: bool = False,
+        quickly: bool = False,
     ) -> None:
         self.settings = settings
         self.pad = pad
         self.release_V = release_V
         self.coarse = coarse
+        self.quickly = quickly
         self._doublings = 0
         self._still_closed: Callable[[float, float], bool] | None = None
 
@@ -47,7 +54,7 @@ class Attracted:
             try:
                 if self._still_closed is None:
                     switch = switch_of(self.settings, self.coarse)
-                    self._still_closed = switch.closed_on(self.pad)
+                    self._still_closed = switch.closed_on(self.pad, self.quickly)
                 return self._still_closed(self.release_V, times)
             except NotComputed:
                 if self._doublings == DOUBLINGS:

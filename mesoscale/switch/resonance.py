@@ -17,10 +17,11 @@ def lowest_kHz(beam: Beam, settings: DeviceSettings) -> float:
     mechanics = beam.mechanics
     freedoms = slice(2, 2 + mechanics.unknowns)
     bends = assembled(mechanics.bending_N_m)[freedoms, freedoms]
-    pulls = assembled(mechanics.pulled)[freedoms, freedoms]
+    all_pulls = assembled(mechanics.pulled)
+    pulls = all_pulls[freedoms, freedoms]
     mass_kg_m2 = 1e3 * settings.density_g_cm3 * settings.thickness_um * UM
     mass = mass_kg_m2 * assembled(mechanics.products_m2.sum(axis=3))[freedoms, freedoms]
-    gradient = pulls @ mechanics.rest.ravel()[freedoms]
+    gradient = (all_pulls @ mechanics.rest.ravel())[freedoms]
     stretched = mechanics.stretching_N_m * np.outer(gradient, gradient)
     stiffness = bends + beam.tension_N * pulls + stretched
     lowest = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[0, 0])[0]

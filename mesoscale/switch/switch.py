@@ -149,9 +149,13 @@ class Switch(ABC):
             raise InputError(line)
         return replace(states, deepened=continued is not pad)
 
-    def closed_on(self, pad: PadCurves) -> Callable[[float, float], bool]:
+    def closed_on(self, pad: PadCurves, quickly: bool = False) -> Callable[[float, float], bool]:
         """Whether the closed switch is still closed at a voltage, with so many times the attraction
         of the pad; a function of both.
+
+        Parameters
+        ----------
+        quickly : in longer steps, where a switch is moved in steps.
 
         Raises
         ------

@@ -8,11 +8,18 @@ import pytest
 import yaml
 
 from asperity.door import described, scene_lines, topography_of
-from asperity.words import SCALAR_KEYS, assumed_lines, bodies, device_of, material_of
+from asperity.words import (
+    SCALAR_KEYS,
+    assumed_lines,
+    beam_is_plated,
+    bodies,
+    device_of,
+    material_of,
+)
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.definitions import BY_NAME
-from mesoscale.settings.device import MEASURABLE
+from mesoscale.settings.device import MEASURABLE, PLATED_NICKEL
 
 
 @pytest.mark.parametrize(
@@ -203,6 +210,18 @@ def test_bodies_have_a_source_and_are_beams():
     for body in bodies().values():
         assert re.search(r"\((16th ed., )?(19|20)\d\d\)", body.source)
         DeviceSettings(**body.of_a_beam)
+
+
+def test_a_beam_of_nickel_is_plated_and_its_contact_is_bulk():
+    plated = DeviceSettings(**device_of(["material=nickel"]))
+    assert plated.youngs_modulus_GPa == DeviceSettings().youngs_modulus_GPa
+    assert plated.spread.youngs_modulus_GPa == PLATED_NICKEL
+    assert beam_is_plated(["material=Ni", "gap_um=2"])
+    stated = ["material=nickel", "youngs_modulus_GPa=199.5"]
+    assert DeviceSettings(**device_of(stated)).youngs_modulus_GPa == 199.5
+    assert not beam_is_plated(stated)
+    assert not beam_is_plated(["material=gold"])
+    assert bodies()["nickel"].young_GPa == 199.5
 
 
 @pytest.mark.parametrize(

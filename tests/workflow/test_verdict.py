@@ -262,6 +262,9 @@ def test_the_loop_marks_where_it_lands_loses_half_and_opens():
         for k, (u, d) in enumerate(zip(up, down, strict=True))
     ]
     assert marks(rows) == {"lands": (70.0, 95.0), "half": (40.0, 60.0), "opens": (10.0, 17.0)}
+    # a loop of both polarities, as of a charged switch
+    other = [{**row, "voltage_V": str(-float(row["voltage_V"]))} for row in rows[:0:-1]]
+    assert marks([*other, *rows]) == marks(rows)
 
 
 @pytest.mark.parametrize(

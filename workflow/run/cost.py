@@ -38,7 +38,7 @@ TYPICAL_S = {  # on one core of a server
     "report": 8.0,
     "calibration": 60.0,
     "circuit": 30.0,
-    "failure": 3000.0,
+    "failure": 700.0,
     "lifetime": 200.0,
     "study": 25.0,
 }
@@ -68,7 +68,7 @@ UNDECIDED = 0.4
 ANSWERED_TIMES = 1.1
 """Switches that the answer solves beside its points, for each of them: other devices, what frees
 those that stick."""
-PRESSED_AGAIN = 12
+PRESSED_AGAIN = 24
 """Pads of a point that the answer presses: other hardness, other numerical choices, and roughness
 that frees."""
 TRIED_HUMIDITIES = 10

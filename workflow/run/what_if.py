@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from asperity.guards.foreign_text import as_file_name, shown, wrapped
-from asperity.words import device_of
+from asperity.words import beam_is_plated, device_of
 from mesoscale.answer.release import answer, answered_in_part
 from mesoscale.answer.switches import PadModel
 from mesoscale.answer.what_if import with_device
@@ -140,6 +140,9 @@ def what_if(scene: PressedScene, words: Sequence[str]) -> Iterator[dict[str, Any
         stated = scene.device.model_dump() | changed
         if "youngs_modulus_GPa" in changed and departs == PLATED_NICKEL:
             stated["spread"].pop("youngs_modulus_GPa")  # another metal is no plated nickel
+        if beam_is_plated(changes):  # the modulus and the scatter that are the defaults
+            stated.pop("youngs_modulus_GPa")
+            stated["spread"].pop("youngs_modulus_GPa")
         device = DeviceSettings(**stated)
         if device.kind != scene.device.kind:
             raise InputError(

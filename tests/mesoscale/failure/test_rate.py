@@ -16,8 +16,8 @@ from mesoscale.failure.rate import (
     just_allowed,
     learn,
     least_rms_nm,
-    least_spring,
 )
+from mesoscale.failure.springs import Sprung, least_spring
 from mesoscale.pad.curves import attracting
 from mesoscale.settings import FailureSettings
 from mesoscale.studies.answer_stability import made_up_pad, published_beam
@@ -126,9 +126,8 @@ def test_the_probability_is_that_of_brute_force():
     assert 0.004 < brute_force(plates, plates.hold_V, 1.42, about, known)[0] < 0.1
     # so does less attraction bear weaker springs
     likely = response.sample(just_allowed(response, plates.hold_V, 0.01), plates.hold_V, 0)
-    weaker, spring = (
-        least_spring(response, likely, times, plates.hold_V, 0.01) for times in (1.29, 1.42)
-    )
+    sprung = Sprung(plates, likely, plates.hold_V)
+    weaker, spring = (least_spring(sprung, times, 0.01) for times in (1.29, 1.42))
     assert weaker is not None
     assert spring is not None
     assert weaker < spring

@@ -14,6 +14,7 @@ from mesoscale.switch.beam import beam_of, euler_MPa, rests_as_stated
 from mesoscale.switch.beam_kernels import elongation
 from mesoscale.switch.beam_motion import MovingBeam
 from mesoscale.switch.beam_switch import BeamSwitch
+from mesoscale.switch.resonance import lowest_kHz
 from mesoscale.units import VACUUM_PERMITTIVITY
 
 DEFAULT = published_beam(gap_um=2.3)
@@ -188,6 +189,27 @@ def test_heat_is_a_stress_and_moves_a_bow():
     assert switch_of(cantilever).pull_in_V == switch_of(cold).pull_in_V
 
 
+@pytest.mark.parametrize(
+    "hot",
+    [
+        {"temperature_C": 40.0, "bow_nm": 200.0},
+        {"temperature_C": -20.0, "bow_nm": -300.0},
+        {"residual_stress_MPa": -60.0, "gap_um": 20.0},
+    ],
+    ids=["hot", "cold", "buckled"],
+)
+def test_a_tilt_adds_a_straight_line_wherever_a_beam_rests(hot):
+    """Axial force does not bend a line, and clamped ends leave its length between them."""
+    level = beam_of(published_beam(**hot), 64)
+    tilted = beam_of(published_beam(**hot, tilt_nm=1500.0), 64)
+    line_nm = 1500.0 * (np.linspace(0.0, 1.0, 65) - 0.5)
+    added_nm = 1e9 * (tilted.rest_nodal[:, 0] - level.rest_nodal[:, 0])
+    assert added_nm == pytest.approx(line_nm, abs=0.05)
+    assert tilted.tension_N == pytest.approx(level.tension_N, rel=1e-4)
+    frequencies = [lowest_kHz(beam, published_beam(**hot)) for beam in (level, tilted)]
+    assert frequencies[1] == pytest.approx(frequencies[0], rel=1e-6)
+
+
 PUBLISHED = (
     (350.0, 0.0, 20.3),
     (350.0, 100.0, 35.8),
@@ -228,6 +250,50 @@ def test_a_published_cantilever_pulls_in_within_1_percent():
         ends="cantilever", youngs_modulus_GPa=169.0, poisson_ratio=0.06, **beam
     )
     assert switch_of(settings).pull_in_V == pytest.approx(37.84, rel=0.01)
+
+
+MEASURED = ((210.0, 27.95), (310.0, 13.78), (410.0, 9.13), (510.0, 6.57))
+"""Length (um) and measured pull-in (V) of bridges of polysilicon, 100 x 1.5 um over 1.18 um, drawn
+by 0.9 mN (Tilmans and Legtenberg, Sens. Actuators A 45 (1994) 67). Numbers are from memory of later
+papers, which give 151 or 166 GPa."""
+
+
+@pytest.mark.parametrize(("length_um", "volts"), MEASURED)
+def test_measured_bridges_pull_in_between_their_two_moduli_or_within_3_percent(length_um, volts):
+    pull_ins = [
+        switch_of(
+            published_beam(
+                length_um=length_um,
+                width_um=100.0,
+                thickness_um=1.5,
+                gap_um=1.18,
+                dielectric_nm=0.0,
+                youngs_modulus_GPa=modulus_GPa,
+                bends_as="beam",
+                poisson_ratio=0.0,
+                residual_stress_MPa=0.9e-3 / (100e-6 * 1.5e-6) * 1e-6,
+            )
+        ).pull_in_V
+        for modulus_GPa in (151.0, 166.0)
+    ]
+    assert 0.97 * pull_ins[0] < volts < 1.03 * pull_ins[1]
+
+
+def test_a_measured_cantilever_pulls_in_within_4_percent():
+    """20 x 5 mm x 57 um over 92 um, 155.8 GPa: 68.5 V (Hu, Chang and Huang, Sens. Actuators A 112
+    (2004) 155; numbers from memory). Half of all lengths pulls in at half the voltage.
+    """
+    half = published_beam(
+        ends="cantilever",
+        length_um=10000.0,
+        width_um=2500.0,
+        thickness_um=28.5,
+        gap_um=46.0,
+        dielectric_nm=0.0,
+        youngs_modulus_GPa=155.8,
+        poisson_ratio=0.06,
+    )
+    assert 2.0 * switch_of(half).pull_in_V == pytest.approx(68.5, rel=0.04)
 
 
 def test_a_short_electrode_pulls_a_cantilever_as_a_force_at_its_place():

@@ -1,9 +1,11 @@
 """Probabilities of rare events against exact ones."""
 
 import numpy as np
+import openturns as ot
 import pytest
 from scipy.special import ndtr
 
+from mesoscale.uncertainty.likeliest_process import likeliest
 from mesoscale.uncertainty.rare_events import (
     LEAST,
     Corrected,
@@ -164,3 +166,48 @@ def test_a_process_through_a_plane_with_noise_knows_the_noise(seed):
     mean, deviation = Process(x, x.sum(axis=1) + 0.03 * rng.normal(size=40))(np.zeros((1, 2)))
     assert mean[0] == pytest.approx(0.0, abs=0.03)
     assert deviation[0] == pytest.approx(0.03, rel=0.3)
+
+
+def test_a_process_is_that_of_openturns():
+    """Mean and deviation, with a trend, noise, and an input that does not vary."""
+    rng = np.random.default_rng(0)
+    x = rng.normal(size=(80, 6))
+    x[:, 3] = 1.0
+    y = 2.0 + x[:, 0] - 0.5 * x[:, 1] + 0.3 * np.sin(2.0 * x[:, 2]) + 0.05 * rng.normal(size=80)
+    ours = Process(x, y)
+    varied = [0, 1, 2, 4, 5]
+    scaled = 2.0 * (x[:, varied] - x[:, varied].min(axis=0)) / np.ptp(x[:, varied], axis=0) - 1.0
+    found = likeliest(scaled, y)
+    kernel = ot.MaternModel(found.lengths, [found.amplitude], 2.5)
+    kernel.activateNuggetFactor(True)
+    kernel.setNuggetFactor(found.noise)
+    trend = ot.LinearBasisFactory(5).build()
+    fitter = ot.GaussianProcessFitter(ot.Sample(scaled), ot.Sample(y[:, None]), kernel, trend)
+    fitter.setOptimizeParameters(False)
+    fitter.run()
+    regression = ot.GaussianProcessRegression(fitter.getResult())
+    regression.run()
+    z = 1.5 * rng.normal(size=(50, 6))
+    places = 2.0 * (z[:, varied] - x[:, varied].min(axis=0)) / np.ptp(x[:, varied], axis=0) - 1.0
+    mean, deviation = ours(z)
+    covariance = ot.GaussianProcessConditionalCovariance(regression.getResult())
+    variance = np.array(covariance.getConditionalMarginalVariance(ot.Sample(places)))[:, 0]
+    theirs = np.array(regression.getResult().getMetaModel()(ot.Sample(places)))[:, 0]
+    assert mean == pytest.approx(theirs, abs=1e-6)
+    assert deviation == pytest.approx(np.sqrt(variance), abs=1e-6)
+
+
+def test_a_run_that_openturns_stops_by_rounding_is_made_with_other_numbers(monkeypatch):
+    seeds = []
+
+    def stopped_once(self):
+        seeds.append(1)
+        if len(seeds) == 1:
+            raise TypeError("InvalidArgumentException : The variance estimate must be >= 0")
+        return run(self)
+
+    run = ot.SubsetSampling.run
+    monkeypatch.setattr(ot.SubsetSampling, "run", stopped_once)
+    found = sample_event(lambda z: (2.0 - z[:, 0], np.full(len(z), 1e-9)), 1, 0.0, 1, repeats=1)
+    assert found.probability == pytest.approx(0.0228, rel=0.3)
+    assert len(seeds) == 2

@@ -52,8 +52,10 @@ def describe(results: Results) -> Iterator[Block]:
 
 def marks(loop: list[CsvRow]) -> dict[str, tuple[float, float]]:
     """Voltage and capacitance (fF) where the central switch lands, has lost half of its held
-    capacitance, and jumps open; without those that the loop does not reach.
+    capacitance, and jumps open; without those that the loop does not reach. They are those of a
+    positive drive.
     """
+    loop = [row for row in loop if float(row["voltage_V"]) >= 0.0]
     voltage = column(loop, "voltage_V")
     up_fF = column(loop, "up_central_fF")
     down_fF = column(loop, "down_central_fF")

@@ -1,0 +1,97 @@
+"""The least spring with which no more switches fail than allowed, all else varying.
+
+A weaker spring makes those fail that nearly fail with more attraction. So some of these are solved
+with other springs, and correct their probability as runs correct a response
+(`mesoscale.failure.rate`). Their pads are pressed with the stiffest spring, which is asked for
+first: a stiff switch that pulls in above its hold voltage presses its pad hardest. They serve all
+weaker springs and all laws of attraction.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.answer.points import Point
+from mesoscale.errors import InputError
+from mesoscale.failure.population import FAILURE, Population, Pressed, surface_of
+from mesoscale.switch.reserve import Attracted
+from mesoscale.uncertainty.rare_events import Sampled
+
+Array = NDArray[np.float64]
+
+
+class Sprung:
+    """Switches that nearly fail, each on one pad, with other springs.
+
+    What is known of a switch tells more: one that fails also does with a weaker spring or more
+    attraction.
+
+    Parameters
+    ----------
+    likely : the failures with about the allowed probability by the response.
+    """
+
+    def __init__(self, population: Population, likely: Sampled, hold_V: float) -> None:
+        rng = np.random.default_rng(np.random.SeedSequence([0, 0x5B1]))
+        chosen = rng.permutation(len(likely.points))[: FAILURE.spring_runs]
+        self.population = population
+        self.hold_V = hold_V
+        self.z = likely.points[chosen]
+        self.chance = likely.chance[chosen]
+        self.by_response = likely.probability
+        self.own_spring = float(getattr(population.settings, population.spring))
+        self._pads: list[tuple[float, Pressed] | None] = [None] * len(chosen)
+        self._known: list[list[tuple[float, float, bool]]] = [[] for _ in chosen]
+
+    def probability(self, logarithm: float, times: float) -> float:
+        """That of a failure with a spring, by the logarithm of its share of the scene's."""
+        changed = self.population.settings.model_copy(
+            update={self.population.spring: self.own_spring * float(np.exp(logarithm))}
+        )
+        points = replace(self.population, settings=changed).points(self.z, self.hold_V)
+        failed = [self._fails(k, point, logarithm, times) for k, point in enumerate(points)]
+        return self.by_response * float(np.mean(failed / self.chance))
+
+    def _fails(self, k: int, point: Point, logarithm: float, times: float) -> bool:
+        for stiffness, attraction, failed in self._known[k]:
+            if failed and stiffness >= logarithm and attraction <= times:
+                return True
+            if not failed and stiffness <= logarithm and attraction >= times:
+                return False
+        try:
+            curves = self._pad(k, point, logarithm).curves
+            failed = Attracted(point.device, curves, self.population.release_V).fails(times)
+        except InputError:  # tells nothing of other springs
+            return True
+        self._known[k].append((logarithm, times, failed))
+        return failed
+
+    def _pad(self, k: int, point: Point, logarithm: float) -> Pressed:
+        """The pad of a switch, pressed anew for a spring that is stiffer than any before."""
+        remembered = self._pads[k]
+        if remembered is None or remembered[0] < logarithm:
+            pad = self.population.press(point, 1, surface_of(self.z[k]))
+            remembered = (logarithm, pad)
+            self._pads[k] = remembered
+        return remembered[1]
+
+
+def least_spring(sprung: Sprung, times: float, allowed: float) -> float | None:
+    """Least spring, in the unit of its setting, with which no more switches fail than allowed.
+
+    None where even the largest of `FAILURE.springs` is too weak, or where none nearly fails.
+    """
+    if not len(sprung.z):
+        return None
+
+    def too_many(logarithm: float) -> bool:
+        return sprung.probability(logarithm, times) > allowed
+
+    low, high = np.log(FAILURE.springs).tolist()
+    if too_many(high):
+        return None
+    while high - low > FAILURE.near:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if too_many(middle) else (low, middle)
+    return sprung.own_spring * float(np.exp(high))
