@@ -97,6 +97,9 @@ class FailureNumerics:
     springs: tuple[float, float] = (0.5, 2.0)
     """Springs among which the least is sought, over that of the scene."""
 
+    stiff_springs: int = 4
+    """Of these, from the stiffest to the scene's own, as long as pads cannot be pressed."""
+
     spring_runs: int = 32
     """Switches that are solved with each spring. They know a probability to some 25 %, and a spring
     to 1 or 2 %."""

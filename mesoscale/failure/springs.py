@@ -43,6 +43,7 @@ class Sprung:
         self.own_spring = float(getattr(population.settings, population.spring))
         self._pads: list[tuple[float, Pressed] | None] = [None] * len(chosen)
         self._known: list[list[tuple[float, float, bool]]] = [[] for _ in chosen]
+        self._refused = [np.inf] * len(chosen)
 
     def probability(self, logarithm: float, times: float) -> float:
         """That of a failure with a spring, by the logarithm of its share of the scene's."""
@@ -59,10 +60,13 @@ class Sprung:
                 return True
             if not failed and stiffness <= logarithm and attraction >= times:
                 return False
+        if logarithm >= self._refused[k]:
+            return True
         try:
             curves = self._pad(k, point, logarithm).curves
             failed = Attracted(point.device, curves, self.population.release_V).fails(times)
-        except InputError:  # tells nothing of other springs
+        except InputError:  # as every stiffer one, which presses harder; it tells of no weaker one
+            self._refused[k] = logarithm
             return True
         self._known[k].append((logarithm, times, failed))
         return failed
@@ -80,7 +84,9 @@ class Sprung:
 def least_spring(sprung: Sprung, times: float, allowed: float) -> float | None:
     """Least spring, in the unit of its setting, with which no more switches fail than allowed.
 
-    None where even the largest of `FAILURE.springs` is too weak, or where none nearly fails.
+    A stiff switch that pulls in above its hold voltage may press harder than its pad bears. Then
+    weaker springs are tried, down to the scene's own. None where all of these fail too often, or
+    where none nearly fails.
     """
     if not len(sprung.z):
         return None
@@ -88,8 +94,10 @@ def least_spring(sprung: Sprung, times: float, allowed: float) -> float | None:
     def too_many(logarithm: float) -> bool:
         return sprung.probability(logarithm, times) > allowed
 
-    low, high = np.log(FAILURE.springs).tolist()
-    if too_many(high):
+    low, stiffest = np.log(FAILURE.springs).tolist()
+    tried = np.linspace(stiffest, 0.0, FAILURE.stiff_springs).tolist()
+    high = next((logarithm for logarithm in tried if not too_many(logarithm)), None)
+    if high is None:
         return None
     while high - low > FAILURE.near:
         middle = 0.5 * (low + high)

@@ -196,3 +196,24 @@ def test_settings_of_failures_outside_their_range_are_one_line(given, line):
     with pytest.raises(ValidationError, match=line) as refused:
         FailureSettings.model_validate(given)
     assert refused.value.error_count() == 1
+
+
+def test_the_least_spring_is_found_where_stiff_switches_press_too_hard():
+    """Pads that bear the scene's own spring and no stiffer one."""
+    plates = population()
+    own = plates.settings.spring_N_per_m
+
+    def press(point, *_):
+        if point.device.spring_N_per_m > 1.001 * own:
+            raise InputError("the pad is closed to its mean plane")
+        return known_pad(point)
+
+    response = learn(plates, lambda *_: None)
+    likely = response.sample(1.42, plates.hold_V, 0)
+    bearing = replace(plates, press=press)
+    found, known = (
+        least_spring(Sprung(switches, likely, plates.hold_V), 1.0, 0.01)
+        for switches in (bearing, plates)
+    )
+    assert found == pytest.approx(known, rel=0.03)
+    assert found < own
