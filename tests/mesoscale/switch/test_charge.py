@@ -246,7 +246,7 @@ def test_charge_of_a_device_can_vary():
             {"uneven": {"waves": [(100.0, 1e11)], "e_cm2": 1e11}},
             "waves have a density of their own",
         ),
-        ({"uneven": {"waves": [(0.0, 1e11)]}}, "greater than 0"),
+        ({"uneven": {"waves": [(0.0, 1e11)]}}, "accepted is above 0"),
         ({"charge_e_cm2": 1e15}, "charge_e_cm2"),
         ({"charge_e_cm2": 1e10, "dielectric_nm": 0.0}, "without thickness holds no charge"),
         ({"uneven": {"patch_nm": 1.0}, "dielectric_nm": 0.0}, "without thickness holds no charge"),
