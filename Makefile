@@ -64,4 +64,6 @@ docs-setup: setup
 	@touch $@
 
 .uv/bin/uv:
+	@python3 -m pip --version > /dev/null 2>&1 || { echo "make: $$(command -v python3) has no pip:\
+	 leave the active environment (deactivate), or install pip" >&2; exit 1; }
 	@python3 -m pip install --quiet --disable-pip-version-check --target .uv uv==$(UV_VERSION)

@@ -191,6 +191,8 @@ def _closing(cell: PadCurves, separation_nm: Array) -> Array:
     rows = rows_at(separation_nm, cell.separation_nm, cell.closing)
     slope = (cell.closing[:, 1] - cell.closing[:, 0]) / (cell.separation_nm[1] - nearest)
     rows += np.minimum(separation_nm - nearest, 0.0) * slope[:, None]
+    # where asperities merged in the last step, repulsion fell, and a line would fall below 0
+    rows[0] = np.maximum(rows[0], 0.0)
     as_flats = [np.zeros_like(rows[0]), -cell.flats.pull_GPa(separation_nm)]
     return np.where(separation_nm > farthest, as_flats, rows)
 

@@ -278,6 +278,21 @@ def test_cells_that_touch_first_at_one_separation_are_not_shifted():
     assert pad.curves.closing == pytest.approx(pad.mean(pad.closing)[:, ::-1], rel=1e-12)
 
 
+def test_cells_whose_repulsion_fell_at_last_do_not_pull_by_it():
+    """Asperities that merge carry less than apart. The cells that stand below go on by that step."""
+    first_nm = 12.0 + 3.0 * np.random.default_rng(3).normal(size=12)
+    pad = cells_with_wells(first_nm)
+    separation = pad.grid.separation_nm
+    push = np.maximum(first_nm[:, None] - separation, 0.0)
+    push[:, -1] = 0.5 * push[:, -2]
+    closing = np.stack([push, pad.closing[:, 1]], axis=1)
+    opening = pad.opening.copy()
+    opening[:, :, 0] = np.where(np.isfinite(opening[:, :, 0]), push[:, None], np.nan)
+    curves = replace(pad, closing=closing, opening=opening).curves
+    assert (curves.closing[0] >= 0.0).all()
+    assert (curves.opening[:, 0][np.isfinite(curves.opening[:, 0])] >= 0.0).all()
+
+
 def test_a_film_whose_places_are_alike_is_one_without_places():
     grid, cells = PadGrid(np.array([60.0, 30.0, 27.0]), np.array([2])), sample_cells(MIDDLE, 4)
     alike, plain = (pressed(inputs, cells, grid) for inputs in (film(0.0), MIDDLE))
