@@ -279,7 +279,7 @@ def test_cells_that_touch_first_at_one_separation_are_not_shifted():
 
 
 def test_cells_whose_repulsion_fell_at_last_do_not_pull_by_it():
-    """Asperities that merge carry less than apart. The cells that stand below go on by that step."""
+    """Asperities that merge carry less than apart; cells that stand below go on by that step."""
     first_nm = 12.0 + 3.0 * np.random.default_rng(3).normal(size=12)
     pad = cells_with_wells(first_nm)
     separation = pad.grid.separation_nm
