@@ -97,10 +97,10 @@ class ShiftedSwitch(Switch):
         """See `Switch.held_nm`."""
         return self.felt.held_nm(pad)
 
-    def closed_on(self, pad: PadCurves) -> Callable[[float, float], bool]:
+    def closed_on(self, pad: PadCurves, quickly: bool = False) -> Callable[[float, float], bool]:
         """See `Switch.closed_on`."""
         with self._told():
-            closed = self.felt.closed_on(pad)
+            closed = self.felt.closed_on(pad, quickly)
             by_charge = abs(self.shift_V) >= self.felt.pull_in_V
 
         def still_closed(voltage: float, times: float) -> bool:

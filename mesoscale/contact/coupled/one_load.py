@@ -8,7 +8,7 @@ the same step). Nested grids, each of half the sites a side, find the sets where
 little. Steps are in single precision and add to pressures and gaps in double precision.
 
 A surface that yields has p <= H, and g <= 0 where p = H (Almqvist et al.,
-doi:10.1016/j.triboint.2006.11.009): what would lie below the flat has flowed. A closing ends with
+doi:10.1016/j.triboint.2005.11.008): what would lie below the flat has flowed. A closing ends with
 these pressures, too, unless it relieves sites that have yielded. Such a load is found among
 separations.
 """
