@@ -88,9 +88,10 @@ def test_charge_that_closes_a_switch_alone_sticks(device):
     assert nearly.release_V == 0.0  # the other polarity would free it
 
 
-def test_a_closed_switch_is_asked_at_what_it_feels():
-    plain = switch_of(BEAM).closed_on(PAD)
-    shifted = switch_of(charged(shift_V=4.0)).closed_on(PAD)
+@pytest.mark.parametrize("quickly", [False, True])
+def test_a_closed_switch_is_asked_at_what_it_feels(quickly):
+    plain = switch_of(BEAM).closed_on(PAD, quickly)
+    shifted = switch_of(charged(shift_V=4.0)).closed_on(PAD, quickly)
     release_V = states(BEAM).release_V
     for voltage in (0.9 * release_V, 1.1 * release_V):
         assert shifted(voltage + 4.0, 1.0) == plain(voltage, 1.0)
