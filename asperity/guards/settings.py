@@ -93,7 +93,7 @@ def _explained(kind: type[BaseModel], errors: list[Any]) -> list[str]:
         name = _name_of(kind, item)
         words = _accepted(kind, item)
         if item["type"] == "missing":
-            name = f"{name}: is missing"
+            name = f"{name} is missing"
             words = "it has no default"
         elif name:
             name = f"{name} = {_shown(item['input'])}"
@@ -128,12 +128,15 @@ def _accepted(kind: type[BaseModel], item: Any) -> str:
 
 
 def _name_of(kind: type[BaseModel], item: Any) -> str:
-    """The key of a mistake; of a value with a choice of types without the type that was tried."""
+    """The key of a mistake; of a value with a choice of types without the type that was tried.
+
+    Pydantic names such types in brackets: ``tuple[...]``.
+    """
     place = item["loc"]
     field = kind.model_fields.get(str(place[0])) if place else None
     if field is not None and len(place) == 2 and _has_a_choice(field.annotation):
         place = place[:1]
-    return " ".join(".".join(map(str, place)).split())
+    return " ".join(".".join(str(part) for part in place if "[" not in str(part)).split())
 
 
 def _has_a_choice(annotation: Any) -> bool:

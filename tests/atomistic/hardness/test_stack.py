@@ -424,8 +424,8 @@ def test_metals_are_checked_on_loading(tmp_path):
     with pytest.raises(InputError, match="grain_nm is of a metal, and every metal needs it"):
         load_material(path)
     path.write_text(text.replace("  eta: 0.558572\n", ""))
-    with pytest.raises(InputError, match=r"eam\.eta: Field required"):
+    with pytest.raises(InputError, match=r"eam\.eta is missing"):
         load_material(path)
     path.write_text(text.replace("  area_error: 0.05", "  # area_error: 0.05"))
-    with pytest.raises(InputError, match=r"film_base\.area_error: Field required"):
+    with pytest.raises(InputError, match=r"film_base\.area_error is missing"):
         load_material(path)

@@ -124,7 +124,7 @@ def test_a_doubtful_measurement_is_said_and_kept():
     ("changes", "words"),
     [
         ({"measured": {"pull_in_V": "72"}}, "value and its standard error, as in 72"),
-        ({"measured": {"pull_in_V": "72 +- 0"}}, "greater than 0"),
+        ({"measured": {"pull_in_V": "72 +- 0"}}, "accepted is above 0"),
         ({"measured": {"resonance_kHz": "52 +- 1"}}, "needs the density of the beam"),
         (
             {"measured": {"capacitance_fF": "52 +- 1"}, "spring_N_per_m": 5.0},

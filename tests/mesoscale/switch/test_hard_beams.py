@@ -48,7 +48,7 @@ def test_a_spread_that_leaves_no_device_and_a_beam_without_lumps_are_refused_in_
     wide = {"dielectric_nm": {"distribution": "normal", "values": [0, 0.5], "relative": True}}
     with pytest.raises(
         InputError,
-        match=r"spread\.dielectric_nm: reaches dielectric_nm = -129.1: .*equal to 0; narrow",
+        match=r"spread\.dielectric_nm: reaches dielectric_nm = -129.1: accepted is 0 nm or more",
     ):
         check_spread(published_beam(spread=wide))
     check_spread(published_beam())
