@@ -137,14 +137,14 @@ class HeldGaps:
                 )
                 filtered = waves * (felt / (level + device.dielectric_gap_nm))
                 fields.append(irfft2(filtered, s=heights.shape))
-            at = np.interp(np.log(local), np.log(levels), np.arange(LEVELS))
-            below = np.minimum(at.astype(int), LEVELS - 2)
-            part = at - below
+            level_number = np.interp(np.log(local), np.log(levels), np.arange(LEVELS))
+            below = np.minimum(level_number.astype(int), LEVELS - 2)
+            share = level_number - below
             stacked = np.stack(fields)
             rows, columns = np.indices(local.shape)
             near = stacked[below, :, rows, columns]
             far = stacked[below + 1, :, rows, columns]
-            field = (near + part[..., None] * (far - near)).reshape(-1, EDGES_NM.size)
+            field = (near + share[..., None] * (far - near)).reshape(-1, EDGES_NM.size)
             electric = self.middle_nm + rise + device.dielectric_gap_nm
             squares[place] = electric**2 * (field.T @ field) / len(field)
         return squares
@@ -172,14 +172,14 @@ def _shares(gaps_nm: Array) -> Array:
     """Share of places at each of `GAPS_NM` and beyond, between two of which a place is divided."""
     size = gaps_nm.size
     touching = gaps_nm <= 0.0
-    beyond = gaps_nm >= GAPS_NM[-1]
-    between = gaps_nm[~touching & ~beyond]
-    at = np.maximum(np.interp(between, GAPS_NM[1:], np.arange(1.0, GAPS_NM.size)), 1.0)
-    lower = np.minimum(at.astype(int), GAPS_NM.size - 2)
-    shares = np.bincount(lower, 1.0 - (at - lower), GAPS_NM.size + 1)
-    shares += np.bincount(lower + 1, at - lower, GAPS_NM.size + 1)
+    far = gaps_nm >= GAPS_NM[-1]
+    between = gaps_nm[~touching & ~far]
+    class_number = np.maximum(np.interp(between, GAPS_NM[1:], np.arange(1.0, GAPS_NM.size)), 1.0)
+    lower = np.minimum(class_number.astype(int), GAPS_NM.size - 2)
+    shares = np.bincount(lower, 1.0 - (class_number - lower), GAPS_NM.size + 1)
+    shares += np.bincount(lower + 1, class_number - lower, GAPS_NM.size + 1)
     shares[0] += touching.sum()
-    shares[-1] += beyond.sum()
+    shares[-1] += far.sum()
     return shares / size
 
 

@@ -142,7 +142,7 @@ def life_with(
         np.array([states.release_V]),
     )
     times = times_s(settings)
-    most = np.zeros(RISES_NM.size)
+    largest_squares = np.zeros(RISES_NM.size)
     for rates in guesses(settings).values():
         shifts = shifts_V(
             hold_V - shift, GAPS_NM, held_s(times, settings), gaps.device, settings, rates
@@ -150,16 +150,18 @@ def life_with(
         classes = gaps.class_V(shifts)
         squares = np.einsum("ct,rcd,dt->rt", classes, gaps.uneven, classes)
         largest = squares[:, np.argmax(squares[TELLING])]
-        if largest[TELLING] > most[TELLING]:
-            most = largest
-    if most[TELLING] <= 0.0:
+        if largest[TELLING] > largest_squares[TELLING]:
+            largest_squares = largest
+    if largest_squares[TELLING] <= 0.0:
         return life
     both = [(states.pull_in_V, states.release_V)]
-    both += [_charged_states(gaps, curves, strength * most) for strength in STRENGTHS[1:]]
+    both += [
+        _charged_states(gaps, curves, strength * largest_squares) for strength in STRENGTHS[1:]
+    ]
     closes, lets_go = np.array(both).T
     return replace(
         life,
-        squares_V2=np.array(STRENGTHS) * float(most[TELLING]),
+        squares_V2=np.array(STRENGTHS) * float(largest_squares[TELLING]),
         pull_in_V=closes,
         release_V=lets_go,
     )
@@ -239,20 +241,23 @@ def life_rows(lives: Lives) -> Iterator[dict[str, Any]]:
     times = np.concatenate([[0.0], times_s(lives.settings)])
     for guess in GUESSES:
         rates = guesses(lives.settings)[guess]
-        shifts, closes, lets_go, kept = [], [], [], []
+        shifts = []
+        closes = []
+        lets_go = []
+        still_holds = []
         for life in lives.devices:
             shift, squares = life.charged(life.hold_V, times, lives.settings, rates)
             pull_in, release = life.voltages(shift, squares)
             shifts.append(shift)
             closes.append(pull_in)
             lets_go.append(release)
-            kept.append(_failing(life, life.hold_V, shift, squares)[1] > 0.0)
+            still_holds.append(_failing(life, life.hold_V, shift, squares)[1] > 0.0)
         central_shift, central_squares = lives.central.charged(
             lives.central.hold_V, times, lives.settings, rates
         )
         pull_in, release = lives.central.voltages(central_shift, central_squares)
         stuck = np.array(lets_go) <= 0.0
-        lost = ~np.array(kept)
+        lost = ~np.array(still_holds)
         for place, time in enumerate(times.tolist()):
             row: dict[str, Any] = {"guess": guess, "time_s": time}
             row |= {

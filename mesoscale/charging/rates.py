@@ -98,13 +98,13 @@ def lost_share(
         mean = np.where(growth > 1e-6, -np.expm1(-growth) / np.maximum(growth, 1e-6), 1.0)
         steps = np.log(start[:, None] * np.diff(edges) / lowering[:, None]) + slowness[:, 1:]
         after = np.minimum(np.logaddexp.accumulate(steps + np.log(mean), axis=1), NEVER)
-        asked = np.log(times)
+        log_times = np.log(times)
     logarithms = np.log(lost)
     shares = np.empty((start.size, times.size))
     for row, known in zip(shares, after, strict=True):
-        row[:] = np.interp(asked, known, logarithms)
-        early = asked < known[0]
-        row[early] = asked[early] - known[0] + logarithms[0]
+        row[:] = np.interp(log_times, known, logarithms)
+        early = log_times < known[0]
+        row[early] = log_times[early] - known[0] + logarithms[0]
     return np.exp(shares)
 
 
