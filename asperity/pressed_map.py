@@ -229,7 +229,7 @@ def press(
     model, inputs = material_of_map(e_star, h_macro, h_prime)
     by_load = loads_nN is not None
     steps = _steps(loads_nN, approach_nm)
-    few = steps.size <= FEW_LOADS and h_prime == 0.0
+    few = steps.size <= FEW_LOADS and inputs.hardness.constant
     surface, spacing = surface_of_maps(
         heights, counterface, side_nm, bool(periodic), contact_at, steps.size, few
     )
@@ -239,7 +239,7 @@ def press(
     check_hardness(inputs, settings)
     offset = float(surface.mean())
     lowest = float(surface.min())
-    if _one_by_one(surface, steps, by_load, inputs, spacing):
+    if few or _one_by_one(surface, steps, by_load, inputs, spacing):
         states = _each(surface, periodic, steps, by_load, inputs, settings)
     else:
         states = _way(surface, periodic, steps, by_load, inputs, settings)
@@ -345,14 +345,13 @@ def remark_on_sides(surface: np.ndarray, sides: np.ndarray, calls: int) -> None:
 def _one_by_one(
     surface: np.ndarray, steps: np.ndarray, by_load: bool, inputs: ContactInputs, spacing: float
 ) -> bool:
-    """Whether loads or approaches are found one by one, which costs less where they are few.
+    """Whether many loads or approaches are found one by one, as few are: the larger the contact,
+    the more of them cost less than the way past them.
 
     With a size effect several contacts can carry a load, and the way decides which one is meant.
     """
     if not inputs.hardness.constant:
         return False
-    if steps.size <= FEW_LOADS:
-        return True
     if by_load:
         slope = math.sqrt(sum(float((np.diff(surface, axis=k) ** 2).mean()) for k in (0, 1)))
         pressure = steps[-1] / (surface.size * spacing**2)

@@ -239,25 +239,24 @@ def _failing(life: SwitchLife, hold_V: float, shift: Array, squares: Array) -> A
 def life_rows(lives: Lives) -> Iterator[dict[str, Any]]:
     """Rows of lifetime/lifetime.csv: a guess and a time each; the first time is before any hold."""
     times = np.concatenate([[0.0], times_s(lives.settings)])
+    holds_V = np.array([life.hold_V for life in lives.devices])
     for guess in GUESSES:
         rates = guesses(lives.settings)[guess]
         shifts = []
         closes = []
         lets_go = []
-        still_holds = []
         for life in lives.devices:
             shift, squares = life.charged(life.hold_V, times, lives.settings, rates)
             pull_in, release = life.voltages(shift, squares)
             shifts.append(shift)
             closes.append(pull_in)
             lets_go.append(release)
-            still_holds.append(_failing(life, life.hold_V, shift, squares)[1] > 0.0)
         central_shift, central_squares = lives.central.charged(
             lives.central.hold_V, times, lives.settings, rates
         )
         pull_in, release = lives.central.voltages(central_shift, central_squares)
         stuck = np.array(lets_go) <= 0.0
-        lost = ~np.array(still_holds)
+        lost = np.array(lets_go) >= holds_V[:, None]
         for place, time in enumerate(times.tolist()):
             row: dict[str, Any] = {"guess": guess, "time_s": time}
             row |= {

@@ -193,7 +193,7 @@ class Population:
         reserves = np.full(len(z), np.nan)
         for k, point in enumerate(self.points(z, hold_V)):
             with suppress(InputError):
-                pad = self.press(point, 1, surface_of(z[k])) if pads is None else pads[k]
+                pad = self.press(point, 1, surfaces_number(z[k])) if pads is None else pads[k]
                 reserves[k] = self._quickly(point, pad.curves).reserve()
         return reserves
 
@@ -202,7 +202,7 @@ class Population:
         points = self.points(z, hold_V)
         return np.array(
             [
-                self._fails(point, surface_of(row), times)
+                self._fails(point, surfaces_number(row), times)
                 for row, point in zip(z, points, strict=True)
             ]
         )
@@ -226,6 +226,6 @@ class Population:
         return Attracted(point.device, pad, self.release_V, coarse=True, quickly=True)
 
 
-def surface_of(z: Array) -> int:
+def surfaces_number(z: Array) -> int:
     """Number of the surfaces of a switch."""
     return crc32(z.tobytes()) % FAILURE.surfaces

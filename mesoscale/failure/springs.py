@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mesoscale.answer.points import Point
 from mesoscale.errors import InputError
-from mesoscale.failure.population import FAILURE, Population, Pressed, surface_of
+from mesoscale.failure.population import FAILURE, Population, Pressed, surfaces_number
 from mesoscale.switch.reserve import Attracted
 from mesoscale.uncertainty.rare_events import Sampled
 
@@ -75,7 +75,7 @@ class Sprung:
         """The pad of a switch, pressed anew for a spring that is stiffer than any before."""
         remembered = self._pads[k]
         if remembered is None or remembered[0] < logarithm:
-            pad = self.population.press(point, 1, surface_of(self.z[k]))
+            pad = self.population.press(point, 1, surfaces_number(self.z[k]))
             remembered = (logarithm, pad)
             self._pads[k] = remembered
         return remembered[1]
