@@ -7,7 +7,7 @@ between which squares of voltages are straight. The rates are not known: three g
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,13 @@ from mesoscale.switch import switch_of
 from mesoscale.switch.charge import shift_V
 from mesoscale.switch.shifted import as_driven, as_felt
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:  # it compiles, and is imported where a scene asks for ageing
+    from mesoscale.charging.ageing import Ageing, Surroundings
 
+Array = NDArray[np.float64]
+Squares = tuple[Array | float, Array | float]
+
+NOT_AGED: Squares = (0.0, 0.0)
 YEAR_S = 3.15576e7
 FIRST_S = 1.0
 PER_DECADE = 2
@@ -70,6 +75,7 @@ class SwitchLife:
     hold_V : drive that holds it.
     squares_V2 : U^2 at the telling rise, of the strengths that were solved, rising.
     pull_in_V, release_V : as felt, with these; release 0: it sticks.
+    ageing : what time does beside charge; None where a scene does not ask.
     """
 
     gaps: HeldGaps
@@ -78,6 +84,13 @@ class SwitchLife:
     squares_V2: Array
     pull_in_V: Array
     release_V: Array
+    ageing: "Ageing | None" = None
+
+    def aged(self, times: Array, guess: str) -> Squares:
+        """By how much the squares of pull-in and release have moved (V^2) by ageing."""
+        if self.ageing is None:
+            return NOT_AGED
+        return self.ageing.squares_V2(times, guess)
 
     def charged(
         self, hold_V: float, times: Array, settings: LifetimeSettings, rates: Rates
@@ -91,12 +104,19 @@ class SwitchLife:
         sign = np.sign(1.0 - 2.0 * settings.other_polarity)
         return sign * self.gaps.mean_V(shifts) - contactless_V(times, settings), squares
 
-    def voltages(self, shift: Array, squares: Array) -> tuple[Array, Array]:
-        """Drives at which it closes and lets go with so much charge; 0: it sticks."""
+    def felt(self, squares: Array, aged: Squares = NOT_AGED) -> tuple[Array, Array]:
+        """Pull-in and release as felt (V) with so much uneven charge and ageing; 0: it sticks."""
         pull_in, release = (
-            np.sqrt(np.interp(squares, self.squares_V2, felt**2))
-            for felt in (self.pull_in_V, self.release_V)
+            np.sqrt(np.maximum(np.interp(squares, self.squares_V2, felt**2) + moved, 0.0))
+            for felt, moved in zip((self.pull_in_V, self.release_V), aged, strict=True)
         )
+        return pull_in, release
+
+    def voltages(
+        self, shift: Array, squares: Array, aged: Squares = NOT_AGED
+    ) -> tuple[Array, Array]:
+        """Drives at which it closes and lets go with so much charge and ageing; 0: it sticks."""
+        pull_in, release = self.felt(squares, aged)
         both = [
             as_driven(float(close), float(let_go), self.shift_V + float(moved))
             for close, let_go, moved in zip(pull_in, release, shift, strict=True)
@@ -105,9 +125,17 @@ class SwitchLife:
 
 
 def life_of(
-    solved: Solved, contact: ContactSettings, number: int, settings: LifetimeSettings
+    solved: Solved,
+    contact: ContactSettings,
+    number: int,
+    settings: LifetimeSettings,
+    shared: "Surroundings | None" = None,
 ) -> SwitchLife:
     """A device of the model, by its number (0: the central one).
+
+    Parameters
+    ----------
+    shared : what it shares of its ageing with the others; None: it does not age.
 
     Raises
     ------
@@ -117,7 +145,18 @@ def life_of(
     if device.dielectric_nm == 0.0:
         raise InputError("lifetime: a dielectric without thickness holds no charge; give it one")
     gaps = held_gaps(solved, contact, surfaces_of(number))
-    return life_with(gaps, device, solved.pressed.curves, settings)
+    life = life_with(gaps, device, solved.pressed.curves, settings)
+    if shared is None:
+        return life
+    from mesoscale.charging.ageing import ageing_of
+
+    humidity = solved.point.values.get("humidity", contact.air.humidity if contact.air else 0.0)
+    end_s = float(times_s(settings)[-1])
+    curves = solved.pressed.curves
+    ageing = ageing_of(
+        device, life.hold_V, curves, settings, end_s, humidity, shared, each=number == 0
+    )
+    return replace(life, ageing=ageing)
 
 
 def life_with(
@@ -209,12 +248,18 @@ def lives_of(
     ------
     InputError : the central one, or too many others, have none.
     """
-    central = life_of(model.central, contact, 0, settings)
+    shared = None
+    if settings.ageing is not None:
+        from mesoscale.charging.ageing import surroundings_of
+
+        end_s = float(times_s(settings)[-1])
+        shared = surroundings_of(model.central, contact, settings, end_s)
+    central = life_of(model.central, contact, 0, settings, shared)
     devices = []
     refused = []
     for number, solved in enumerate(model.points, 1):
         try:
-            devices.append(life_of(solved, contact, number, settings))
+            devices.append(life_of(solved, contact, number, settings, shared))
         except InputError as error:
             refused.append(str(error))
         if progress:
@@ -227,11 +272,11 @@ def lives_of(
     return Lives(central, tuple(devices), tuple(refused), settings)
 
 
-def _failing(life: SwitchLife, hold_V: float, shift: Array, squares: Array) -> Array:
+def _failing(life: SwitchLife, hold_V: float, shift: Array, squares: Array, aged: Squares) -> Array:
     """Margins (V) of a device, shape (2, times): to let go above 0, and to stay held."""
-    _, release = life.voltages(shift, squares)
+    _, release = life.voltages(shift, squares, aged)
     # one that sticks misses by what is felt without a drive
-    felt = np.sqrt(np.interp(squares, life.squares_V2, life.release_V**2))
+    _, felt = life.felt(squares, aged)
     open_margin = np.where(release > 0.0, release, np.minimum(felt + shift + life.shift_V, 0.0))
     return np.stack([open_margin, hold_V - np.maximum(release, 0.0)])
 
@@ -247,14 +292,16 @@ def life_rows(lives: Lives) -> Iterator[dict[str, Any]]:
         lets_go = []
         for life in lives.devices:
             shift, squares = life.charged(life.hold_V, times, lives.settings, rates)
-            pull_in, release = life.voltages(shift, squares)
+            pull_in, release = life.voltages(shift, squares, life.aged(times, guess))
             shifts.append(shift)
             closes.append(pull_in)
             lets_go.append(release)
         central_shift, central_squares = lives.central.charged(
             lives.central.hold_V, times, lives.settings, rates
         )
-        pull_in, release = lives.central.voltages(central_shift, central_squares)
+        pull_in, release = lives.central.voltages(
+            central_shift, central_squares, lives.central.aged(times, guess)
+        )
         stuck = np.array(lets_go) <= 0.0
         lost = np.array(lets_go) >= holds_V[:, None]
         for place, time in enumerate(times.tolist()):
@@ -292,6 +339,7 @@ def hold_rows(lives: Lives) -> Iterator[dict[str, Any]]:
                         life,
                         hold * life.hold_V,
                         *life.charged(hold * life.hold_V, end, lives.settings, rates),
+                        life.aged(end, guess),
                     )[:, 0]
                     for life in lives.devices
                 ]

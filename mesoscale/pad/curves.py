@@ -238,6 +238,28 @@ def attracting(pad: PadCurves, times: float) -> PadCurves:
     return replace(pad, closing=scale * pad.closing, opening=scale * pad.opening, flats=flats)
 
 
+def bonded(pad: PadCurves, energy_J_m2: float, tops_GPa: float) -> PadCurves:
+    """The pad with bonds in what touches, which break as it opens.
+
+    The area that touches is the repulsion over the pressure of the tops. Where a rise parts an area
+    of them, bonds pull by their energy times the area a length: in sum, by the energy of all.
+
+    Parameters
+    ----------
+    tops_GPa : mean pressure of what touches.
+    """
+    touching = pad.opening[:, 0] / tops_GPa
+    opening = pad.opening.copy()
+    for row, share in zip(opening, touching, strict=True):
+        known = np.isfinite(share)
+        if known.sum() < 2:  # a depth at the end of the table
+            continue
+        # J/m^2 over nm is GPa
+        pull_GPa = energy_J_m2 * np.gradient(share[known], pad.separation_nm[known])
+        row[1, known] += np.minimum(pull_GPa, 0.0)
+    return replace(pad, opening=opening)
+
+
 def rows_at(places: Array | float, known: Array, rows: Array) -> Array:
     """Rows that stand at `known` places, at other ones; beyond, their first and last values.
 

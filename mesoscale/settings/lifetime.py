@@ -1,10 +1,16 @@
 """Settings of the life of a switch that is held."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import (
+    Field,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
 
 from asperity.guards.settings import Settings, key
+from mesoscale.settings.ageing import AgeingSettings
 
 Positive = Annotated[float, Field(gt=0.0)]
 Range = tuple[Positive, Positive]
@@ -54,6 +60,14 @@ class LifetimeSettings(Settings):
         "share of the time held with the other polarity, which undoes as much; not 0.5",
         "[0, 1]",
     )
+    ageing: AgeingSettings | None = key(
+        None, "creep and bonds while it is held; null: charge alone"
+    )
+
+    @model_serializer(mode="wrap")
+    def _without_ageing(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Ageing that nobody asks for is left out, so that results without it stay as they were."""
+        return {name: of for name, of in dump(self).items() if (name, of) != ("ageing", None)}
 
     @model_validator(mode="after")
     def _rising(self) -> "LifetimeSettings":

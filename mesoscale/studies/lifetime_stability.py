@@ -5,11 +5,13 @@ The surfaces are made up: waves of some nanometres on cells of 500 nm, on a made
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from mesoscale.charging.ageing import Surroundings, ageing_of
 from mesoscale.charging.gaps import GAPS_NM, HeldGaps
 from mesoscale.charging.lifetime import SwitchLife, life_with, times_s
 from mesoscale.charging.rates import guesses, shifts_V
@@ -27,6 +29,7 @@ CHECK_SOLVED = (
     "finite; shift between nothing and the hold; it grows with time; before any hold as without"
     " charge"
 )
+CHECK_AGED = "finite; falls with time; before any hold as without ageing"
 CHECK_REFUSED = "refused in one line that says why"
 LIFE: dict[str, Changes] = {
     "the default": {},
@@ -70,6 +73,38 @@ SURFACE: dict[str, tuple[float, float]] = {
     "as rough as it is far": (20.0, 20.0),
 }
 """Mean separation, and RMS height (nm)."""
+TOPS_GPA = 5.0
+"""Mean pressure of what touches on the made-up pad."""
+HUMIDITY = 0.2
+NICKEL: Changes = {"beam": "nickel"}
+BONDS: Changes = {"bonds_mJ_m2": (3.0, 100.0)}
+AGEING: dict[str, tuple[Changes, Changes, float]] = {
+    "all effects": ({**NICKEL, **BONDS}, {}, HUMIDITY),
+    "creep that collapses": ({**NICKEL, "grain_nm": (0.1, 0.1)}, {}, HUMIDITY),
+    "grains of a millimetre": ({**NICKEL, "grain_nm": (1e6, 1e6)}, {}, HUMIDITY),
+    "nickel at 4 K": (NICKEL, {"temperature_C": -269.0, "gap_um": 1.0}, HUMIDITY),
+    "nickel at 1000 C": (
+        NICKEL,
+        {"temperature_C": 1000.0, "excess_expansion_ppm_C": 0.0},
+        HUMIDITY,
+    ),
+    "gold that relaxes wholly": ({"beam": "gold", "relaxing": (1.0, 1.0)}, {}, HUMIDITY),
+    "gold that hardly relaxes": ({"beam": "gold", "relaxing": (1e-12, 1e-12)}, {}, HUMIDITY),
+    "aluminium": ({"beam": "aluminium"}, {}, HUMIDITY),
+    "a cantilever": (
+        NICKEL,
+        {"ends": "cantilever", "length_um": 250.0, "thickness_um": 3.0, "hold_voltage_V": 40.0},
+        HUMIDITY,
+    ),
+    "a plate that creeps": (NICKEL, {"spring_N_per_m": 1000.0}, HUMIDITY),
+    "bonds in dry air": (BONDS, {}, 0.0),
+    "bonds at 1 % of humidity": (BONDS, {}, 0.01),
+    "bonds at 100 % of humidity": (BONDS, {}, 1.0),
+    "bonds that hold it": ({"bonds_mJ_m2": (1e5, 1e5)}, {}, HUMIDITY),
+    "bonds next to nothing": ({"bonds_mJ_m2": (1e-12, 1e-12)}, {}, HUMIDITY),
+    "charged, and creeping": (NICKEL, {"charge_e_cm2": -5e11}, HUMIDITY),
+}
+"""What ages, of which device, at which humidity."""
 REFUSED: dict[str, tuple[Changes, Changes, str]] = {
     "polarities that sum to nothing": ({"other_polarity": 0.5}, {}, "sum to nothing"),
     "a barrier of zero": ({"barrier_eV": (0.0, 4.0)}, {}, "barrier_eV"),
@@ -89,6 +124,13 @@ def hard_cases() -> Iterator[HardCase]:
         yield _solved_case(name, {}, changes, (HELD_NM, RMS_NM))
     for name, surface in SURFACE.items():
         yield _solved_case(name, {}, {}, surface)
+    for name, (ageing, of_device, humidity) in AGEING.items():
+        yield HardCase(
+            name,
+            _listed({**ageing, **of_device, "humidity": humidity}),
+            CHECK_AGED,
+            partial(_aged, {"ageing": ageing}, of_device, humidity),
+        )
     for name, (of_life, of_device, words) in REFUSED.items():
         yield HardCase(
             name,
@@ -143,6 +185,48 @@ def made_up_life(
     device = published_beam(**of_device)
     gaps = made_up_gaps(device.uncharged, *surface)
     return life_with(gaps, device, made_up_pad(2.0), settings), settings
+
+
+def made_up_ageing(
+    of_life: Changes, of_device: Changes, humidity: float = HUMIDITY
+) -> tuple[SwitchLife, LifetimeSettings]:
+    """The same with what ages; its tops do not, as its pad has none.
+
+    Raises
+    ------
+    InputError : see `made_up_life`.
+    """
+    life, settings = made_up_life(of_life, of_device)
+    ageing = ageing_of(
+        published_beam(**of_device),
+        life.hold_V,
+        made_up_pad(2.0),
+        settings,
+        float(times_s(settings)[-1]),
+        humidity,
+        Surroundings(TOPS_GPA, None),
+    )
+    return replace(life, ageing=ageing), settings
+
+
+def _aged(of_life: Changes, of_device: Changes, humidity: float) -> tuple[bool, str]:
+    life, settings = made_up_ageing(of_life, of_device, humidity)
+    times = np.concatenate([[0.0], times_s(settings), [1e9]])
+    broken = []
+    release = np.zeros(1)
+    nothing = np.zeros(times.size)
+    for guess in guesses(settings):
+        aged = life.aged(times, guess)
+        pull_in, release = life.voltages(nothing, nothing, aged)
+        if not (np.isfinite(pull_in).all() and np.isfinite(release).all()):
+            broken.append(f"{guess}: not finite")
+        if (np.diff(pull_in) > 1e-9).any() or (np.diff(release) > 1e-9).any():
+            broken.append(f"{guess}: a voltage rises")
+        fresh = life.voltages(nothing[:1], nothing[:1])
+        if pull_in[0] != fresh[0][0] or release[0] != fresh[1][0]:
+            broken.append(f"{guess}: not as without ageing before any hold")
+    detail = f"most ageing: release from {release[0]:.4g} V to {release[-1]:.4g} V"
+    return not broken, "; ".join([*broken, detail])
 
 
 def _solved(of_life: Changes, of_device: Changes, surface: tuple[float, float]) -> tuple[bool, str]:

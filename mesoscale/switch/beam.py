@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
-from mesoscale.switch.beam_kernels import Mechanics, deflect, newton_step
+from mesoscale.switch.beam_kernels import Mechanics, deflect, elongation, newton_step
 from mesoscale.units import GPA, NM, UM
 
 Array = NDArray[np.float64]
@@ -181,6 +181,23 @@ class Beam:
         points).
         """
         return deflect(nodal, self.mechanics.shapes)
+
+    def strains(self, nodal: Array) -> tuple[Array, float]:
+        """Curvature (1/m) at both ends of the elements, shape (elements, 2), and mean axial strain,
+        of nodal values (nodes, 2).
+        """
+        first, last = nodal[:-1], nodal[1:]
+        size = self.sizes_m
+        sloping = 6.0 * (last[:, 0] - first[:, 0]) / size**2
+        curvature = np.stack(
+            [
+                sloping - (4.0 * first[:, 1] + 2.0 * last[:, 1]) / size,
+                (2.0 * first[:, 1] + 4.0 * last[:, 1]) / size - sloping,
+            ],
+            1,
+        )
+        longer_m = elongation(nodal, self.mechanics.pulled, self.mechanics.rest)
+        return curvature, longer_m / self.length_m
 
     def step(
         self, nodal: Array, load: Load, inertia: float = 0.0, other: Array | None = None
@@ -370,19 +387,9 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
         return stated
     newton_MPa = settings.width_um * settings.thickness_um * 1e-6
     heat = settings.heating_MPa * newton_MPa
-    mechanics = stated.mechanics
-    stretching = mechanics.stretching_N_m
-    unknowns = mechanics.unknowns
-    freedoms = slice(2, 2 + unknowns)
-    bends = assembled(mechanics.bending_N_m)[freedoms, freedoms]
-    all_pulls = assembled(mechanics.pulled)
-    pulls = all_pulls[freedoms, freedoms]
-    z0 = mechanics.rest.ravel()[freedoms]
-    # the ends of a tilted beam are not at the height of its middle
-    pulled_at_rest = (all_pulls @ mechanics.rest.ravel())[freedoms]
     share = np.concatenate([[0.0], np.cumsum(stated.sizes_m)]) / stated.length_m
     excess_N = -(stated.tension_N + heat) - euler_MPa(settings) * newton_MPa
-    u = np.zeros(unknowns)
+    start = np.zeros((stated.elements + 1, 2))
     if excess_N > 0.0:  # on the side of the height that a flat beam would have
         length_m = stated.length_m
         strain = excess_N / (stated.stretching_N_m * length_m)
@@ -390,13 +397,76 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
         side = 1.0 if settings.buckled == "up" else -1.0
         mode = 0.5 * (1.0 - np.cos(2.0 * np.pi * share))
         slope = np.pi / length_m * np.sin(2 * np.pi * share)
-        buckled = np.stack([mode, slope], 1).ravel()[freedoms]
-        u = side * height * buckled - z0
+        start = side * height * np.stack([mode, slope], 1) - stated.mechanics.rest
+    moved = _come_to_rest(stated, heat, np.zeros_like(start), start)
+    if moved is None:
+        raise InputError(
+            f"device.residual_stress_MPa = {settings.residual_stress_MPa:.4g}: the beam does not"
+            f" come to rest at {settings.temperature_C:.4g} C; state its bow_nm at rest, or a"
+            " stress that does not buckle it"
+        )
+    rested = _rested(stated, *moved)
+    if _lowest_nm(rested) <= 0.0:
+        raise InputError(
+            f"device.residual_stress_MPa = {settings.residual_stress_MPa:.4g} at temperature_C ="
+            f" {settings.temperature_C:.4g}: the beam stands on the dielectric at rest; lower the"
+            " compression, take buckled: up, or raise gap_um"
+        )
+    return rested
+
+
+def crept(beam: Beam, held: Array, share: float) -> Beam:
+    """The beam at rest after its stress in a held shape has lost a share: that share of bending and
+    stretching needs no stress any more.
+
+    Parameters
+    ----------
+    held : nodal values of the held shape over that at rest (m), shape (nodes, 2).
+
+    Raises
+    ------
+    InputError : it does not come to rest, or stands on the dielectric.
+    """
+    mechanics = beam.mechanics
+    longer_m = elongation(held, mechanics.pulled, mechanics.rest)
+    slack_N = -share * mechanics.stretching_N_m * longer_m
+    moved = _come_to_rest(beam, slack_N, share * held, share * held)
+    if moved is None:
+        raise InputError("lifetime.ageing: the beam that has crept does not come to rest")
+    rested = _rested(beam, *moved)
+    if _lowest_nm(rested) <= 0.0:
+        raise InputError("lifetime.ageing: the beam has crept until it stands on the dielectric")
+    return rested
+
+
+def _come_to_rest(
+    stated: Beam, axial_N: float, bent: Array, start: Array
+) -> tuple[Array, float] | None:
+    """Nodal values over the stated shape (m) in balance without loads, and the axial force that is
+    more there; None where no balance is found.
+
+    Parameters
+    ----------
+    axial_N : axial force that is more in the stated shape.
+    bent : nodal values that need no bending, shape (nodes, 2).
+    start : nodal values to start from.
+    """
+    mechanics = stated.mechanics
+    stretching = mechanics.stretching_N_m
+    unknowns = mechanics.unknowns
+    freedoms = slice(2, 2 + unknowns)
+    bends = assembled(mechanics.bending_N_m)[freedoms, freedoms]
+    all_pulls = assembled(mechanics.pulled)
+    pulls = all_pulls[freedoms, freedoms]
+    # the ends of a tilted beam are not at the height of its middle
+    pulled_at_rest = (all_pulls @ mechanics.rest.ravel())[freedoms]
+    without_stress = bent.ravel()[freedoms]
+    u = start.ravel()[freedoms]
     moved_nm = np.inf
     for _ in range(REST_STEPS):
         gradient = pulls @ u + pulled_at_rest
-        more = heat + stretching * (0.5 * u @ pulls @ u + pulled_at_rest @ u)
-        left = bends @ u + stated.tension_N * (pulls @ u) + more * gradient
+        more = axial_N + stretching * (0.5 * u @ pulls @ u + pulled_at_rest @ u)
+        left = bends @ (u - without_stress) + stated.tension_N * (pulls @ u) + more * gradient
         stiffness = (
             bends + (stated.tension_N + more) * pulls + stretching * np.outer(gradient, gradient)
         )
@@ -407,32 +477,30 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
         # steps shrink until they are rounding, which is large where elements are short
         rounding = moved_nm < ROUNDING_NM and moved_nm > 0.5 * before_nm
         if moved_nm < RESTS_NM or rounding:
-            break
-    else:
-        raise InputError(
-            f"device.residual_stress_MPa = {settings.residual_stress_MPa:.4g}: the beam does not"
-            f" come to rest at {settings.temperature_C:.4g} C; state its bow_nm at rest, or a"
-            " stress that does not buckle it"
-        )
-    moved = np.zeros((stated.elements + 1, 2))
-    moved.ravel()[freedoms] = u
+            moved = np.zeros((stated.elements + 1, 2))
+            moved.ravel()[freedoms] = u
+            return moved, float(more)
+    return None
+
+
+def _rested(stated: Beam, moved: Array, more_N: float) -> Beam:
+    """The beam at rest where it has moved to, with so much more axial force."""
     deflection_m = stated.deflection_m(moved)
+    nodal = moved.copy()
     for turn in stated.turns:
-        moved[turn.node, 1] = turn.slope(moved)
-    rested = replace(
+        nodal[turn.node, 1] = turn.slope(nodal)
+    return replace(
         stated,
-        rest_nodal=stated.rest_nodal + moved,
+        rest_nodal=stated.rest_nodal + nodal,
         rest_m=stated.rest_m + deflection_m,
-        tension_N=stated.tension_N + more,
+        tension_N=stated.tension_N + more_N,
     )
-    lowest = rested.rest_m / NM - np.where(rested.lands > 0, rested.dimple_nm, rested.stopper_nm)
-    if lowest.min() <= 0.0:
-        raise InputError(
-            f"device.residual_stress_MPa = {settings.residual_stress_MPa:.4g} at temperature_C ="
-            f" {settings.temperature_C:.4g}: the beam stands on the dielectric at rest; lower the"
-            " compression, take buckled: up, or raise gap_um"
-        )
-    return rested
+
+
+def _lowest_nm(beam: Beam) -> float:
+    """Least height of the beam at rest over what it lands on."""
+    above_nm = beam.rest_m / NM - np.where(beam.lands > 0, beam.dimple_nm, beam.stopper_nm)
+    return float(above_nm.min())
 
 
 def assembled(parts: Array) -> Array:

@@ -144,11 +144,21 @@ class BeamSwitch(Switch):
             landed_share=landed_share,
         )
 
-    def held_nm(self, pad: PadCurves) -> tuple[Array, Array]:
-        """See `Switch.held_nm`; without a dimple, whose place is as its pad."""
+    def held(self, pad: PadCurves) -> MovingBeam:
+        """The beam on a pad, while its voltage holds it.
+
+        Raises
+        ------
+        NotComputed, InputError : see `states_on`.
+        """
         moving = self._on(LocalPad(pad))
         pull_in_V = moving.come_down().voltage
         moving.creep(self.settings.hold_voltage_V or pull_in_V)
+        return moving
+
+    def held_nm(self, pad: PadCurves) -> tuple[Array, Array]:
+        """See `Switch.held_nm`; without a dimple, whose place is as its pad."""
+        moving = self.held(pad)
         separation_nm = moving.separation_nm()
         electric_nm = np.maximum(separation_nm, 0.0) + self.settings.dielectric_gap_nm
         pulls = self.beam.wired * self.beam.weights_m / electric_nm**2
