@@ -187,18 +187,18 @@ def shifts_of_place(
         left = 0.0
         for place in range(row):
             left += weights[row, place] * gains[place]
-        own = weights[row, row]
+        same_cycle = weights[row, row]
         low = lowest
         high = highest
         shift = min(max(shift, low), high)
         for _ in range(MOST_STEPS):
             _, gain, slope = gained_in_cycle(shift, drive, most, edges, log_rates, log_times)
-            excess = shift - left - own * gain
+            excess = shift - left - same_cycle * gain
             if excess > 0.0:
                 high = shift
             else:
                 low = shift
-            step = excess / (1.0 - own * slope)
+            step = excess / (1.0 - same_cycle * slope)
             nearer = shift - step
             if nearer < low or nearer > high:
                 nearer = 0.5 * (low + high)
