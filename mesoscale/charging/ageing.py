@@ -149,6 +149,8 @@ class Ageing:
         if effect == "bonds":
             assert aged.bonds_mJ_m2 is not None
             per_decade = _guessed(aged.bonds_mJ_m2, guess)
+            if self.settings.period_s is not None:  # bonds break when it opens
+                held = np.minimum(held, self.settings.duty * self.settings.period_s)
             return laws.bond_energy(held, self.humidity, per_decade)
         if aged.beam == "nickel":
             finest_nm, coarsest_nm = aged.grain_nm

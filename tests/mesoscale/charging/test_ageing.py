@@ -147,6 +147,16 @@ def test_bonds_grow_only_in_moist_air():
     assert aged(humidity=0.3, bonds_mJ_m2=(3.0, 100.0)).effects
 
 
+def test_bonds_break_when_a_drive_with_a_period_opens():
+    settings = LifetimeSettings(
+        years=10.0, period_s=100.0, duty=0.5, ageing=AgeingSettings(bonds_mJ_m2=(10.0, 10.0))
+    )
+    ageing = ageing_of(BEAM, 85.0, PAD, settings, END_S, 0.2, SHARED)
+    strengths = ageing.strength("bonds", np.array([10.0, 1e3, END_S]), "central")
+    assert strengths[0] == pytest.approx(10.0 * np.log10(51.0))
+    assert strengths[1:] == pytest.approx(10.0 * np.log10(501.0))
+
+
 def test_each_effect_has_its_rows_and_all_of_them_together():
     ageing = aged(beam="nickel", bonds_mJ_m2=(3.0, 100.0))
     fresh = switch_of(BEAM).states(PAD)

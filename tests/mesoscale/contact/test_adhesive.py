@@ -21,6 +21,7 @@ from mesoscale.settings import ContactSettings
 from mesoscale.studies.contact_stability import violations
 from mesoscale.topography.synthesis import synthesize
 from tests.mesoscale.contact import axisymmetric
+from tests.mesoscale.contact.wave_branch import Wave, opening
 
 ROUGH = ContactInputs(
     hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0
@@ -165,19 +166,34 @@ def test_a_flat_punch_tends_to_kendalls_as_the_range_falls():
     assert narrow - slope * np.sqrt(narrow_zone) == pytest.approx(1.0, abs=0.03)
 
 
-def test_a_wave_is_pulled_off_as_johnson_says():
-    length, work_of, amplitude, pixels = 64.0, 0.1, 1.0, 96
-    x = (np.arange(pixels) - pixels // 2 + 0.3) * length / pixels
-    surface = np.repeat(-amplitude * np.cos(2 * np.pi * x / length)[:, None], pixels, axis=1)
+def wave_pull_off(pixels: int, cutoff: float) -> tuple[float, float, float]:
+    """Largest mean pull (GPa) of an adhesive wave: of this engine, of the same law by Newton's
+    method, and of Johnson's, whose attraction has no range.
+    """
+    length, amplitude, share = 64.0, 1.0, 0.25
+    work_of = 0.5 * (share * np.pi * amplitude) ** 2 * E_STAR / length
+    line = -amplitude * np.cos(2 * np.pi * (np.arange(pixels) - pixels // 2 + 0.3) / pixels)
+    surface = np.repeat(line[:, None], pixels, axis=1)
+    inputs, settings = inputs_of(work_of, cutoff=cutoff), adhesive(pixels, length, cutoff)
+    found = least_force(surface, inputs, settings, np.arange(1.1, 1.4, 0.005)) / length**2
+    wave = Wave(line, length, E_STAR, 2 * cutoff**2 * work_of, cutoff)
+    branch = opening(wave, np.arange(1.1, 1.28, 0.002))
+    jkr = minimize_scalar(
+        lambda s: theory.adhesive_wave_pressure(s, amplitude, length, E_STAR, work_of),
+        bounds=(1e-3, 0.8),
+        method="bounded",
+    ).fun
+    return -found, -branch.min(), -jkr
 
-    def mean_pressure(share):
-        return theory.adhesive_wave_pressure(share, amplitude, length, E_STAR, work_of)
 
-    wanted = minimize_scalar(mean_pressure, bounds=(1e-3, 0.8), method="bounded").fun * length**2
-    inputs, settings = inputs_of(work_of, cutoff=0.25), adhesive(pixels, length, 0.25)
-    assert least_force(surface, inputs, settings, np.arange(1.0, 1.6, 0.02)) == pytest.approx(
-        wanted, rel=0.03
-    )
+def test_a_wave_keeps_to_its_branch_until_it_ends_and_tends_to_johnsons_as_the_range_falls():
+    wide, wide_branch, jkr = wave_pull_off(96, 0.25)
+    narrow, narrow_branch, _ = wave_pull_off(160, 0.18)
+    assert wide == pytest.approx(wide_branch, rel=0.003)
+    assert narrow == pytest.approx(narrow_branch, rel=0.003)
+    assert wide < narrow < jkr
+    # the zone in which the attraction acts is a part of the contact that goes with the range
+    assert narrow + (narrow - wide) / (0.25 - 0.18) * 0.18 == pytest.approx(jkr, rel=0.04)
 
 
 def test_a_flattened_sphere_is_pulled_off_as_mesarovic_and_johnson_say():
