@@ -9,7 +9,7 @@ again.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,9 @@ from mesoscale.switch.crept import crept_voltages, held_shape
 from mesoscale.switch.shifted import as_felt
 from mesoscale.theory import ageing as laws
 
+if TYPE_CHECKING:  # a life asks for its ageing
+    from mesoscale.charging.lifetime import SwitchLife
+
 Array = NDArray[np.float64]
 Effect = Literal["beam", "tops", "bonds"]
 
@@ -39,6 +42,8 @@ by 0.05 V at most (tests/mesoscale/charging/test_ageing.py)."""
 TOPS_AGES = (0.5, 1.0)
 """The same of the tops, for which pads are pressed again."""
 FIRST_AGE_S = 1e-6
+ROWS = 25
+"""Times of lifetime/ageing.csv beside 0."""
 AGE_TIMES = 4000
 """Times up to the end of a life among which ages are found."""
 MOST_RELAXED = 1.0 - 1e-9
@@ -194,7 +199,7 @@ class Ageing:
         pull_in = np.zeros_like(times)
         release = np.zeros_like(times)
         parts = []
-        together: tuple[Effect, ...] = tuple([each for each in self.acting if each in chosen])
+        together: tuple[Effect, ...] = tuple([effect for effect in self.acting if effect in chosen])
         if together:
             parts.append((self.moved[together][guess], self.age(together, times, guess)))
         if "tops" in chosen and self.tops is not None:
@@ -234,14 +239,14 @@ def ageing_of(
     end_s: float,
     humidity: float,
     shared: Surroundings,
-    each: bool = False,
+    apart: bool = False,
 ) -> Ageing:
     """The ageing of a device on its pad.
 
     Parameters
     ----------
     end_s : time up to which it is asked for.
-    each : whether what each effect does alone is asked for, too.
+    apart : whether each effect alone is asked for, too.
 
     Raises
     ------
@@ -259,7 +264,7 @@ def ageing_of(
         tops=shared.tops,
     )
     asked: set[tuple[Effect, ...]] = {ageing.acting} if ageing.acting else set()
-    if each:
+    if apart:
         for effect in ageing.acting:
             asked.add((effect,))
     states = switch_of(felt).states(curves)
@@ -342,16 +347,12 @@ def _tops_GPa(central: Solved, contact: ContactSettings) -> float:
     return float(closing.repulsive_nN[-1] / closing.contact_area_nm2[-1])
 
 
-def ageing_rows(
-    ageing: Ageing, felt_V: tuple[float, float], times: Array
-) -> Iterator[dict[str, Any]]:
-    """Rows of lifetime/ageing.csv: each effect alone, and all, of the central switch without
-    charge.
-
-    Parameters
-    ----------
-    felt_V : its pull-in and release before it is held.
-    """
+def ageing_rows(life: "SwitchLife") -> Iterator[dict[str, Any]]:
+    """Rows of lifetime/ageing.csv: each effect alone, and all, of a switch without charge."""
+    ageing = life.ageing
+    assert ageing is not None
+    felt_V = life.pull_in_V[0], life.release_V[0]
+    times = np.concatenate([[0.0], np.geomspace(1.0, ageing.end_s, ROWS)])
     effects: list[tuple[str, tuple[Effect, ...]]] = [
         (effect, (effect,)) for effect in ageing.effects
     ]
@@ -375,3 +376,20 @@ def ageing_rows(
                     "pull_in_V": float(pull_in[place]),
                     "release_V": float(release[place]),
                 }
+
+
+def ageing_summary(ageing: Ageing) -> dict[str, Any]:
+    """What lifetime/lifetime.json says of ageing."""
+    end = np.array([ageing.end_s])
+    menisci_s = float(laws.meniscus_time_s(ageing.kelvin))
+    return {
+        "metal": stated(ageing.settings).beam,
+        "largest_strain": ageing.strain,
+        "humidity": ageing.humidity,
+        "menisci_s": menisci_s,
+        "menisci_99_s": menisci_s * float(np.log(100.0)),
+        "strengths": {
+            effect: {guess: float(ageing.strength(effect, end, guess)[0]) for guess in GUESSES}
+            for effect in ageing.effects
+        },
+    }

@@ -153,7 +153,7 @@ def life_of(
     end_s = float(times_s(settings)[-1])
     curves = solved.pressed.curves
     ageing = ageing_of(
-        device, life.hold_V, curves, settings, end_s, humidity, shared, each=number == 0
+        device, life.hold_V, curves, settings, end_s, humidity, shared, apart=number == 0
     )
     return replace(life, ageing=ageing)
 
@@ -395,6 +395,11 @@ def summary(lives: Lives, holds: Sequence[dict[str, Any]]) -> dict[str, Any]:
             "tried_V": max(row["hold_V"] for row in rows),
             "volts_a_decade": volts_a_decade(rows, central.hold_V),
         }
+    ageing = {}
+    if central.ageing is not None:
+        from mesoscale.charging.ageing import ageing_summary
+
+        ageing["ageing"] = ageing_summary(central.ageing)
     return {
         "years": lives.settings.years,
         "hold_V": central.hold_V,
@@ -407,4 +412,5 @@ def summary(lives: Lives, holds: Sequence[dict[str, Any]]) -> dict[str, Any]:
         "devices": len(lives.devices),
         "refused": list(lives.refused),
         "guesses": by_guess,
+        **ageing,
     }

@@ -114,6 +114,10 @@ def menisci_of(air: AirSettings | None, hamaker: float) -> Menisci | None:
 
 def film_nm(air: AirSettings, hamaker: float, pull_GPa: float) -> float:
     """Adsorbed film on each wall (nm); in balance its disjoining pressure is p_c."""
+    if air.film_nm == "adsorbed":
+        from mesoscale.theory.ageing import adsorbed_film
+
+        return float(adsorbed_film(air.humidity))
     if air.film_nm != "balance":
         return air.film_nm
     liquid = 1.0 - math.sqrt(air.hamaker_share)  # root of the liquid's A over that of the walls

@@ -96,10 +96,10 @@ class AirSettings(Settings):
     contact_angles_deg: tuple[float, float] = key(
         (0.0, 0.0), "contact angles of the liquid on both walls, 0 to 180"
     )
-    film_nm: FilmThickness | Literal["balance"] = key(
+    film_nm: FilmThickness | Literal["balance", "adsorbed"] = key(
         0.0,
         "thickness of the adsorbed film on each wall, nm; balance: where its disjoining pressure is"
-        " that of the menisci",
+        " that of the menisci; adsorbed: of water as on silicates (docs/humidity.md)",
     )
     hamaker_share: float = key(
         0.3,
@@ -125,6 +125,11 @@ class AirSettings(Settings):
             raise ValueError(
                 "surface_tension_mN_m and molar_volume_cm3 go together: both of another liquid, or"
                 " neither"
+            )
+        if self.film_nm == "adsorbed" and self.molar_volume_cm3 is not None:
+            raise ValueError(
+                "film_nm = adsorbed: the isotherm is that of water; give the film of another liquid"
+                " in nm, or balance"
             )
         return self
 

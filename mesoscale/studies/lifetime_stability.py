@@ -216,6 +216,7 @@ def made_up_ageing(
         float(times_s(settings)[-1]),
         humidity,
         Surroundings(TOPS_GPA, None),
+        apart=True,
     )
     return replace(life, ageing=ageing), settings
 

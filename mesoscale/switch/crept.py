@@ -86,9 +86,15 @@ def crept_switch(device: DeviceSettings, held: HeldShape, share: float, pad: Pad
 def crept_voltages(
     device: DeviceSettings, held: HeldShape, share: float, pad: PadCurves
 ) -> tuple[float, float]:
-    """Pull-in and release (V) after creep; both 0 where it stays closed by itself."""
+    """Pull-in and release (V) after creep; both 0 where it stays closed by itself.
+
+    So it does where it rests on its pad, and where it rests so near that it touches at a voltage
+    below that at which it lets go: nothing is left to open.
+    """
     try:
         states = crept_switch(device, held, share, pad).states(pad)
     except InputError:
+        return 0.0, 0.0
+    if states.touches and states.release_V > states.pull_in_V:
         return 0.0, 0.0
     return states.pull_in_V, states.release_V

@@ -25,8 +25,10 @@ def budget_of(tmp_path):
         for name, content in tables.items():
             write_csv(tmp_path / f"{name}.csv", content)
         write_json(tmp_path / "answer/pad_switch.json", {"answer": None}, {})
+        write_json(tmp_path / "lifetime/lifetime.json", {"years": 10.0}, {})
         paths = [
             tmp_path / "answer/pad_switch.json",
+            tmp_path / "lifetime/lifetime.json",
             *(tmp_path / f"{name}.csv" for name in tables),
         ]
         section = describe(Results(tmp_path, paths, "mine"))
@@ -51,3 +53,21 @@ def test_humid_air_is_that_which_was_computed(budget_of):
     assert plain["humid air"] == ("6.0", "bound by literature: at most")
     assert computed["humid air"] == ("1.3", "computed here: 0% to 50%, menisci either way")
     assert computed["creep of the beam"][0] == "–"
+
+
+def test_creep_and_bonds_are_what_a_life_computed(budget_of):
+    rows = [
+        {
+            "effect": "beam",
+            "guess": guess,
+            "time_s": time,
+            "strength": 0.1,
+            "pull_in_V": 60.0,
+            "release_V": volts,
+        }
+        for guess, end in (("least", 9.5), ("central", 8.0), ("most", 0.0))
+        for time, volts in ((0.0, 10.0), (3.2e8, end))
+    ]
+    computed = budget_of(**{"lifetime/ageing": rows})
+    about = "computed here: 10.0 years of hold, 0.50 to 10 V by assumed ranges; it may stick"
+    assert computed["creep of the beam"] == ("2.0", about)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from workflow.report.stages.lifetime import _allowed, three_sentences
+from workflow.report.stages.lifetime import _allowed, of_ageing, three_sentences
 
 ROWS = [
     {"guess": guess, "time_s": time, "release_q50_V": str(volts)}
@@ -43,3 +43,19 @@ def test_a_rate_that_no_volt_changes_is_said(decades):
 def test_the_largest_hold_is_said_by_guess():
     said = _allowed(life((8.0, 9.0, 11.0), (90.0, 60.0, None)))
     assert "at least 90.0 V (least charge), 60.0 V (central charge), none (most charge)" in said
+
+
+def test_ageing_is_said_by_effect_with_its_range():
+    rows = [
+        {"effect": effect, "guess": guess, "time_s": time, "release_V": str(volts)}
+        for effect, ends in (("beam", (9.0, 6.0, 0.0)), ("bonds", (9.9, 9.5, 8.0)))
+        for guess, end in zip(("least", "central", "most"), ends, strict=True)
+        for time, volts in (("0.0", 10.0), ("3e8", end))
+    ]
+    ageing = {"strengths": {"beam": {}, "bonds": {}}, "menisci_99_s": 0.0231}
+    said = of_ageing(ageing, rows)
+    assert "lets go at 10.0 V at first" in said
+    assert "By creep of the beam it goes to 6.00 V (sticks to 9.00 V)" in said
+    assert "bonds it goes to 9.50 V (8.00 V to 9.90 V)" in said
+    assert "within 23 ms of closing" in said
+    assert "no effect acts here" in of_ageing({**ageing, "strengths": {}}, rows)

@@ -1,5 +1,9 @@
 # The life of a switch that is held; only in scenes with lifetime.years
 
+AGEING = {}
+if SCENE.lifetime.ageing is not None:
+    AGEING["ageing"] = f"{RESULTS}/lifetime/ageing.csv"
+
 
 rule lifetime:
     """release and sticking over years of hold, by charge"""
@@ -10,6 +14,7 @@ rule lifetime:
         ),
         **PRESSED,
     output:
+        **AGEING,
         life=captioned(f"{RESULTS}/lifetime/lifetime.csv"),
         holds=f"{RESULTS}/lifetime/holds.csv",
         summary=f"{RESULTS}/lifetime/lifetime.json",

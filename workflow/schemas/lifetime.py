@@ -42,4 +42,22 @@ TABLES = (
             ),
         ),
     ),
+    Table(
+        ("lifetime/ageing.csv",),
+        "One effect of ageing, one guess and one time of hold; the central switch without charge.",
+        (
+            text("effect", "beam, tops, bonds: alone; all: together"),
+            GUESS,
+            number("time_s", "s", "time of hold; 0: before any"),
+            number(
+                "strength",
+                "1",
+                "relaxed share of the stress of the beam, lost share of the hardness of the tops,"
+                " or work of bonds in mJ/m^2 of what touches; empty: all",
+                empty=True,
+            ),
+            number("pull_in_V", "V", "pull-in voltage"),
+            number("release_V", "V", "release voltage (0: stuck)"),
+        ),
+    ),
 )

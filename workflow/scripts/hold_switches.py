@@ -1,7 +1,7 @@
 """Hold the switches of all points for a life, and say what charge does to them.
 
 In: inputs.csv, pad/model.h5.  Out: lifetime/lifetime.csv and lifetime/holds.csv (V, s),
-lifetime/lifetime.json.
+lifetime/lifetime.json; lifetime/ageing.csv where the scene states ageing.
 """
 
 from mesoscale.charging.lifetime import hold_rows, life_rows, lives_of, summary
@@ -18,4 +18,8 @@ with job(snakemake) as run:
     write_csv(snakemake.output.life, life_rows(lives))
     holds = list(hold_rows(lives))
     write_csv(snakemake.output.holds, holds)
+    if path := snakemake.output.get("ageing"):
+        from mesoscale.charging.ageing import ageing_rows
+
+        write_csv(path, ageing_rows(lives.central))
     write_json(snakemake.output.summary, summary(lives, holds), run.provenance)

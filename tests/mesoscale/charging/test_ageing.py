@@ -5,7 +5,12 @@ tops that creep beside tops of a softer material.
 import numpy as np
 import pytest
 
-from mesoscale.charging.ageing import Surroundings, ageing_of, ageing_rows
+from mesoscale.charging.ageing import (
+    Surroundings,
+    ageing_of,
+    ageing_rows,
+    ageing_summary,
+)
 from mesoscale.charging.rates import guesses
 from mesoscale.contact.cycle import run_cycle
 from mesoscale.errors import InputError
@@ -28,7 +33,7 @@ TIMES = np.array([0.0, 1.0, 1e3, 1e6, END_S])
 
 def aged(humidity=0.2, device=BEAM, pad=PAD, **ageing):
     settings = LifetimeSettings(years=10.0, ageing=AgeingSettings(**ageing))
-    return ageing_of(device, 85.0, pad, settings, END_S, humidity, SHARED, each=True)
+    return ageing_of(device, 85.0, pad, settings, END_S, humidity, SHARED, apart=True)
 
 
 @pytest.mark.parametrize("energy_J_m2", [0.01, 1.0])
@@ -83,8 +88,8 @@ def test_a_switch_that_creeps_and_bonds_is_the_one_that_is_solved_with_both(seco
     pad = bonded(PAD, 1e-3 * energy, TOPS_GPA)
     _, both = crept_voltages(BEAM, held_shape(BEAM, PAD), relaxed, pad)
     fresh = switch_of(BEAM).states(PAD).release_V
-    found = np.sqrt(fresh**2 + ageing.squares_V2(time, "central")[1][0])
-    assert found == pytest.approx(both, abs=0.1)
+    computed = np.sqrt(fresh**2 + ageing.squares_V2(time, "central")[1][0])
+    assert computed == pytest.approx(both, abs=0.1)
 
 
 def test_before_any_hold_nothing_has_moved():
@@ -108,8 +113,8 @@ def test_before_any_hold_an_ageing_switch_is_todays_to_the_bit():
 def test_a_life_without_ageing_is_the_same_to_the_bit():
     life, settings = made_up_life({}, {"hold_voltage_V": 85.0})
     shift, squares = life.charged(life.hold_V, TIMES, settings, guesses(settings)["central"])
-    found = life.voltages(shift, squares, life.aged(TIMES, "central"))
-    np.testing.assert_array_equal(found, life.voltages(shift, squares))
+    computed = life.voltages(shift, squares, life.aged(TIMES, "central"))
+    np.testing.assert_array_equal(computed, life.voltages(shift, squares))
     assert "ageing" not in settings.model_dump()
 
 
@@ -158,13 +163,19 @@ def test_bonds_break_when_a_drive_with_a_period_opens():
 
 
 def test_each_effect_has_its_rows_and_all_of_them_together():
-    ageing = aged(beam="nickel", bonds_mJ_m2=(3.0, 100.0))
-    fresh = switch_of(BEAM).states(PAD)
-    rows = list(ageing_rows(ageing, (fresh.pull_in_V, fresh.release_V), TIMES))
+    life, _ = made_up_ageing(
+        {"ageing": {"beam": "nickel", "bonds_mJ_m2": (3.0, 100.0)}}, {"hold_voltage_V": 85.0}
+    )
+    rows = list(ageing_rows(life))
     assert {row["effect"] for row in rows} == {"beam", "bonds", "all"}
-    assert len(rows) == 3 * 3 * TIMES.size
-    assert all(row["release_V"] == fresh.release_V for row in rows if row["time_s"] == 0.0)
+    fresh = [row for row in rows if row["time_s"] == 0.0]
+    assert all(row["release_V"] == life.release_V[0] for row in fresh)
     assert all((row["strength"] is None) == (row["effect"] == "all") for row in rows)
+    content = ageing_summary(life.ageing)
+    assert content["strengths"]["bonds"]["most"] == pytest.approx(
+        max(row["strength"] for row in rows if row["effect"] == "bonds")
+    )
+    assert 4e-3 < content["menisci_s"] < content["menisci_99_s"] < 0.1
 
 
 def test_tops_that_creep_come_to_where_softer_tops_are_pressed():

@@ -309,6 +309,18 @@ def test_opening_at_constant_volume_costs_more_by_what_the_vapour_would_give(hum
     assert filled.sites == surface.heights.size  # flooded
 
 
+def test_an_adsorbed_film_is_that_of_silicates():
+    """Badmann, Stockhausen and Setzer: 0.385 nm - 0.189 nm ln(-ln RH), on both walls."""
+    air = HALF.model_copy(update={"film_nm": "adsorbed"})
+    menisci = menisci_of(air, 0.2)
+    bare = menisci_of(HALF, 0.2)
+    assert menisci.films_nm == pytest.approx(2.0 * 0.4543, abs=1e-4)
+    assert menisci.reach_nm == pytest.approx(bare.reach_nm + menisci.films_nm)
+    assert menisci.mean_pull_GPa * menisci.reach_nm == pytest.approx(bare.tension, rel=1e-9)
+    with pytest.raises(InputError, match="film_nm = adsorbed: the isotherm is that of water"):
+        AirSettings(film_nm="adsorbed", surface_tension_mN_m=20.0, molar_volume_cm3=90.0)
+
+
 BALANCED = AirSettings(film_nm="balance")
 
 
@@ -474,6 +486,8 @@ EXTREMES = {
     "film in balance": {"film_nm": "balance"},
     "film in balance, nearly dry": {"film_nm": "balance", "humidity": 0.04},
     "film in balance, flooded": {"film_nm": "balance", "humidity": 1.0 - 1e-6},
+    "film as on silicates": {"film_nm": "adsorbed"},
+    "film as on silicates, flooded": {"film_nm": "adsorbed", "humidity": 1.0 - 1e-6},
     "hot gas": {"temperature_C": 400.0},
     "hot metal": {
         "temperature_C": 400.0,

@@ -83,8 +83,8 @@ def test_the_pull_in_of_a_plate_is_that_of_its_smaller_gap():
 @pytest.mark.parametrize("device", [BEAM, PLATE], ids=["beam", "plate"])
 def test_without_creep_it_is_the_switch_of_today(device):
     today = switch_of(device).states(PAD)
-    found = crept_voltages(device, held_shape(device, PAD), 0.0, PAD)
-    assert found == (today.pull_in_V, today.release_V)
+    solved = crept_voltages(device, held_shape(device, PAD), 0.0, PAD)
+    assert solved == (today.pull_in_V, today.release_V)
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
@@ -115,18 +115,18 @@ def test_a_crept_beam_rests_where_its_inelastic_strain_puts_it(share):
     stiff = beam.bending_N_m2 * bend.T @ (ends[:, None] * bend)
     longer = step * slope.T @ slope
     shape = shape[inner]
-    found = share * shape
+    solved = share * shape
     for _ in range(30):
         force_N = beam.stretching_N_m * (
-            0.5 * found @ longer @ found - share * 0.5 * shape @ longer @ shape
+            0.5 * solved @ longer @ solved - share * 0.5 * shape @ longer @ shape
         )
-        drawn = longer @ found
-        left = stiff @ (found - share * shape) + force_N * drawn
+        drawn = longer @ solved
+        left = stiff @ (solved - share * shape) + force_N * drawn
         tangent = stiff + force_N * longer + beam.stretching_N_m * np.outer(drawn, drawn)
-        found = found - np.linalg.solve(tangent, left)
+        solved = solved - np.linalg.solve(tangent, left)
     rested = crept(beam, held, share)
     middle_nm = (rested.rest_nodal - beam.rest_nodal)[beam.elements // 2, 0] / NM
-    assert middle_nm == pytest.approx(found[count // 2 - 1] / NM, rel=2e-3)
+    assert middle_nm == pytest.approx(solved[count // 2 - 1] / NM, rel=2e-3)
     assert rested.tension_N == pytest.approx(force_N, rel=2e-2, abs=1e-7)
 
 
@@ -148,6 +148,16 @@ def test_release_falls_with_creep_until_it_stays_closed():
     assert (voltages[-1] == 0.0).all()
     with pytest.raises(InputError, match=r"lifetime\.ageing: the plate has crept down to 2"):
         crept_switch(PLATE, held_shape(PLATE, PAD), 1.0, PAD)
+
+
+def test_a_cantilever_that_has_crept_down_to_its_pad_stays_closed():
+    """It rests so near that it touches at 0.1 V, and would let go above that."""
+    tip = published_beam(ends="cantilever", length_um=250.0, thickness_um=3.0, hold_voltage_V=40.0)
+    held = held_shape(tip, PAD)
+    near = crept_switch(tip, held, 0.99, PAD).states(PAD)
+    assert near.touches
+    assert near.release_V > near.pull_in_V
+    assert crept_voltages(tip, held, 0.99, PAD) == (0.0, 0.0)
 
 
 def test_a_beam_that_creeps_keeps_its_held_shape():

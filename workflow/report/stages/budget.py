@@ -18,6 +18,12 @@ HOW = {
     "condition": "a condition",
     "unknown": "not known",
 }
+AGEING = {
+    "beam": "creep of the beam",
+    "tops": "creep of the contact under hold",
+    "bonds": "bonds that grow with time",
+}
+"""Rows of the budget by effect of lifetime/ageing.csv."""
 LITTLE_V = 0.1
 """Effects that move the release by less are folded away."""
 
@@ -118,8 +124,9 @@ def bars(rows: list[CsvRow]) -> str:
 
 
 def _rows(results: Results) -> list[CsvRow]:
-    """The budget, with what the target `humidity` computed where it ran."""
+    """The budget, with what the targets `humidity` and `lifetime` computed where they ran."""
     computed = {"humid air": _by_humidity(results)}
+    computed |= {name: _by_ageing(results, effect) for effect, name in AGEING.items()}
     rows = [{**row, **computed.get(row["effect"], {})} for row in results.csv("answer/budget.csv")]
     return sorted(rows, key=lambda row: -np.nan_to_num(number(row["volts"]), nan=-1.0))
 
@@ -140,6 +147,29 @@ def _by_humidity(results: Results) -> CsvRow:
         "about": about,
         "how": "computed",
         "source": "humidity/humidity.csv",
+    }
+
+
+def _by_ageing(results: Results, effect: str) -> CsvRow:
+    """By how much an effect of ageing moves the release by the end of a life, by the central
+    guess.
+    """
+    rows = [row for row in results.rows("lifetime/ageing.csv") if row["effect"] == effect]
+    if not rows:
+        return {}
+    ends = {row["guess"]: number(row["release_V"]) for row in rows}
+    fresh = number(rows[0]["release_V"])
+    least, central, most = (fresh - ends[guess] for guess in ("least", "central", "most"))
+    years = results.json("lifetime/lifetime.json")["years"]
+    about = (
+        f"{show(years)} years of hold, {show(least, 2)} to {show(most, 2)} V by assumed ranges"
+        f"{'; it may stick' * (ends['most'] == 0.0)}"
+    )
+    return {
+        "volts": str(central),
+        "about": about,
+        "how": "computed",
+        "source": "lifetime/ageing.csv",
     }
 
 

@@ -4,17 +4,25 @@ from collections.abc import Iterator
 from typing import Any
 
 from workflow.report.available import CsvRow, Results
-from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
+from workflow.report.drawing import BLUE, GREEN, ORANGE, SOFT, draw
 from workflow.report.numbers import cell, column, show
 from workflow.report.page import Block, Figure, stage, table
 from workflow.report.verdict import volts
 
 COLORS = {"least": SOFT, "central": BLUE, "most": ORANGE}
+EFFECTS = {"beam": "creep of the beam", "tops": "creep of the tops", "bonds": "bonds"}
+AGEING_COLORS = {"beam": ORANGE, "tops": GREEN, "bonds": BLUE, "all": SOFT}
 PUBLISHED = "published lives of capacitive switches shorten tenfold for 5 to 7 V"
 UNKNOWN = "the rates are not known"
 
 
-@stage("Held for years", "lifetime/lifetime.csv", "lifetime/holds.csv", "lifetime/lifetime.json")
+@stage(
+    "Held for years",
+    "lifetime/lifetime.csv",
+    "lifetime/holds.csv",
+    "lifetime/lifetime.json",
+    also=("lifetime/ageing.csv",),
+)
 def describe(results: Results) -> Iterator[Block]:
     """Voltages against the time of hold, and what a hold voltage costs."""
     life = results.json("lifetime/lifetime.json")
@@ -35,6 +43,13 @@ def describe(results: Results) -> Iterator[Block]:
         " below 1 V/nm, so that the fastest charge there is a bound. A measured drift of the same"
         f" film would settle the rates. {_allowed(life)}"
     )
+    if ageing := results.rows("lifetime/ageing.csv"):
+        yield of_ageing(life["ageing"], ageing)
+        yield Figure(
+            _ageing_against_time(ageing),
+            "Release of the central switch without charge against the time of hold, by each effect"
+            " of ageing alone and by all. Lines: central guess; bands: least to most ageing.",
+        )
     holds = [row for row in results.csv("lifetime/holds.csv") if row["guess"] == "central"]
     yield table(
         "The end of the life at other hold voltages, at the central guess; shares that fail are"
@@ -88,6 +103,48 @@ def _allowed(life: dict[str, Any]) -> str:
         f"With no more than one failure in a million the largest hold is {', '.join(largest)},"
         " extrapolated by normal tails."
     )
+
+
+def of_ageing(ageing: dict[str, Any], rows: list[CsvRow]) -> str:
+    """What creep and bonds do by the end of the life, and that menisci are there before."""
+    ends = {(row["effect"], row["guess"]): float(row["release_V"]) for row in rows}
+    fresh = volts(float(rows[0]["release_V"]))
+    said = []
+    for effect in ageing["strengths"]:
+        low, middle, high = (volts(ends[effect, guess]) for guess in ("most", "central", "least"))
+        said.append(f"{EFFECTS[effect]} it goes to {middle} ({low} to {high})")
+    words = "; by ".join(said) if said else "no effect acts here"
+    return (
+        f"Without charge the central switch lets go at {fresh} at first. By {words}. Ranges of"
+        " relaxing shares, grains, hardness and bonds are assumptions. Menisci form within"
+        f" {show(1e3 * ageing['menisci_99_s'], 2)} ms of closing, so that only shorter holds have"
+        " fewer."
+    )
+
+
+def _ageing_against_time(rows: list[CsvRow]) -> str:
+    def plot(axis):
+        for effect, color in AGEING_COLORS.items():
+            by_guess = {
+                guess: [
+                    row
+                    for row in rows
+                    if (row["effect"], row["guess"]) == (effect, guess) and float(row["time_s"])
+                ]
+                for guess in COLORS
+            }
+            if not by_guess["central"]:
+                continue
+            times = column(by_guess["central"], "time_s")
+            low, middle, high = (
+                column(by_guess[guess], "release_V") for guess in ("most", "central", "least")
+            )
+            axis.fill_between(times, low, high, color=color, alpha=0.15, linewidth=0)
+            axis.plot(times, middle, color=color, label=EFFECTS.get(effect, effect))
+        axis.set(xscale="log", xlabel="time of hold (s)", ylabel="release (V)")
+        axis.legend()
+
+    return draw("lifetime-ageing", "Release against hold time, by ageing", plot)
 
 
 def _against_time(rows: list[CsvRow]) -> str:
