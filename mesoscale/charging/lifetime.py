@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from mesoscale.answer.switches import PadModel, Solved, surfaces_of
+from mesoscale.charging.cycles import driven_V
 from mesoscale.charging.gaps import GAPS_NM, RISES_NM, HeldGaps, held_gaps
-from mesoscale.charging.rates import GUESSES, Rates, contactless_V, guesses, held_s, shifts_V
+from mesoscale.charging.rates import GUESSES, Rates, contactless_V, guesses
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import PadCurves
 from mesoscale.settings import ContactSettings, DeviceSettings, LifetimeSettings
@@ -84,12 +85,10 @@ class SwitchLife:
     ) -> tuple[Array, Array]:
         """Even shift (V), and U^2 at the telling rise (V^2), after times (s) at a drive."""
         felt_V = hold_V - self.shift_V
-        held = held_s(times, settings)
-        shifts = shifts_V(felt_V, GAPS_NM, held, self.gaps.device, settings, rates)
+        shifts = driven_V(felt_V, GAPS_NM, times, self.gaps.device, settings, rates)
         classes = self.gaps.class_V(shifts)
         squares = np.einsum("ct,cd,dt->t", classes, self.gaps.uneven[TELLING], classes)
-        sign = np.sign(1.0 - 2.0 * settings.other_polarity)
-        return sign * self.gaps.mean_V(shifts) - contactless_V(times, settings), squares
+        return self.gaps.mean_V(shifts) - contactless_V(times, settings), squares
 
     def voltages(self, shift: Array, squares: Array) -> tuple[Array, Array]:
         """Drives at which it closes and lets go with so much charge; 0: it sticks."""
@@ -144,9 +143,7 @@ def life_with(
     times = times_s(settings)
     largest_squares = np.zeros(RISES_NM.size)
     for rates in guesses(settings).values():
-        shifts = shifts_V(
-            hold_V - shift, GAPS_NM, held_s(times, settings), gaps.device, settings, rates
-        )
+        shifts = driven_V(hold_V - shift, GAPS_NM, times, gaps.device, settings, rates)
         classes = gaps.class_V(shifts)
         squares = np.einsum("ct,rcd,dt->rt", classes, gaps.uneven, classes)
         largest = squares[:, np.argmax(squares[TELLING])]

@@ -10,7 +10,7 @@ with K = 1 / (eps0 eps) where it touches, and t / [eps0 (eps g + t)] across a ga
 is exact at all times: nothing is stepped.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,23 +53,52 @@ class Rates:
     injection_A_m2 : current that stays where it touches, at 1 MV/cm.
     barrier_eV : of emission.
     most_e_cm2 : charge that the surface holds.
+    recovery_exponent : of the power law by which charge leaks in a rest.
     """
 
     injection_A_m2: float
     barrier_eV: float
     most_e_cm2: float
+    recovery_exponent: float = 0.0
 
 
 def guesses(settings: LifetimeSettings) -> dict[str, Rates]:
     """The rates of least charge, of the middle and of most; a high barrier lets least through."""
-    (slow, fast), (low, high), (few, many) = (getattr(settings, name) for name in RANGES)
+    (slow, fast), (low, high), (few, many), (keeps, leaks) = (
+        getattr(settings, name) for name in RANGES
+    )
     return {
-        "least": Rates(slow, high, few),
+        "least": Rates(slow, high, few, leaks),
         "central": Rates(
-            float(np.sqrt(slow * fast)), 0.5 * (low + high), float(np.sqrt(few * many))
+            float(np.sqrt(slow * fast)),
+            0.5 * (low + high),
+            float(np.sqrt(few * many)),
+            0.5 * (keeps + leaks),
         ),
-        "most": Rates(fast, low, many),
+        "most": Rates(fast, low, many, keeps),
     }
+
+
+def slowness_and_times(
+    current: Current, start: Array, lowering: Array, lost: Array = LOST
+) -> tuple[Array, Array]:
+    """Logarithms of 1 / J with nothing lost and at each share, shape (places, shares + 1), and of
+    the times (s) that it takes to lose these shares, shape (places, shares).
+
+    Parameters
+    ----------
+    start, lowering, lost : see `lost_share`.
+    """
+    edges = np.concatenate([[0.0], lost])
+    fields = start[:, None] * (1.0 - edges)
+    with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
+        slowness = np.minimum(-np.log(current(fields)), NEVER)
+        # 1 / J grows as an exponential of the field between two of them
+        growth = np.diff(slowness, axis=1)
+        mean = np.where(growth > 1e-6, -np.expm1(-growth) / np.maximum(growth, 1e-6), 1.0)
+        steps = np.log(start[:, None] * np.diff(edges) / lowering[:, None]) + slowness[:, 1:]
+        after = np.minimum(np.logaddexp.accumulate(steps + np.log(mean), axis=1), NEVER)
+    return slowness, after
 
 
 def lost_share(
@@ -89,15 +118,8 @@ def lost_share(
     """
     if times.min(initial=0.0) < 0.0:
         raise ValueError(f"a time of {times.min():g} s: times are not below zero")
-    edges = np.concatenate([[0.0], lost])
-    fields = start[:, None] * (1.0 - edges)
-    with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
-        slowness = np.minimum(-np.log(current(fields)), NEVER)
-        # 1 / J grows as an exponential of the field between two of them
-        growth = np.diff(slowness, axis=1)
-        mean = np.where(growth > 1e-6, -np.expm1(-growth) / np.maximum(growth, 1e-6), 1.0)
-        steps = np.log(start[:, None] * np.diff(edges) / lowering[:, None]) + slowness[:, 1:]
-        after = np.minimum(np.logaddexp.accumulate(steps + np.log(mean), axis=1), NEVER)
+    _, after = slowness_and_times(current, start, lowering, lost)
+    with np.errstate(divide="ignore"):
         log_times = np.log(times)
     logarithms = np.log(lost)
     shares = np.empty((start.size, times.size))
@@ -127,8 +149,30 @@ def shifts_V(
     shifts = np.zeros((gaps_nm.size, times.size))
     if voltage <= 0.0:
         return shifts
+    for places, current, start, lowering in charged_places(
+        voltage, gaps_nm, device, settings, rates
+    ):
+        shifts[places] = voltage * lost_share(current, start, lowering, times, lost)
+    return np.minimum(shifts, most_V(device, rates))
+
+
+def most_V(device: DeviceSettings, rates: Rates) -> float:
+    """Shift (V) of a place whose traps are full."""
+    density = rates.most_e_cm2 * PER_CM2
+    return float(charge_shift(density, device.dielectric_nm, device.permittivity))
+
+
+def charged_places(
+    voltage: float,
+    gaps_nm: Array,
+    device: DeviceSettings,
+    settings: LifetimeSettings,
+    rates: Rates,
+) -> Iterator[tuple[NDArray[np.bool_], Current, Array, Array]]:
+    """Places where charge enters: which they are, its current by the field, the field (V/m) that a
+    voltage makes, and K (V/m per C/m^2).
+    """
     touching = gaps_nm <= 0.0
-    thick_m = device.dielectric_nm * NM
     kelvin = device.temperature_C + ZERO_C_K
 
     def injected(field: Array) -> Array:
@@ -141,18 +185,17 @@ def shifts_V(
         return np.asarray(emission_current(np.minimum(field, highest), rates.barrier_eV))
 
     if touching.any():
-        start = np.array([voltage / thick_m])
-        lowering = np.array([1.0 / (VACUUM_PERMITTIVITY * device.permittivity)])
-        shifts[touching] = voltage * lost_share(injected, start, lowering, times, lost)
+        count = int(touching.sum())
+        field = voltage / (device.dielectric_nm * NM)
+        lowering = 1.0 / (VACUUM_PERMITTIVITY * device.permittivity)
+        yield touching, injected, np.full(count, field), np.full(count, lowering)
     if not touching.all() and settings.electrode == "negative":
         gaps = gaps_nm[~touching]
         vacuum_m = (gaps + device.dielectric_gap_nm) * NM
         lowering = device.dielectric_nm / (
             VACUUM_PERMITTIVITY * (device.permittivity * gaps + device.dielectric_nm)
         )
-        shifts[~touching] = voltage * lost_share(emitted, voltage / vacuum_m, lowering, times, lost)
-    full = charge_shift(rates.most_e_cm2 * PER_CM2, device.dielectric_nm, device.permittivity)
-    return np.minimum(shifts, full)
+        yield ~touching, emitted, voltage / vacuum_m, lowering
 
 
 def held_s(times: Array, settings: LifetimeSettings) -> Array:

@@ -8,7 +8,8 @@ from asperity.guards.settings import Settings, key
 
 Positive = Annotated[float, Field(gt=0.0)]
 Range = tuple[Positive, Positive]
-RANGES = ("injection_A_m2", "barrier_eV", "traps_e_cm2")
+Exponent = Annotated[float, Field(ge=0.0, le=5.0)]
+RANGES = ("injection_A_m2", "barrier_eV", "traps_e_cm2", "recovery_exponent")
 
 
 class LifetimeSettings(Settings):
@@ -54,6 +55,19 @@ class LifetimeSettings(Settings):
         "share of the time held with the other polarity, which undoes as much; not 0.5",
         "[0, 1]",
     )
+    period_s: float | None = key(
+        None,
+        "period of the drive: hold, hold of the other polarity, rest, in which charge leaks; null:"
+        " cycles are not followed, the time that counts is held time",
+        "[1e-6, 1e9] s",
+    )
+    recovery_exponent: tuple[Exponent, Exponent] = key(
+        (0.05, 0.3),
+        "charge left after a rest r is (1 + r / recovery_s)^-exponent; 0: all of it; a power law is"
+        " what is measured (Koutsoureli et al., IRPS 2011, doi 10.1109/IRPS.2011.5784490), its"
+        " exponent is an assumption",
+    )
+    recovery_s: Positive = key(1.0, "rest after which the power law begins; assumption", "s")
 
     @model_validator(mode="after")
     def _rising(self) -> "LifetimeSettings":

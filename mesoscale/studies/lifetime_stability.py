@@ -48,6 +48,15 @@ LIFE: dict[str, Changes] = {
     "the other polarity alone": {"other_polarity": 1.0},
     "alternating, nearly to nothing": {"other_polarity": 0.4999},
     "held for a millionth of the time": {"duty": 1e-6},
+    "cycles that leak": {"period_s": 1.0, "duty": 0.5},
+    "cycles of a microsecond for a thousand years": {
+        "period_s": 1e-6,
+        "duty": 0.5,
+        "years": 1000.0,
+    },
+    "a cycle longer than the life": {"period_s": 1e9, "duty": 0.5},
+    "a leak that leaves nothing": {"period_s": 1.0, "duty": 1e-3, "recovery_exponent": (5.0, 5.0)},
+    "cycles that alternate, nearly to nothing": {"period_s": 1e-3, "other_polarity": 0.4999},
     "contactless charge that closes it": {"contactless_V": 100.0},
     "traps as of a vacuum": {"optical_permittivity": 1.0},
     "traps as of a metal": {"optical_permittivity": 100.0},
@@ -72,6 +81,8 @@ SURFACE: dict[str, tuple[float, float]] = {
 """Mean separation, and RMS height (nm)."""
 REFUSED: dict[str, tuple[Changes, Changes, str]] = {
     "polarities that sum to nothing": ({"other_polarity": 0.5}, {}, "sum to nothing"),
+    "cycles without length": ({"period_s": 0.0}, {}, "period_s"),
+    "a leak that grows": ({"recovery_exponent": (-0.2, 0.1)}, {}, "recovery_exponent"),
     "a barrier of zero": ({"barrier_eV": (0.0, 4.0)}, {}, "barrier_eV"),
     "a range that falls": ({"injection_A_m2": (1e-3, 1e-9)}, {}, "least value first"),
     "no life": ({"years": None}, {}, "give the life that is asked for"),
