@@ -8,7 +8,7 @@ again.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -269,16 +269,20 @@ def ageing_of(
             asked.add((effect,))
     states = switch_of(felt).states(curves)
 
+    @cache  # guesses may agree
+    def voltages_at(relaxed: float, bonds_mJ_m2: float) -> tuple[float, float]:
+        pad = curves
+        if bonds_mJ_m2 > 0.0:
+            pad = bonded(curves, 1e-3 * bonds_mJ_m2, shared.tops_GPa)
+        return crept_voltages(felt, held, relaxed, pad)
+
     def solved(effects: tuple[Effect, ...], guess: str) -> Moved:
         voltages = [(states.pull_in_V, states.release_V)]
         for time in ageing.times_of(effects, guess)[:, None]:
             strengths = {
                 effect: float(ageing.strength(effect, time, guess)[0]) for effect in effects
             }
-            pad = curves
-            if "bonds" in effects:
-                pad = bonded(curves, 1e-3 * strengths["bonds"], shared.tops_GPa)
-            voltages.append(crept_voltages(felt, held, strengths.get("beam", 0.0), pad))
+            voltages.append(voltages_at(strengths.get("beam", 0.0), strengths.get("bonds", 0.0)))
         return _moved(voltages, np.array([0.0, *AGES]))
 
     for effects in asked:

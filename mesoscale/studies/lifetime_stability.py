@@ -87,31 +87,29 @@ TOPS_GPA = 5.0
 HUMIDITY = 0.2
 NICKEL: Changes = {"beam": "nickel"}
 BONDS: Changes = {"bonds_mJ_m2": (3.0, 100.0)}
+PLATE: Changes = {"spring_N_per_m": 1000.0}
 AGEING: dict[str, tuple[Changes, Changes, float]] = {
     "all effects": ({**NICKEL, **BONDS}, {}, HUMIDITY),
     "creep that collapses": ({**NICKEL, "grain_nm": (0.1, 0.1)}, {}, HUMIDITY),
-    "grains of a millimetre": ({**NICKEL, "grain_nm": (1e6, 1e6)}, {}, HUMIDITY),
-    "nickel at 4 K": (NICKEL, {"temperature_C": -269.0, "gap_um": 1.0}, HUMIDITY),
-    "nickel at 1000 C": (
-        NICKEL,
-        {"temperature_C": 1000.0, "excess_expansion_ppm_C": 0.0},
-        HUMIDITY,
-    ),
-    "gold that relaxes wholly": ({"beam": "gold", "relaxing": (1.0, 1.0)}, {}, HUMIDITY),
-    "gold that hardly relaxes": ({"beam": "gold", "relaxing": (1e-12, 1e-12)}, {}, HUMIDITY),
-    "aluminium": ({"beam": "aluminium"}, {}, HUMIDITY),
     "a cantilever": (
         NICKEL,
         {"ends": "cantilever", "length_um": 250.0, "thickness_um": 3.0, "hold_voltage_V": 40.0},
         HUMIDITY,
     ),
-    "a plate that creeps": (NICKEL, {"spring_N_per_m": 1000.0}, HUMIDITY),
-    "bonds in dry air": (BONDS, {}, 0.0),
-    "bonds at 1 % of humidity": (BONDS, {}, 0.01),
-    "bonds at 100 % of humidity": (BONDS, {}, 1.0),
+    "aluminium": ({"beam": "aluminium"}, {}, HUMIDITY),
+    "gold that relaxes wholly": ({"beam": "gold", "relaxing": (1.0, 1.0)}, {}, HUMIDITY),
     "bonds that hold it": ({"bonds_mJ_m2": (1e5, 1e5)}, {}, HUMIDITY),
-    "bonds next to nothing": ({"bonds_mJ_m2": (1e-12, 1e-12)}, {}, HUMIDITY),
-    "charged, and creeping": (NICKEL, {"charge_e_cm2": -5e11}, HUMIDITY),
+    "a plate that creeps": (NICKEL, PLATE, HUMIDITY),
+    "grains of a millimetre": ({**NICKEL, "grain_nm": (1e6, 1e6)}, PLATE, HUMIDITY),
+    "nickel at 4 K": (NICKEL, {**PLATE, "temperature_C": -269.0}, HUMIDITY),
+    "nickel at 1000 C": (NICKEL, {**PLATE, "temperature_C": 1000.0}, HUMIDITY),
+    "gold that hardly relaxes": ({"beam": "gold", "relaxing": (1e-12, 1e-12)}, PLATE, HUMIDITY),
+    "gold at 4 K": ({"beam": "gold"}, {**PLATE, "temperature_C": -269.0}, HUMIDITY),
+    "bonds in dry air": (BONDS, PLATE, 0.0),
+    "bonds at 1 % of humidity": (BONDS, PLATE, 0.01),
+    "bonds at 100 % of humidity": (BONDS, PLATE, 1.0),
+    "bonds next to nothing": ({"bonds_mJ_m2": (1e-12, 1e-12)}, PLATE, HUMIDITY),
+    "charged, and creeping": (NICKEL, {**PLATE, "charge_e_cm2": -5e11}, HUMIDITY),
 }
 """What ages, of which device, at which humidity."""
 REFUSED: dict[str, tuple[Changes, Changes, str]] = {

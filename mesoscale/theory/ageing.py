@@ -39,6 +39,8 @@ FILM_NM = (0.385, 0.189)
 MENISCUS_S, MENISCUS_K = 4.2e-3, 299.0
 """Time in which menisci form at 40 % humidity, and the temperature at which it was measured."""
 MENISCUS_EV = 7.8e-20 / elementary_charge
+LARGEST_EXPONENT = 690.0
+"""Of a time in s, so that none of a cold switch overflows."""
 BOND_S = 0.1
 """Ageing of silica is linear in time below it, and logarithmic above (PRL 124, 026801)."""
 BOND_HUMIDITIES = (0.01, 0.10, 0.40, 0.60)
@@ -54,9 +56,7 @@ def gold_relaxation_s(temperature: ArrayLike) -> Array:
     """
     barrier = thermal_barrier(GOLD_K, GOLD_S)
     at_295_K = np.exp(np.mean(np.log(GOLD_S / thermal_ratio(barrier, GOLD_K, GOLD_K[0]))))
-    return np.asarray(
-        at_295_K * thermal_ratio(barrier, np.asarray(temperature, float), float(GOLD_K[0]))
-    )
+    return _over_barrier(float(at_295_K), barrier, temperature, float(GOLD_K[0]))
 
 
 def coble_relaxation_s(temperature: ArrayLike, grain: ArrayLike, modulus: float) -> Array:
@@ -74,8 +74,7 @@ def coble_relaxation_s(temperature: ArrayLike, grain: ArrayLike, modulus: float)
     log_diffusion = np.log(NICKEL_BOUNDARY_M3_S) - NICKEL_BOUNDARY_J_MOL / (GAS_CONSTANT * kelvin)
     geometry = Boltzmann * kelvin * (np.asarray(grain, float) * NM) ** 3
     log_time = np.log(geometry / (COBLE * NICKEL_ATOM_M3 * modulus * GPA)) - log_diffusion
-    # no time of a cold metal overflows
-    return np.exp(np.minimum(log_time, 700.0))
+    return np.exp(np.minimum(log_time, LARGEST_EXPONENT))
 
 
 def relaxed_share(time: ArrayLike, relaxation: ArrayLike, most: ArrayLike = 1.0) -> Array:
@@ -119,8 +118,7 @@ def adsorbed_film(humidity: ArrayLike) -> Array:
 
 def meniscus_time_s(temperature: ArrayLike) -> Array:
     """Time in which menisci form, over a barrier of 7.8e-20 J from 4.2 ms at 299 K."""
-    kelvin = np.asarray(temperature, float)
-    return np.asarray(MENISCUS_S * thermal_ratio(MENISCUS_EV, kelvin, MENISCUS_K))
+    return _over_barrier(MENISCUS_S, MENISCUS_EV, temperature, MENISCUS_K)
 
 
 def menisci_formed(time: ArrayLike, temperature: ArrayLike) -> Array:
@@ -156,6 +154,15 @@ def bond_energy(time: ArrayLike, humidity: ArrayLike, per_decade: ArrayLike) -> 
     """
     decades = np.log1p(_times(time) / BOND_S) / np.log(10.0)
     return np.asarray(per_decade * decades * bonding_share(humidity))
+
+
+def _over_barrier(
+    reference_s: float, barrier: float, temperature: ArrayLike, reference_K: float
+) -> Array:
+    """Time over a barrier (eV) at a temperature, by that at another."""
+    inverse = 1.0 / np.asarray(temperature, float) - 1.0 / reference_K
+    exponent = barrier * elementary_charge / Boltzmann * inverse
+    return np.asarray(reference_s * np.exp(np.minimum(exponent, LARGEST_EXPONENT)))
 
 
 def _times(time: ArrayLike) -> Array:

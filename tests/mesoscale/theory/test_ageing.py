@@ -110,12 +110,12 @@ def test_bonds_grow_between_1_and_40_percent_of_humidity():
 @pytest.mark.parametrize("kelvin", [4.0, 77.0, 293.15, 1000.0, 2000.0])
 @pytest.mark.parametrize("seconds", [0.0, 1e-300, 1.0, 1e9, 1e300])
 def test_every_law_is_finite_at_all_times_and_temperatures(kelvin, seconds):
-    with np.errstate(over="ignore"):
-        relaxations = [
-            ageing.gold_relaxation_s(kelvin),
-            ageing.coble_relaxation_s(kelvin, 50.0, 152.0),
-            ageing.meniscus_time_s(kelvin),
-        ]
+    relaxations = [
+        ageing.gold_relaxation_s(kelvin),
+        ageing.coble_relaxation_s(kelvin, 50.0, 152.0),
+        ageing.meniscus_time_s(kelvin),
+    ]
+    assert np.isfinite(relaxations).all()
     shares = np.array([ageing.relaxed_share(seconds, relaxation) for relaxation in relaxations])
     assert ((shares >= 0.0) & (shares <= 1.0)).all()
     if seconds == 0.0:
