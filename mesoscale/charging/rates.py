@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.settings import DeviceSettings, LifetimeSettings
-from mesoscale.settings.lifetime import RANGES
 from mesoscale.switch.charge import PER_CM2
 from mesoscale.theory.charging import IMAGE_FORCE, charge_shift, emission_current, frenkel_ratio
 from mesoscale.units import NM, VACUUM_PERMITTIVITY
@@ -64,9 +63,10 @@ class Rates:
 
 def guesses(settings: LifetimeSettings) -> dict[str, Rates]:
     """The rates of least charge, of the middle and of most; a high barrier lets least through."""
-    (slow, fast), (low, high), (few, many), (keeps, leaks) = (
-        getattr(settings, name) for name in RANGES
-    )
+    slow, fast = settings.injection_A_m2
+    low, high = settings.barrier_eV
+    few, many = settings.traps_e_cm2
+    keeps, leaks = settings.recovery_exponent
     return {
         "least": Rates(slow, high, few, leaks),
         "central": Rates(
