@@ -15,7 +15,7 @@ from mesoscale.answer.points import Design, Point
 from mesoscale.errors import InputError
 from mesoscale.pad.cells import FIRST_SEED, sample_cells
 from mesoscale.pad.closing import press_cells
-from mesoscale.pad.grid import DEPTHS
+from mesoscale.pad.grid import DEPTHS, usual_step_nm
 from mesoscale.pad.pilots import Pilots, closed_until
 from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings
@@ -30,6 +30,11 @@ UNDECIDED_SHARE = 0.008
 default switch."""
 UNDECIDED_OF_RELEASE = 0.1
 """The same over the release; it must exceed both."""
+NEARLY_STICKS = 0.04
+"""Release over pull-in, below which the steps of separation matter: there a small change of the
+pull moves the release by volts (python -m evidence answer.steps)."""
+HALVINGS = 2
+"""Most of these steps."""
 SEEDS_APART = 1_000_000
 """Between the first surfaces of two points."""
 
@@ -98,6 +103,21 @@ class Solved:
         )
         return disagree or not self.error_V <= enough_V
 
+    @property
+    def nearly_sticks(self) -> bool:
+        """Whether it lets go at a voltage so low that the steps of separation matter."""
+        return (
+            self.states is not None
+            and 0.0 < self.states.release_V < NEARLY_STICKS * self.states.pull_in_V
+        )
+
+    def moves_little(self, finer: States) -> bool:
+        """Whether shorter steps move the release by less than the number of cells does."""
+        if self.states is None:
+            return False
+        enough_V = max(self.error_V, UNDECIDED_OF_RELEASE * self.states.release_V)
+        return abs(finer.release_V - self.states.release_V) <= enough_V
+
 
 def solve_point(
     point: Point,
@@ -105,10 +125,11 @@ def solve_point(
     cells: int,
     first_seed: int,
     progress: Progress | None = None,
+    step_nm: float | None = None,
 ) -> Solved:
     """The switch of a point on a pad of so many cells; a point without an answer has the reason."""
     try:
-        pad = press_pad(point, contact, cells, first_seed, progress=progress)
+        pad = press_pad(point, contact, cells, first_seed, step_nm=step_nm, progress=progress)
     except InputError as error:
         return Solved(point, None, None, (np.nan, np.nan), str(error))
     return solved_on(point, pad)
@@ -170,12 +191,34 @@ def surfaces_of(number: int) -> int:
 def solve_points(
     points: Sequence[tuple[int, Point]], contact: ContactSettings, cells: int
 ) -> Iterator[Solved]:
-    """The switches of points, each with its number; one that is undecided has more cells."""
+    """The switches of points, each with its number.
+
+    One that is undecided has more cells, and one that nearly sticks has shorter steps.
+    """
     for number, point in points:
         solved = solve_point(point, contact, cells, surfaces_of(number))
         if solved.undecided:
             solved = solve_point(point, contact, MORE_CELLS * cells, surfaces_of(number))
+        if solved.nearly_sticks:
+            solved = _in_shorter_steps(solved, contact, surfaces_of(number))
         yield solved
+
+
+def _in_shorter_steps(solved: Solved, contact: ContactSettings, first_seed: int) -> Solved:
+    """The same switch, its steps of separation halved until its release is stable."""
+    inputs, _ = solved.point.contact_of(contact)
+    step_nm = usual_step_nm(inputs.rms)
+    cells = solved.pressed.count
+    for _ in range(HALVINGS):
+        step_nm *= 0.5
+        finer = solve_point(solved.point, contact, cells, first_seed, step_nm=step_nm)
+        if finer.states is None:
+            break
+        stable = solved.moves_little(finer.states)
+        solved = finer
+        if stable:
+            break
+    return solved
 
 
 @dataclass(frozen=True)

@@ -18,10 +18,13 @@ with job(snakemake) as run:
     groups = {}
     attributes = {}
     files = list(snakemake.input.scans)
+    scene_folder = Path(snakemake.output[0]).parents[2]
     for number, path in enumerate(files):
         stem = Path(path).stem
         label = stem if not settings.scans else f"{snakemake.params.first + number + 1:02d}_{stem}"
-        origin = {"file": path, "sha256": file_checksum(path)}
+        # the same words in all scenes that write the same scans, so that they share their pads
+        shown = path if settings.scans else str(Path(path).relative_to(scene_folder))
+        origin = {"file": shown, "sha256": file_checksum(path)}
         for measured in load_measurements(path, label, settings):
             name = measured.data.name
             arrays, described = record(measured, settings)

@@ -20,11 +20,11 @@ from mesoscale.answer.release import (
     shrinks_by,
     switch_on_pad,
 )
-from mesoscale.answer.switches import PadModel, solve_point, solve_points
+from mesoscale.answer.switches import PadModel, Solved, solve_point, solve_points
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.table import input_table
 from mesoscale.pad.curves import closing_alone
-from mesoscale.pad.grid import PadGrid
+from mesoscale.pad.grid import PadGrid, usual_step_nm
 from mesoscale.pad.pressed import Pad
 from mesoscale.settings import ContactSettings, InputRow
 from mesoscale.studies.answer_stability import published_beam
@@ -151,6 +151,29 @@ def test_an_undecided_point_has_more_cells_and_a_decided_one_has_not(known, monk
     monkeypatch.setattr(switches, "UNDECIDED_OF_RELEASE", 1e-6)
     list(solve_points([(1, point)], CONTACT, 2))
     assert asked[1:] == [2, 2 * switches.MORE_CELLS]
+
+
+def test_a_point_that_nearly_sticks_has_shorter_steps_until_it_is_stable(known, monkeypatch):
+    steps = []
+    press = switches.press_pad
+
+    def counted(point, contact, cells, first_seed, *, step_nm=None, **options):
+        steps.append(step_nm)
+        return press(point, contact, cells, first_seed, **options)
+
+    monkeypatch.setattr(switches, "press_pad", counted)
+    point = central_point(TABLE, CONTACT, PLATE)
+    (usual,) = solve_points([(1, point)], CONTACT, 2)
+    assert not usual.nearly_sticks
+    assert steps == [None]
+    monkeypatch.setattr(switches, "NEARLY_STICKS", 1.0)
+    (stable,) = solve_points([(1, point)], CONTACT, 2)
+    half_nm = 0.5 * usual_step_nm(point.values["rms"])
+    assert steps[1:] == [None, half_nm]  # the same pad: the first halving moves nothing
+    assert stable.states.release_V == usual.states.release_V
+    monkeypatch.setattr(Solved, "moves_little", lambda *_: False)
+    list(solve_points([(1, point)], CONTACT, 2))
+    assert steps[3:] == [None, half_nm, 0.5 * half_nm]
 
 
 def test_a_point_that_cannot_be_pressed_leaves_its_reason(monkeypatch):
