@@ -12,17 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.constants import Boltzmann, elementary_charge
 
+from mesoscale.answer.switches import Solved, surfaces_of
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.posterior import Posterior, Progress
 from mesoscale.calibration.sampling import Chain, Sampling
 from mesoscale.calibration.values import ValueData
 from mesoscale.charging.cycles import driven_V
-from mesoscale.charging.gaps import GAPS_NM, HeldGaps
+from mesoscale.charging.gaps import GAPS_NM, HeldGaps, held_gaps
+from mesoscale.charging.lifetime import times_s
 from mesoscale.charging.rates import GUESSES, ZERO_C_K, Rates, contactless_V, shifts_V
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
-from mesoscale.settings import LifetimeSettings
+from mesoscale.settings import ContactSettings, LifetimeSettings
 from mesoscale.settings.lifetime import RANGES
-from mesoscale.switch.charge import PER_CM2
+from mesoscale.switch.charge import PER_CM2, shift_V
 from mesoscale.theory.charging import charge_shift
 
 Array = NDArray[np.float64]
@@ -101,14 +103,14 @@ class DriftModel:
 
 
 def drift_model(
-    data: Measurements, gaps: HeldGaps, shift_V: float, humidity: float, settings: LifetimeSettings
+    data: Measurements, gaps: HeldGaps, before_V: float, humidity: float, settings: LifetimeSettings
 ) -> DriftModel:
     """The model of a table of drift.
 
     Parameters
     ----------
     gaps : of the switch that was measured.
-    shift_V : of it before it was held.
+    before_V : its shift before it was held.
     humidity : of rows that name none, for which the rates hold.
     """
     columns = data.columns
@@ -116,7 +118,7 @@ def drift_model(
     seconds = columns["time"]
     usual = np.full(len(data), device.temperature_C)
     temperatures = columns.get("temperature", usual)
-    felt_V = columns["hold"] - shift_V
+    felt_V = columns["hold"] - before_V
     injected = np.zeros((len(data), INJECTED_C_M2.size))
     for volts, celsius in set(zip(felt_V.tolist(), temperatures.tolist(), strict=True)):
         rows = (felt_V == volts) & (temperatures == celsius)
@@ -248,6 +250,43 @@ def telling_rates(
     ]
     order = np.argsort(np.abs(shifts))
     return {guess: drawn[order[round(ENDS[guess] * (len(drawn) - 1))]] for guess in GUESSES}
+
+
+def rates_by_drift(
+    data: Measurements,
+    solved: Solved,
+    contact: ContactSettings,
+    settings: LifetimeSettings,
+    progress: Progress | None = None,
+) -> tuple[Drift, dict[str, Rates]]:
+    """What a table of drift of the central switch says of the rates, and three draws that stand for
+    it; none if the chain has not converged.
+
+    Parameters
+    ----------
+    contact : on the grid of the pads.
+
+    Raises
+    ------
+    InputError : the switch has no answer.
+    """
+    gaps = held_gaps(solved, contact, surfaces_of(0))
+    device = solved.point.device
+    before_V = shift_V(device)
+    humidity = contact.air.humidity if contact.air else 0.0
+    drift = narrow_rates(
+        data,
+        drift_model(data, gaps, before_V, humidity, settings),
+        settings,
+        progress=progress,
+    )
+    if drift.reasons:
+        return drift, {}
+    assert solved.states is not None
+    felt_V = solved.states.pull_in_V - before_V
+    if device.hold_voltage_V is not None:
+        felt_V = device.hold_voltage_V - before_V
+    return drift, telling_rates(drift.x, gaps, felt_V, float(times_s(settings)[-1]), settings)
 
 
 def rate_rows(drift: Drift) -> list[dict[str, float]]:
