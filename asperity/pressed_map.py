@@ -21,6 +21,7 @@ from mesoscale.contact.attraction import all_attracting
 from mesoscale.contact.compiling import announced
 from mesoscale.contact.coupled import one_load, validity
 from mesoscale.contact.coupled.base import Alone, Repeated
+from mesoscale.contact.coupled.devices import Device, check_device, fetched, placed
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.coupled.free import FreeContact
 from mesoscale.contact.cycle import (
@@ -191,6 +192,7 @@ def press(
     periodic: bool = True,
     contact_at: ContactAt = "highest",
     attraction: PressureOfGaps | None = None,
+    device: Device = "cpu",
 ) -> PressedMap:
     """Press a map onto a flat, or onto a second map, and return pressure and gap at each load or
     approach.
@@ -216,12 +218,18 @@ def press(
         `random_surface`.
     attraction : pressure (GPa, positive) by which sites attract across their gaps (nm), such as
         ``lambda gap: 0.2 / (6 * np.pi * (gap + 0.3) ** 3)``. It does not deform the surfaces.
+    device : where the loads or approaches are found, one by one: ``"cpu"``, or ``"cuda"``, a GPU,
+        by CuPy or PyTorch. Maps go there and come back as NumPy's. A load that does not settle
+        there is closed to on the processor.
 
     Raises
     ------
     InputError : no such map, side, load or material; maps beyond memory; a load beyond full
-        contact; a tilted map that is periodic; an attraction that is no such function.
+        contact; a tilted map that is periodic; an attraction that is no such function; no such
+        device, or a size effect on a GPU.
+    MissingExtra : no library for the device (extra `gpu`).
     """
+    check_device(device)
     if not isinstance(periodic, (bool, np.bool_)):
         raise InputError(f"periodic = {periodic!r}: accepted are True and False")
     if attraction is not None and not callable(attraction):
@@ -229,7 +237,13 @@ def press(
     model, inputs = material_of_map(e_star, h_macro, h_prime)
     by_load = loads_nN is not None
     steps = _steps(loads_nN, approach_nm)
-    few = steps.size <= FEW_LOADS and inputs.hardness.constant
+    if device != "cpu" and not inputs.hardness.constant:
+        raise InputError(
+            f"h_prime = {h_prime:g} on device = {device!r}: with a size effect the way decides the"
+            " contact, which is followed on the processor alone; take device='cpu', or leave out"
+            " h_prime"
+        )
+    few = (steps.size <= FEW_LOADS or device != "cpu") and inputs.hardness.constant
     surface, spacing = surface_of_maps(
         heights, counterface, side_nm, bool(periodic), contact_at, steps.size, few
     )
@@ -240,7 +254,7 @@ def press(
     offset = float(surface.mean())
     lowest = float(surface.min())
     if few or _one_by_one(surface, steps, by_load, inputs, spacing):
-        states = _each(surface, periodic, steps, by_load, inputs, settings)
+        states = _each(surface, periodic, steps, by_load, inputs, settings, device)
     else:
         states = _way(surface, periodic, steps, by_load, inputs, settings)
     forces, separations, pulls = (np.zeros(steps.size) for _ in range(3))
@@ -380,8 +394,9 @@ def _each(
     by_load: bool,
     inputs: ContactInputs,
     settings: ContactSettings,
+    device: Device,
 ) -> Iterator[_State]:
-    """The map at each load or approach, by itself."""
+    """The map at each load or approach, by itself, found on a device."""
     spacing = settings.length_nm / settings.pixels
     map_kind = Repeated if periodic else Alone
     base = map_kind(surface.shape, spacing, float(inputs.e_star))
@@ -392,15 +407,18 @@ def _each(
         raise _beyond("the hardness", bearing)
     lowest = float(surface.min())
     flat = float(surface.mean())
+    transformed = surface.size if periodic else (2 * max(surface.shape)) ** 2
+    heights = placed(surface, device, transformed)
     for number, step in enumerate(steps.tolist()):
         if by_load and yields:
-            pressed = one_load.press_yielding(surface, step, hardness, base)
+            pressed = one_load.press_yielding(heights, step, hardness, base)
         elif by_load:
-            pressed = one_load.press(surface, step, base)
+            pressed = one_load.press(heights, step, base)
         elif periodic and not yields and step >= flat - lowest:  # no pressure parts the mean planes
             raise _full_contact(surface, inputs, settings)
         else:
-            pressed = one_load.press_to(surface, -lowest - step, base, hardness)
+            pressed = one_load.press_to(heights, -lowest - step, base, hardness)
+        pressed = pressed._replace(pressure=fetched(pressed.pressure), gap=fetched(pressed.gap))
         closed = periodic and bool(pressed.pressure.all())
         if closed and not yields:
             raise _full_contact(surface, inputs, settings)

@@ -68,14 +68,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def rows(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """A row for each map, load, code and tolerance."""
     peer = importlib.util.find_spec("tamaas") is not None
-    small = _case("smooth", 64, 0.05)
+    small = case_of("smooth", 64, 0.05)
     for _ in _single(small, 1, 0):  # all is compiled
         pass
     run_cycle(small.inputs, small.settings, SEED, small.load_nN, small.heights, contact_at="lowest")
     for pixels in options.pixels:
         for what in options.maps:
             for share in options.shares:
-                case = _case(what, pixels, share)
+                case = case_of(what, pixels, share)
                 if options.closing:
                     yield from _closing(case)
                 else:
@@ -83,7 +83,7 @@ def rows(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
                     yield from _single(case, options.repeats, repeats)
 
 
-def _case(what: str, pixels: int, share: float) -> Case:
+def case_of(what: str, pixels: int, share: float) -> Case:
     """A map pressed to about a share of contact."""
     inputs = MIDDLE if what.startswith("rough") else SMOOTH
     cell = {"length_nm": float(pixels)} if what.startswith("rough") else SMOOTH_CELL

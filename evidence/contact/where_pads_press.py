@@ -5,8 +5,8 @@ A pair (there and back, double precision) is timed after every step of the cycle
 has the load of the machine. Film: the medians of scene `reduced` at 40 MPa. Table 1: the paper's
 means, 7 MPa, sites of 1 nm. Shares: a smooth elastic surface closed to a share of contact. tamaas
 solves one elastic load at the largest force; its time is multiplied by the rows of the cycle. Needs
-`pip install tamaas` for the ratio. With `--choices` each numerical choice of the solver is tried on
-the smooth surfaces: the largest error of a net force, over the largest force.
+`pip install tamaas` for the ratio. With `--choices` each numerical choice of the solver is tried,
+or those of a name: the largest error of a net force, over the largest force.
 """
 
 import argparse
@@ -51,7 +51,7 @@ SMOOTH = replace(MIDDLE, rms=2.0, q0=0.015)
 SMOOTH_CELL = {"length_nm": 1000.0, "q1_per_nm": 0.1}
 CHOICES = (  # the first is the reference
     *((CoupledContact, "GRID_TOLERANCE", value) for value in (1e-10, 1e-8, 1e-7, 5e-7, 1e-6, 1e-5)),
-    *((CoupledContact, "DENSE_TIMES_PIXELS", value) for value in (0, 2**18, 2**20)),
+    *((CoupledContact, "DENSE_TIMES_PIXELS", value) for value in (0, 2**18, 2**20, 2**22)),
     *((grid, "DIRECT_PER_PIXEL", value) for value in (0, 2, 4)),
     *((grid, "TABLE_SHARE", value) for value in (0.0, 0.5, 3.0)),
     (grid.Grid, "stencil", np.eye(9)[4]),  # conjugate gradients without preconditioner
@@ -98,13 +98,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--pixels", type=int, nargs="+", default=[256, 512, 1024, 2048])
     parser.add_argument("--only", default="", help="what has these words in its name")
     parser.add_argument("--no-peer", action="store_true", help="without tamaas")
-    parser.add_argument("--choices", action="store_true", help="of the solver, instead")
+    parser.add_argument(
+        "--choices", nargs="?", const="", help="of the solver, instead; those with this in a name"
+    )
 
 
 def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """A row for each grid and cycle; printed as it comes."""
-    if given.choices:
-        yield from _choices(given.pixels)
+    if given.choices is not None:
+        yield from _choices(given)
         return
     peer = importlib.util.find_spec("tamaas") and not given.no_peer
     for case in cases(128):  # all is compiled, or loaded
@@ -125,13 +127,15 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
                 yield row
 
 
-def _choices(grids: Sequence[int]) -> Iterator[dict[str, Any]]:
-    """A row for each choice on each smooth surface; the error is over the largest force."""
-    for case in (
-        case for pixels in grids for case in cases(pixels) if case.name.startswith("smooth")
-    ):
+def _choices(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """A row for each choice on each surface; the error is over the largest force."""
+    for case in (case for pixels in given.pixels for case in cases(pixels)):
+        if given.only not in case.name or case.name == "adhesive":
+            continue
         exact = None
         for owner, name, value in CHOICES:
+            if exact is not None and given.choices not in name:
+                continue
             with mock.patch.object(owner, name, value):
                 row, forces = _timed(case)
             exact = forces if exact is None else exact

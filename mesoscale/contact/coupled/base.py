@@ -7,11 +7,13 @@ twice its sides, where its copies do not reach it (Hockney; doi:10.1016/S0043-16
 import math
 from abc import ABC, abstractmethod
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy import fft
 
 from mesoscale.contact.coupled import free, half_space
+from mesoscale.contact.coupled.devices import is_numpy, namespace
 from mesoscale.settings.contact import Body
 
 Array = np.ndarray
@@ -27,6 +29,7 @@ class Base(ABC):
     spacing : of the sites, nm.
     e_star : effective modulus, GPa.
     transforms : how many there were, there and back.
+    brought : the compliance in double and in single precision, once it is on another device.
     """
 
     repeats: bool
@@ -36,6 +39,7 @@ class Base(ABC):
         self.spacing = spacing
         self.e_star = e_star
         self.transforms = 0
+        self.brought: tuple[Any, Any] | None = None
 
     @abstractmethod
     def compliance(self) -> Array:
@@ -80,9 +84,11 @@ class Base(ABC):
 
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) of all sites by their pressures (GPa), shape (nx, ny), in the
-        precision of the pressures.
+        precision of the pressures, and on their device.
         """
         self.transforms += 1
+        if not is_numpy(pressure):
+            return self._displacement_there(pressure)
         if pressure.dtype == np.float32:
             compliance = self.single_compliance
             room = self.room
@@ -95,6 +101,21 @@ class Base(ABC):
             pressure = np.pad(pressure, ((0, 0), (0, columns - self.shape[1])))
         moved = half_space.convolve(pressure, rows, compliance, room, rows)
         return np.ascontiguousarray(moved[:, : self.shape[1]])
+
+    def _displacement_there(self, pressure: Any) -> Any:
+        """By the transforms of another library."""
+        xp = namespace(pressure)
+        if self.brought is None:
+            double = xp.asarray(self.compliance(), device=pressure.device)
+            self.brought = (double, xp.astype(double, xp.float32))
+        double, single = self.brought
+        compliance = single if pressure.dtype == xp.float32 else double
+        sides = (compliance.shape[0], compliance.shape[0])
+        spectrum = xp.fft.rfftn(pressure, s=sides, axes=(0, 1))
+        spectrum *= compliance
+        moved = xp.fft.irfftn(spectrum, s=sides, axes=(0, 1))
+        rows, columns = self.shape
+        return moved[:rows, :columns]
 
 
 class Repeated(Base):

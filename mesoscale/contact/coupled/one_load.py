@@ -16,13 +16,14 @@ separations.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy import optimize
 
+from mesoscale.contact.coupled import site_lists, whole_grid
 from mesoscale.contact.coupled.base import Base
+from mesoscale.contact.coupled.devices import is_numpy, namespace
 from mesoscale.contact.coupled.stiffness import Stiffness
 
 COARSEST = 48  # sites a side: no grid with fewer has a coarser one
@@ -45,7 +46,8 @@ LIGHTEST = 1e-3  # share of a load below which none counts as lighter
 DOUBLINGS = 40  # of the step, until separations lie around a load
 CLOSEST = 1e-12  # of the same length: nearer separations are one
 
-Array = np.ndarray
+Array = Any
+"""NumPy's, or of another library by the array API: all steps run where the heights are."""
 Guess = Array | None
 
 
@@ -71,9 +73,13 @@ def press(heights: Array, load_nN: float, base: Base) -> Pressed:
     """Press a map (nx, ny) in nm, contact at the lowest, with a force."""
 
     def search(level: Array, below: Base, guess: Guess, separation: float) -> Search:
-        pressed = guess if guess is not None else np.maximum(level.mean() - level, 0.0)
-        if not pressed.any():
-            pressed = np.ones(level.shape)
+        xp = namespace(level)
+        pressed = guess
+        if guess is None:
+            depth = xp.mean(level) - level
+            pressed = xp.where(depth > 0.0, depth, 0.0)
+        if not xp.any(pressed != 0.0):
+            pressed = xp.ones_like(level)
         return OneLoad(level, load_nN, below, pressed)
 
     return _nested(heights, base, 0.0, search)
@@ -98,7 +104,8 @@ def press_to(heights: Array, separation: float, base: Base, hardness: float = ma
     """
 
     def search(level: Array, below: Base, guess: Guess, separation: float) -> Search:
-        guess = np.zeros(level.shape) if guess is None else guess
+        if guess is None:
+            guess = namespace(level).zeros_like(level)
         return OneSeparation(level, separation, below, guess, hardness)
 
     return _nested(heights, base, separation, search)
@@ -129,17 +136,19 @@ def _nested(
 def _coarse(contact: "Search") -> tuple[Array, float]:
     """Pressures, in single precision, and separation of a coarse grid."""
     contact.solve(COARSE_TOLERANCE)
-    return contact.pressure.reshape(contact.shape).astype(np.float32), contact.separation
+    xp = contact.xp
+    pressure = xp.asarray(contact.pressure, dtype=xp.float32)
+    return xp.reshape(pressure, contact.shape), contact.separation
 
 
 def coarser(heights: Array) -> Array:
     """Heights at about every second site a side."""
-    rows, columns = (np.arange(-(-sites // 2)) * 2 for sites in heights.shape)
-    return np.ascontiguousarray(heights[np.ix_(rows, columns)])
+    return namespace(heights).asarray(heights[::2, ::2], copy=True)
 
 
 def finer(field: Array, shape: tuple[int, int], base: Base) -> Array:
     """A field between its sites, of a map that repeats or not."""
+    xp = namespace(field)
     for axis, sites in enumerate(shape):
         place = np.arange(sites) * (field.shape[axis] / sites if base.repeats else 0.5)
         before = place.astype(int)
@@ -147,9 +156,11 @@ def finer(field: Array, shape: tuple[int, int], base: Base) -> Array:
         if base.repeats:
             after %= field.shape[axis]
         after = np.minimum(after, field.shape[axis] - 1)
-        weight = np.expand_dims(place - before, 1 - axis).astype(field.dtype)
-        low = field.take(before, axis)
-        field = low + weight * (field.take(after, axis) - low)
+        share = np.expand_dims(place - before, 1 - axis)
+        weight = xp.asarray(share, dtype=field.dtype, device=field.device)
+        after = xp.asarray(after, device=field.device)
+        low = xp.take(field, xp.asarray(before, device=field.device), axis=axis)
+        field = low + weight * (xp.take(field, after, axis=axis) - low)
     return field
 
 
@@ -158,6 +169,8 @@ class Search(ABC):
 
     Attributes
     ----------
+    xp : functions of the array API for the heights.
+    steps : the module whose functions go over all sites.
     shape : of the map.
     pressure : (nx * ny,), GPa.
     gap : (nx * ny,), nm, without the separation.
@@ -167,14 +180,20 @@ class Search(ABC):
 
     def __init__(self, heights: Array, base: Base, pressure: Array, hardness: float = math.inf):
         """Take heights (nx, ny) in nm, contact at the lowest, and pressures to start from."""
-        self.hardness = hardness
+        self.hardness = float(hardness)
+        self.xp = namespace(heights)
         self.shape = heights.shape
         self.heights = heights
         self.base = base
         self.before = base.transforms
-        self.stiffness = Stiffness(base)
+        if is_numpy(heights):
+            self.steps = site_lists
+            self.stiffness = Stiffness(base)
+        else:
+            self.steps = whole_grid
+            self.stiffness = whole_grid.GridStiffness(base, heights)
         self.separation = 0.0
-        self.pressure = pressure.reshape(-1)
+        self.pressure = self.xp.reshape(pressure, (-1,))
         self.follow()
 
     @abstractmethod
@@ -203,17 +222,26 @@ class Search(ABC):
 
     def follow(self) -> None:
         """Take the gaps by the pressures in double precision."""
-        self.gap = self.change = self.misfit = np.empty(0, np.float32)  # frees their memory
-        moved = self.base.displacement(self.pressure.reshape(self.shape))
+        self.gap = self.change = self.misfit = self._zeros(0)  # frees their memory
+        moved = self.base.displacement(self.xp.reshape(self.pressure, self.shape))
         moved += self.heights
-        self.gap = moved.reshape(-1)
-        self.change = np.zeros(self.gap.size, np.float32)
-        self.misfit = np.zeros(self.gap.size, np.float32)
+        self.gap = self.xp.reshape(moved, (-1,))
+        self.change = self._zeros(math.prod(self.shape))
+        self.misfit = self._zeros(math.prod(self.shape))
         self.drift = 0.0  # changes since, over the load: how far single precision has come
+
+    def _zeros(self, sites: int) -> Array:
+        """So many, in single precision, beside the heights."""
+        return self.xp.zeros(sites, dtype=self.xp.float32, device=self.heights.device)
+
+    def _total(self, values: Array) -> float:
+        """Sum in double precision."""
+        return float(self.xp.sum(values, dtype=self.xp.float64))
 
     def _moved(self, change: Array) -> Array:
         """Displacement (nm) of all sites by a change of the pressures."""
-        return self.base.displacement(change.reshape(self.shape)).reshape(-1)
+        moved = self.base.displacement(self.xp.reshape(change, self.shape))
+        return self.xp.reshape(moved, (-1,))
 
     def solve(self, tolerance: float) -> bool:
         """Find the pressures to a residual over the largest one; whether they settled."""
@@ -222,16 +250,17 @@ class Search(ABC):
         for _ in range(NEWTON_STEPS):
             self.separate()
             state = (self.pressure, self.gap, self.separation, stiffness, self.hardness)
-            sites, worst, largest, carried, moved = classify(*state)
+            sites, worst, largest, carried, moved = self.steps.classify(*state)
             if worst <= tolerance * largest:
                 if self.exact() and ROUNDED * self.drift <= tolerance:
                     return True
                 self.follow()
                 continue
-            if bind(*state, self.factor(carried), self.change) > UNSEEN * tolerance * largest:
+            bound = self.steps.bind(*state, self.factor(carried), self.change)
+            if bound > UNSEEN * tolerance * largest:
                 self._step_ahead(sites, length)
                 self.gap += self._moved(self.change)
-                self._drift(np.abs(self.change).sum(dtype=float))
+                self._drift(self._total(self.xp.abs(self.change)))
             goal = GOAL_SHARE * tolerance * largest * self.base.spring
             share = FACE_SHARE if moved else 0.0
             length = self._close_gaps(sites, goal, share)
@@ -239,15 +268,15 @@ class Search(ABC):
 
     def _drift(self, change: float) -> None:
         """Count a change of the pressures in single precision."""
-        self.drift += change / max(self.pressure.sum(), change)
+        self.drift += change / max(self._total(self.pressure), change)
 
     def _step_ahead(self, sites: Array, length: float) -> None:
         """Let a change at the bounds go on as the next step will, at no further transform."""
         self.misfit[:] = 0.0
-        unit = take_misfit(sites, self.gap, self.closed(sites), self.misfit)
+        unit = self.steps.take_misfit(sites, self.gap, self.closed(sites), self.misfit)
         closing = self.stiffness.close(sites, self.misfit)
         self.level(sites, closing)
-        join(sites, length * unit, closing, self.change, self.pressure)
+        self.steps.join(sites, length * unit, closing, self.change, self.pressure)
 
     def _close_gaps(self, sites: Array, goal: float, share: float) -> float:
         """Change the pressures of free sites until their gaps close.
@@ -258,7 +287,7 @@ class Search(ABC):
         change = self.change
         misfit[:] = 0.0
         change[:] = 0.0
-        unit = take_misfit(sites, self.gap, self.closed(sites), misfit)
+        unit = self.steps.take_misfit(sites, self.gap, self.closed(sites), misfit)
         if unit == 0.0:
             return 0.0
         left = 1.0
@@ -269,30 +298,28 @@ class Search(ABC):
                 break
             closing = self.stiffness.close(sites, misfit)
             self.level(sites, closing)
-            gained = gain(sites, misfit, closing)
-            turn(sites, closing, gained / last, change)
+            gained = self.steps.gain(sites, misfit, closing)
+            self.steps.turn(sites, closing, gained / last, change)
             last = gained
             moved = self._moved(change)
-            work = product(sites, change, moved)
+            work = self.steps.product(sites, change, moved)
             if not work > ROUNDING * gained > 0.0:
                 break
             length = gained / work
-            left = self.left(*advance(sites, length, unit, change, moved, misfit, self.pressure))
-            add(length * unit, moved, self.gap)
+            left = self.left(
+                *self.steps.advance(sites, length, unit, change, moved, misfit, self.pressure)
+            )
+            self.steps.add(length * unit, moved, self.gap)
             del moved  # the next one takes its memory
-            self._drift(length * unit * size(sites, change))
+            self._drift(length * unit * self.steps.size(sites, change))
         return length
 
     def pressed(self, settled: bool) -> Pressed:
         """The answer."""
-        pressure = np.clip(self.pressure, 0.0, self.hardness, out=self.pressure)
-        gap = self.gap
-        gap += self.separation
-        np.maximum(gap, 0.0, out=gap)
-        gap[pressure > 0.0] = 0.0
+        self.steps.bounded(self.pressure, self.gap, self.separation, self.hardness)
         return Pressed(
-            pressure.reshape(self.shape),
-            gap.reshape(self.shape),
+            self.xp.reshape(self.pressure, self.shape),
+            self.xp.reshape(self.gap, self.shape),
             self.separation,
             self.base.transforms - self.before,
             settled,
@@ -303,14 +330,15 @@ class OneLoad(Search):
     """A map under a load: its separation is what keeps the load."""
 
     def __init__(self, heights: Array, load_nN: float, base: Base, guess: Array):
-        self.load = load_nN / base.site_area
-        self.lifting = (np.empty(0, np.int32), np.empty(0, np.float32))
-        share = self.load / guess.sum(dtype=float)
-        super().__init__(heights, base, guess.astype(float) * share)
+        self.load = float(load_nN / base.site_area)
+        self.lifting: tuple[Array, Array] = (None, None)
+        xp = namespace(heights)
+        share = self.load / float(xp.sum(guess, dtype=xp.float64))
+        super().__init__(heights, base, xp.asarray(guess, dtype=xp.float64) * share)
 
     def separate(self) -> None:
         """The mean gap of the pressed sites is 0."""
-        self.separation = -mean_gap(self.pressure, self.gap)
+        self.separation = -self.steps.mean_gap(self.pressure, self.gap)
 
     def factor(self, carried: float) -> float:
         """The load stays."""
@@ -318,7 +346,7 @@ class OneLoad(Search):
 
     def closed(self, sites: Array) -> float:
         """The mean one of the sites."""
-        return mean_of(sites, self.gap)
+        return self.steps.mean_of(sites, self.gap)
 
     def left(self, lowest: float, highest: float) -> float:
         """Half of the range: a change of the separation takes the rest."""
@@ -327,16 +355,16 @@ class OneLoad(Search):
     def level(self, sites: Array, closing: Array) -> None:
         """Take the load off a step, by pressures that lift all sites alike."""
         if self.lifting[0] is not sites:
-            everywhere = np.zeros(self.gap.size, np.float32)
+            everywhere = self._zeros(math.prod(self.shape))
             everywhere[sites] = 1.0
             self.lifting = (sites, self.stiffness.close(sites, everywhere))
         lifting = self.lifting[1]
-        share = closing.sum(dtype=float) / lifting.sum(dtype=float)
-        closing -= np.float32(share) * lifting
+        share = self._total(closing) / self._total(lifting)
+        closing -= share * lifting
 
     def exact(self) -> bool:
         """Scale the pressures to the load."""
-        factor = self.load / self.pressure.sum()
+        factor = self.load / self._total(self.pressure)
         self.pressure *= factor
         return abs(factor - 1.0) <= LOAD_MISSED
 
@@ -352,8 +380,9 @@ class OneSeparation(Search):
         guess: Array,
         hardness: float = math.inf,
     ):
-        super().__init__(heights, base, guess.astype(float), hardness)
-        self.separation = separation
+        xp = namespace(heights)
+        super().__init__(heights, base, xp.asarray(guess, dtype=xp.float64), hardness)
+        self.separation = float(separation)
 
     def separate(self) -> None:
         """It stays."""
@@ -395,9 +424,9 @@ class OneYieldingLoad(OneSeparation):
         guess: Array,
     ):
         super().__init__(heights, separation, base, guess, hardness)
-        self.load = load_nN / base.site_area
-        self.length = LOAD_LENGTH * (float(heights.std()) or base.spacing)
-        self.touch = -float(heights.min())
+        self.load = float(load_nN / base.site_area)
+        self.length = LOAD_LENGTH * (float(self.xp.std(heights)) or base.spacing)
+        self.touch = -float(self.xp.min(heights))
 
     def solve(self, tolerance: float) -> bool:
         """Find the separation that carries the load to a tolerance; whether it was found.
@@ -416,7 +445,7 @@ class OneYieldingLoad(OneSeparation):
             if separation not in tried:
                 self.separation = separation
                 settled = super(OneYieldingLoad, self).solve(tolerance)
-                share = max(float(self.pressure.sum()) / self.load, LIGHTEST)
+                share = max(self._total(self.pressure) / self.load, LIGHTEST)
                 met = settled and abs(share - 1.0) <= tolerance
                 tried[separation] = 0.0 if met else math.log(share)
             return tried[separation]
@@ -437,154 +466,3 @@ class OneYieldingLoad(OneSeparation):
             near = far
             step *= 2.0
         return False
-
-
-@njit(cache=True)
-def mean_gap(pressure, gap):
-    """Mean gap of the sites under pressure."""
-    total = 0.0
-    count = 0
-    for k in range(gap.size):
-        if pressure[k] > 0.0:
-            total += gap[k]
-            count += 1
-    return total / count
-
-
-@njit(cache=True)
-def classify(pressure, gap, separation, stiffness, hardness):
-    """Sites that touch and do not yield, by pressure and gap together.
-
-    A site does not yield before its pressure as an elastic one is beyond the hardness: by its gap
-    alone it may yield and part in turns.
-
-    Returns
-    -------
-    These sites, the largest residual and pressure (GPa), the sum of the pressures that stay, and
-    how many sites came or went.
-    """
-    sites = np.empty(gap.size, np.int32)
-    count = 0
-    worst = 0.0
-    largest = 0.0
-    carried = 0.0
-    moved = 0
-    for k in range(gap.size):
-        site_pressure = pressure[k]
-        expected = max(site_pressure - stiffness * (gap[k] + separation), 0.0)
-        new_pressure = min(expected, hardness)
-        worst = max(worst, abs(site_pressure - new_pressure))
-        largest = max(largest, site_pressure)
-        yielding = site_pressure >= hardness and expected >= hardness
-        came = (new_pressure > 0.0) != (site_pressure != 0.0)
-        moved += came or site_pressure > hardness or (site_pressure == hardness and not yielding)
-        if new_pressure > 0.0 and not yielding:
-            sites[count] = k
-            count += 1
-            carried += max(site_pressure, 0.0)
-    return sites[:count].copy(), worst, largest, carried, moved
-
-
-@njit(cache=True)
-def bind(pressure, gap, separation, stiffness, hardness, factor, change):
-    """Take the pressures off all sites that do not touch, and give the hardness to those that
-    yield; the largest change.
-    """
-    largest = 0.0
-    for k in range(gap.size):
-        site_pressure = pressure[k]
-        expected = site_pressure - stiffness * (gap[k] + separation)
-        new = 0.0
-        if min(site_pressure, expected) >= hardness:
-            new = hardness
-        elif expected > 0.0:
-            new = min(factor * max(site_pressure, 0.0), hardness)
-        change[k] = new - site_pressure
-        largest = max(largest, abs(new - site_pressure))
-        pressure[k] = new
-    return largest
-
-
-@njit(cache=True)
-def mean_of(sites, gap):
-    """Mean gap of some sites."""
-    total = 0.0
-    for site in sites:
-        total += gap[site]
-    return total / sites.size
-
-
-@njit(cache=True)
-def take_misfit(sites, gap, closed, misfit):
-    """What gaps of sites lack to be closed, over the largest; returns this (nm)."""
-    largest = 0.0
-    for site in sites:
-        largest = max(largest, abs(gap[site] - closed))
-    if largest > 0.0:
-        for site in sites:
-            misfit[site] = (closed - gap[site]) / largest
-    return largest
-
-
-@njit(cache=True)
-def join(sites, length, closing, change, pressure):
-    """Add a step to a change of the pressures, and to these."""
-    for k in range(sites.size):
-        step = length * closing[k]
-        change[sites[k]] += step
-        pressure[sites[k]] += step
-
-
-@njit(cache=True)
-def gain(sites, misfit, closing):
-    """Work of pressures that close gaps by these."""
-    total = 0.0
-    for k in range(sites.size):
-        total += misfit[sites[k]] * closing[k]
-    return total
-
-
-@njit(cache=True)
-def turn(sites, closing, factor, change):
-    """Next direction of the pressures."""
-    share = np.float32(factor)
-    for k in range(sites.size):
-        change[sites[k]] = share * change[sites[k]] + closing[k]
-
-
-@njit(cache=True)
-def product(sites, change, moved):
-    """Work of a change of pressures by its displacements."""
-    total = 0.0
-    for site in sites:
-        total += change[site] * moved[site]
-    return total
-
-
-@njit(cache=True)
-def size(sites, change):
-    """Sum of the sizes of the changes of some sites."""
-    total = 0.0
-    for site in sites:
-        total += abs(change[site])
-    return total
-
-
-@njit(cache=True)
-def advance(sites, step, unit, change, moved, misfit, pressure):
-    """Go a step along a change of pressures; the range of the misfits that are left."""
-    highest = -np.inf
-    lowest = np.inf
-    for site in sites:
-        pressure[site] += unit * step * change[site]
-        misfit[site] -= np.float32(step) * moved[site]
-        highest = max(highest, misfit[site])
-        lowest = min(lowest, misfit[site])
-    return lowest, highest
-
-
-@njit(cache=True)
-def add(step, moved, gap):
-    """Add a step of displacements to all gaps."""
-    for k in range(gap.size):
-        gap[k] += step * moved[k]
