@@ -7,6 +7,7 @@ straight between them. What one table of drift says of the rates is then as fast
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -298,7 +299,7 @@ def rate_rows(drift: Drift) -> list[dict[str, float]]:
     return [dict(zip(columns, row, strict=True)) for row in values]
 
 
-def drift_json(drift: Drift, guesses: Mapping[str, Rates]) -> dict[str, object]:
+def drift_json(drift: Drift, guesses: Mapping[str, Rates]) -> dict[str, Any]:
     """Content of lifetime/rates.json.
 
     Parameters
