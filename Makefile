@@ -32,7 +32,8 @@ test: setup
 	$(RUN) pytest --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
 bench: setup
-	$(RUN) python -m evidence contact.speed
+	$(RUN) python -m evidence contact.one_load --pixels 512
+	$(RUN) python -m evidence contact.one_load --pixels 512 --closing --maps smooth
 	$(RUN) python -m evidence elastic.engine
 
 lint: setup

@@ -1,9 +1,10 @@
 """Which law of hardness foretells films on titanium, and what of the paper's fall from 10 to 2 GPa
 is the film's?
 
-The dielectric of the paper, silica on silicon nitride, is pressed by scene `nitride`. Rows of
-scenes `..._by_force` and `..._on_asperity` were pressed by controlled force and by an asperity of
-silica, which the stage did until commit 884b5d7.
+The dielectric of the paper, silica on silicon nitride, is pressed by scene `nitride`, its other
+side by scene `titania`: titanium dioxide, alone and on titanium. Runs of halved energies are left
+out. Rows of scenes `..._by_force` and `..._on_asperity` were pressed by controlled force and by an
+asperity of silica, which the stage did until commit 884b5d7.
 
 The closing runs of a scene with films, as `films`: oxide throughout, the metal by itself, and films
 of some thicknesses. Each row is the mean stress of a run at a contact length. The constant and eq.
@@ -48,6 +49,7 @@ PREDICTION = (0.24, 1.2)  # k and m of a prototype with other films, written dow
 SAMPLES = ROOT / "config" / "materials" / "silica_on_titanium.csv"  # k and m of scene reduced
 KEPT = 400  # of the draws
 MAIN, OTHER = "films", "nitride"  # scenes: the electrode, the dielectric
+DIOXIDE = "titania"  # and the electrode with the paper's oxide
 LENGTHS_NM = (3.0, 5.0, 10.0, 15.0, 30.0, 100.0)
 OXIDE_NM = 5.0  # of TiO2 on the titanium of Kim et al. (2013)
 # H_macro, and H' (GPa nm^0.5) of eq. 4 fitted to a glass
@@ -70,6 +72,8 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     subprocess.run([sys.executable, "-m", *command, "--", target], cwd=ROOT, check=True)
     folder = ROOT / "results" / name / "hardness"
     for point in load_table(folder / "points.csv"):
+        if float(point["energy_scale"]) != 1.0:
+            continue
         curve = [
             {key: float(row[key]) for key in row}
             for row in load_table(folder / "closing" / f"{point['run']}.csv")
@@ -215,6 +219,12 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         found[f"{OTHER}_{name}_left_out"] = f"{100 * left_out(name, other):.0f} %"
     for thickness, stresses in ends_of_bodies(other).items():
         found[f"{OTHER}_{thickness:g}".replace(".", "_")] = stresses
+    dioxide = points_of(rows, DIOXIDE)
+    for body, thickness in dioxide_bodies(dioxide).items():
+        ratios = over_flat(points, dioxide.take(thickness))
+        found[f"{DIOXIDE}_{body}"] = (
+            f"{np.mean(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
+        )
     for scene in sorted({row["scene"] for row in rows}):
         runs = {
             (row["seed"], row["film_nm"]): row
@@ -224,7 +234,9 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
             and row["slope_GPa"] not in ("", "nan")
         }
         flat = other if scene.startswith(OTHER) else points
-        if scene not in (MAIN, OTHER) and (ratios := over_flat(flat, points_of(rows, scene))):
+        if scene not in (MAIN, OTHER, DIOXIDE) and (
+            ratios := over_flat(flat, points_of(rows, scene))
+        ):
             span = f"{min(ratios):.2f} to {max(ratios):.2f}" if len(ratios) > 1 else "one run"
             found[f"{scene}_over_flat"] = f"{np.mean(ratios):.2f} ({span})"
         if runs:
@@ -248,6 +260,15 @@ def over_flat(flat: FilmPoints, other: FilmPoints) -> list[float]:
             means = [np.mean(of.stress_GPa[np.isin(of.bin, both)]) for of in same]
             ratios.append(float(means[0] / means[1]))
     return ratios
+
+
+def dioxide_bodies(points: FilmPoints) -> dict[str, np.ndarray]:
+    """Which points are of titanium dioxide alone, on titanium, and of the titanium below."""
+    return {
+        "alone": np.isinf(points.thickness_nm),
+        "film": np.isfinite(points.thickness_nm) & (points.thickness_nm > 0.0),
+        "metal": points.thickness_nm == 0.0,
+    }
 
 
 def ends_of_bodies(points: FilmPoints) -> dict[float, str]:

@@ -22,6 +22,9 @@ UNITS = {
     "pressure": {"GPa": 1.0, "MPa": 1e-3},
     "voltage": {"V": 1.0, "mV": 1e-3},
     "count": {"": 1.0},
+    "time": {"s": 1.0, "min": 60.0, "h": 3600.0, "days": 86400.0},
+    "temperature": {"C": 1.0},
+    "humidity": {"percent": 0.01},
 }
 """Units by quantity with their factor to the first one."""
 CURVE = {
@@ -40,15 +43,25 @@ COLUMNS: dict[str, dict[str, str]] = {
     "release": {"release": "voltage", "release_error": "voltage"},
     "pull_in": {"pull_in": "voltage", "pull_in_error": "voltage"},
     "sticking": {"stuck": "count", "switches": "count"},
+    "drift": {
+        "hold": "voltage",
+        "time": "time",
+        "shift": "voltage",
+        "shift_error": "voltage",
+        "rest": "time",
+        "temperature": "temperature",
+        "humidity": "humidity",
+    },
 }
 """Quantities of each kind of table with what they measure; the column's name ends with the unit."""
-OPTIONAL = ("separation_error", "force_error")
+CURVE_ERRORS = ("separation_error", "force_error")
 """One of them is needed."""
+OPTIONAL = (*CURVE_ERRORS, "rest", "temperature", "humidity")
 
 
 @dataclass(frozen=True)
 class Measurements:
-    """The data of one table, in nm, nN, nm^2, GPa and V.
+    """The data of one table, in nm, nN, nm^2, GPa, V, s and degrees Celsius.
 
     Attributes
     ----------
@@ -141,7 +154,7 @@ def _places(file: str, kind: str, header: Sequence[str]) -> dict[str, tuple[int,
             raise InputError(
                 f"{file}: no column {quantity} with its unit; name it {' or '.join(names)}"
             )
-    if kind in CURVES and not any(name in places for name in OPTIONAL):
+    if kind in CURVES and not any(name in places for name in CURVE_ERRORS):
         raise InputError(f"{file}: no errors; give separation_error_nm or force_error_nN or both")
     return places
 
@@ -170,7 +183,7 @@ def _check(data: Measurements) -> None:
             _refuse(data, wrong, "an error is positive; give one standard deviation", name)
     if data.kind in CURVES:
         nothing = 0 * columns["force"]
-        no_error = [columns.get(name, nothing) == 0 for name in OPTIONAL]
+        no_error = [columns.get(name, nothing) == 0 for name in CURVE_ERRORS]
         _refuse(data, np.all(no_error, axis=0), "both errors are zero")
         for specimen, points in by_specimen(data).items():
             _check_curve(
@@ -189,6 +202,8 @@ def _check(data: Measurements) -> None:
             "accepted are whole numbers, stuck at most switches; are the columns swapped?",
             "stuck",
         )
+    elif data.kind == "drift":
+        _check_drift(data)
     else:
         value = next(iter(COLUMNS[data.kind]))
         stuck = ""
@@ -199,6 +214,25 @@ def _check(data: Measurements) -> None:
             raise InputError(
                 f"{data.file}: {value}_error exceeds {value} in every row; are the columns swapped?"
             )
+
+
+def _check_drift(data: Measurements) -> None:
+    holds_V = data.columns["hold"]
+    _refuse(data, holds_V <= 0, "a hold is above 0 V; give the shift its sign instead", "hold")
+    for name in ("time", "rest"):
+        if name in data.columns:
+            _refuse(data, data.columns[name] < 0, "a time is not below zero", name)
+    if "temperature" in data.columns:
+        wrong = data.columns["temperature"] <= -273.15
+        _refuse(data, wrong, "accepted is a temperature above -273.15 degrees", "temperature")
+    if "humidity" in data.columns:
+        humidity = data.columns["humidity"]
+        _refuse(data, (humidity < 0) | (humidity > 1), "accepted is 0 to 100 percent", "humidity")
+    if np.unique(holds_V).size < 2:
+        raise InputError(
+            f"{data.file}: all rows are of a hold of {holds_V[0]:g} V; one voltage does not tell"
+            " injection from emission: give rows of at least two"
+        )
 
 
 def _refuse(

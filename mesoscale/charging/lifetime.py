@@ -5,7 +5,7 @@ voltage; what that does to release and pull-in is solved for a few strengths of 
 between which squares of voltages are straight. The rates are not known: three guesses bound them.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -128,12 +128,14 @@ def life_of(
     contact: ContactSettings,
     number: int,
     settings: LifetimeSettings,
+    by_guess: Mapping[str, Rates] | None = None,
     shared: "Surroundings | None" = None,
 ) -> SwitchLife:
     """A device of the model, by its number (0: the central one).
 
     Parameters
     ----------
+    by_guess : rates that are not those of the settings.
     shared : what it shares of its ageing with the others; None: it does not age.
 
     Raises
@@ -144,7 +146,7 @@ def life_of(
     if device.dielectric_nm == 0.0:
         raise InputError("lifetime: a dielectric without thickness holds no charge; give it one")
     gaps = held_gaps(solved, contact, surfaces_of(number))
-    life = life_with(gaps, device, solved.pressed.curves, settings)
+    life = life_with(gaps, device, solved.pressed.curves, settings, by_guess)
     if shared is None:
         return life
     from mesoscale.charging.ageing import ageing_of
@@ -159,7 +161,11 @@ def life_of(
 
 
 def life_with(
-    gaps: HeldGaps, device: DeviceSettings, curves: PadCurves, settings: LifetimeSettings
+    gaps: HeldGaps,
+    device: DeviceSettings,
+    curves: PadCurves,
+    settings: LifetimeSettings,
+    by_guess: Mapping[str, Rates] | None = None,
 ) -> SwitchLife:
     """A device whose gaps are known, on its pad.
 
@@ -181,7 +187,7 @@ def life_with(
     )
     times = times_s(settings)
     largest_squares = np.zeros(RISES_NM.size)
-    for rates in guesses(settings).values():
+    for rates in (by_guess or guesses(settings)).values():
         shifts = driven_V(hold_V - shift, GAPS_NM, times, gaps.device, settings, rates)
         classes = gaps.class_V(shifts)
         squares = np.einsum("ct,rcd,dt->rt", classes, gaps.uneven, classes)
@@ -225,12 +231,14 @@ class Lives:
     Attributes
     ----------
     refused : reasons of those that have none.
+    by_guess : rates by the names of the guesses.
     """
 
     central: SwitchLife
     devices: tuple[SwitchLife, ...]
     refused: tuple[str, ...]
     settings: LifetimeSettings
+    by_guess: Mapping[str, Rates]
 
 
 def lives_of(
@@ -238,8 +246,13 @@ def lives_of(
     contact: ContactSettings,
     settings: LifetimeSettings,
     progress: Callable[[float, str], None] | None = None,
+    by_guess: Mapping[str, Rates] | None = None,
 ) -> Lives:
     """The lives of a scene's switches.
+
+    Parameters
+    ----------
+    by_guess : rates that a measured drift leaves; None: those of the settings.
 
     Raises
     ------
@@ -251,12 +264,12 @@ def lives_of(
 
         end_s = float(times_s(settings)[-1])
         shared = surroundings_of(model.central, contact, settings, end_s)
-    central = life_of(model.central, contact, 0, settings, shared)
+    central = life_of(model.central, contact, 0, settings, by_guess, shared)
     devices = []
     refused = []
     for number, solved in enumerate(model.points, 1):
         try:
-            devices.append(life_of(solved, contact, number, settings, shared))
+            devices.append(life_of(solved, contact, number, settings, by_guess, shared))
         except InputError as error:
             refused.append(str(error))
         if progress:
@@ -266,7 +279,7 @@ def lives_of(
             f"lifetime: {len(devices)} devices have a life; accepted are at least {FEWEST}; raise"
             " pad.points"
         )
-    return Lives(central, tuple(devices), tuple(refused), settings)
+    return Lives(central, tuple(devices), tuple(refused), settings, by_guess or guesses(settings))
 
 
 def _failing(life: SwitchLife, hold_V: float, shift: Array, squares: Array, aged: Squares) -> Array:
@@ -283,7 +296,7 @@ def life_rows(lives: Lives) -> Iterator[dict[str, Any]]:
     times = np.concatenate([[0.0], times_s(lives.settings)])
     holds_V = np.array([life.hold_V for life in lives.devices])
     for guess in GUESSES:
-        rates = guesses(lives.settings)[guess]
+        rates = lives.by_guess[guess]
         shifts = []
         closes = []
         lets_go = []
@@ -328,7 +341,7 @@ def hold_rows(lives: Lives) -> Iterator[dict[str, Any]]:
     """
     end = times_s(lives.settings)[-1:]
     for guess in GUESSES:
-        rates = guesses(lives.settings)[guess]
+        rates = lives.by_guess[guess]
         for hold in HOLDS.tolist():
             margins = np.array(
                 [

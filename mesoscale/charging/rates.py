@@ -10,14 +10,15 @@ with K = 1 / (eps0 eps) where it touches, and t / [eps0 (eps g + t)] across a ga
 is exact at all times: nothing is stepped.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings, LifetimeSettings
-from mesoscale.settings.lifetime import RANGES
 from mesoscale.switch.charge import PER_CM2
 from mesoscale.theory.charging import IMAGE_FORCE, charge_shift, emission_current, frenkel_ratio
 from mesoscale.units import NM, VACUUM_PERMITTIVITY
@@ -64,9 +65,10 @@ class Rates:
 
 def guesses(settings: LifetimeSettings) -> dict[str, Rates]:
     """The rates of least charge, of the middle and of most; a high barrier lets least through."""
-    (slow, fast), (low, high), (few, many), (keeps, leaks) = (
-        getattr(settings, name) for name in RANGES
-    )
+    slow, fast = settings.injection_A_m2
+    low, high = settings.barrier_eV
+    few, many = settings.traps_e_cm2
+    keeps, leaks = settings.recovery_exponent
     return {
         "least": Rates(slow, high, few, leaks),
         "central": Rates(
@@ -77,6 +79,22 @@ def guesses(settings: LifetimeSettings) -> dict[str, Rates]:
         ),
         "most": Rates(fast, low, many, keeps),
     }
+
+
+def narrowed_guesses(content: Mapping[str, Any]) -> dict[str, Rates]:
+    """The guesses that a measured drift leaves, of the content of lifetime/rates.json.
+
+    Raises
+    ------
+    InputError : it has no posterior.
+    """
+    if not content["gate"]["passed"]:
+        reasons = "; ".join(content["gate"]["reasons"])
+        raise InputError(
+            f"{content['file']}: the rates have no posterior: {reasons}; look at the errors of the"
+            " shifts, or leave the table out"
+        )
+    return {guess: Rates(**content["guesses"][guess]) for guess in GUESSES}
 
 
 def slowness_and_times(

@@ -15,7 +15,8 @@ from mesoscale.settings.ageing import AgeingSettings
 Positive = Annotated[float, Field(gt=0.0)]
 Range = tuple[Positive, Positive]
 Exponent = Annotated[float, Field(ge=0.0, le=5.0)]
-RANGES = ("injection_A_m2", "barrier_eV", "traps_e_cm2", "recovery_exponent")
+Energy = Annotated[float, Field(ge=0.0, le=5.0)]
+RANGES = ("injection_A_m2", "barrier_eV", "traps_e_cm2", "recovery_exponent", "activation_eV")
 
 
 class LifetimeSettings(Settings):
@@ -72,6 +73,12 @@ class LifetimeSettings(Settings):
         "charge left after a rest r is (1 + r / recovery_s)^-exponent; 0: all of it; a power law is"
         " what is measured (Koutsoureli et al., IRPS 2011, doi 10.1109/IRPS.2011.5784490), its"
         " exponent is an assumption",
+    )
+    activation_eV: tuple[Energy, Energy] = key(
+        (0.1, 1.0),
+        "energy by which injection grows with temperature, between those of a measured drift;"
+        " assumption",
+        "eV",
     )
     recovery_s: Positive = key(1.0, "rest after which the power law begins; assumption", "s")
     ageing: AgeingSettings | None = key(

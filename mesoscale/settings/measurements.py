@@ -20,6 +20,7 @@ class MeasurementTable(Settings):
         "release",
         "pull_in",
         "sticking",
+        "drift",
     ] = key(..., "what was measured")
     file: str = key(..., "CSV file, its columns named with their units (docs/calibration.md)")
     zero: Literal["unknown", "known"] = key(
@@ -47,6 +48,16 @@ class MeasurementsSettings(Settings):
         " lies",
         "[50, 1_000_000]",
     )
+
+    @property
+    def of_inputs(self) -> tuple[MeasurementTable, ...]:
+        """Tables that narrow the inputs; a drift narrows the rates of `lifetime`."""
+        return tuple(table for table in self.tables if table.kind != "drift")
+
+    @property
+    def drift(self) -> MeasurementTable | None:
+        """The table of drift."""
+        return next((table for table in self.tables if table.kind == "drift"), None)
 
     @model_validator(mode="after")
     def _one_table_of_a_kind(self) -> "MeasurementsSettings":

@@ -129,6 +129,10 @@ NONSENSE: dict[str, tuple[str, str]] = {
     ),
     "missing scans": ("topography: {scans: [nowhere.gwy]}", "no such file"),
     "two conventions": ("topography: {convention: profile}", "convention"),
+    "drift without a life": (
+        "measurements: {tables: [{kind: drift, file: drift.csv}]}",
+        "a drift narrows the rates of lifetime, but lifetime.years = null",
+    ),
     "calibration with nothing": (
         scene(rms="{origin: calibration, values: [2, 15]}"),
         "measurements.tables is empty",

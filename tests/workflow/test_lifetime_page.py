@@ -2,7 +2,13 @@
 
 import pytest
 
-from workflow.report.stages.lifetime import _allowed, of_ageing, three_sentences
+from workflow.report.stages.lifetime import (
+    NARROWED,
+    _allowed,
+    of_ageing,
+    of_drift,
+    three_sentences,
+)
 
 ROWS = [
     {"guess": guess, "time_s": time, "release_q50_V": str(volts)}
@@ -43,6 +49,15 @@ def test_a_rate_that_no_volt_changes_is_said(decades):
 def test_the_largest_hold_is_said_by_guess():
     said = _allowed(life((8.0, 9.0, 11.0), (90.0, 60.0, None)))
     assert "at least 90.0 V (least charge), 60.0 V (central charge), none (most charge)" in said
+
+
+def test_a_measured_drift_is_named_and_doubted():
+    drift = {"rows": 16, "file": "drift.csv", "source": "our switches", "probability": 0.4}
+    words = of_drift(drift)
+    assert words == "16 shifts of drift.csv narrow the rates. Source: our switches."
+    assert "No rates give this drift" in of_drift({**drift, "probability": 0.0})
+    narrowed = three_sentences(life((8.0, 9.0, 11.0), (90.0, 60.0, None)), ROWS, NARROWED)
+    assert "since a measured drift leaves the rates so far open" in narrowed
 
 
 def test_ageing_is_said_by_effect_with_its_range():

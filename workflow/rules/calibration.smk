@@ -1,10 +1,11 @@
 # Measurements in, posterior of the inputs out; only in scenes with measurements.tables
 from mesoscale.uncertainty.chunks import chunk_bounds
 
-MEASUREMENT_FILES = {
+TABLE_FILES = {
     table.kind: named_files(f"measurements.tables.{k}.file", table.file)[0]
     for k, table in enumerate(SCENE.measurements.tables)
 }
+MEASUREMENT_FILES = {table.kind: TABLE_FILES[table.kind] for table in SCENE.measurements.of_inputs}
 MEASUREMENT_CHUNKS = chunk_bounds(SCENE.measurements.runs)
 PRIOR_PADS = {}
 if {"release", "pull_in", "sticking"} & set(MEASUREMENT_FILES):
@@ -13,9 +14,7 @@ if {"release", "pull_in", "sticking"} & set(MEASUREMENT_FILES):
         "pads": [f"{RESULTS}/calibration/pads/chunk_{chunk}.h5" for chunk in POINT_CHUNKS],
     }
 PRIORS = SCENE.inputs.priors()
-if (
-    IS_CHECKED_HERE and MEASUREMENT_FILES
-):  # a table that cannot be used is told before the first cycle
+if IS_CHECKED_HERE and TABLE_FILES:  # a table that cannot be used is told before the first cycle
     from mesoscale.calibration.measurements import load_measurements
     from mesoscale.calibration.surfaces import check_points
     from mesoscale.errors import InputError as BadTable
@@ -23,7 +22,7 @@ if (
     try:
         for table in SCENE.measurements.tables:
             check_points(
-                load_measurements(table, MEASUREMENT_FILES[table.kind]), SCENE.contact.max_force_nN
+                load_measurements(table, TABLE_FILES[table.kind]), SCENE.contact.max_force_nN
             )
     except BadTable as error:
         refuse(error)
@@ -110,6 +109,6 @@ rule calibration:
         "../scripts/sample_posterior.py"
 
 
-if SCENE.measurements.tables:
+if MEASUREMENT_FILES:
     SHOWN += rules.calibration.output
     KEPT += rules.calibration.input.cycles

@@ -39,4 +39,5 @@ rule inputs:
         "../scripts/collect_inputs.py"
 
 
-SHOWN += rules.inputs.output
+if SCENE.tails:  # else no contact has them, and a slope that no run had refuses nothing
+    SHOWN += rules.inputs.output

@@ -97,13 +97,19 @@ class Scene(Settings):
 
     @model_validator(mode="after")
     def _measurements_for_a_calibration(self) -> "Scene":
-        if "calibration" in self.inputs.origins() and not self.measurements.tables:
+        if self.measurements.drift is not None and self.lifetime.years is None:
+            raise ValueError(
+                "measurements.tables: a drift narrows the rates of lifetime, but lifetime.years ="
+                " null; give the life that is asked for, or leave the table out"
+            )
+        if "calibration" in self.inputs.origins() and not self.measurements.of_inputs:
+            other = " but for a drift" if self.measurements.tables else ""
             names = [
                 name for name, row in self.inputs.rows().items() if row.origin == "calibration"
             ]
             raise ValueError(
                 f"inputs: {', '.join(names)} of origin calibration, but measurements.tables is"
-                " empty; name the tables of measurements, or take another origin"
+                f" empty{other}; name the tables of measurements, or take another origin"
             )
         return self
 

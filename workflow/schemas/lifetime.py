@@ -29,6 +29,18 @@ TABLES = (
         ),
     ),
     Table(
+        ("lifetime/rates.csv",),
+        "One draw of the rates after a measured drift; no row if the chain has not converged.",
+        (
+            number("injection_A_m2", "A/m^2", "current that stays where it touches, at 1 MV/cm"),
+            number("barrier_eV", "eV", "barrier of emission"),
+            number("traps_e_cm2", "1/cm^2", "most charge that the surface holds"),
+            number("recovery_exponent", "1", "exponent by which charge leaks in a rest"),
+            number("activation_eV", "eV", "energy by which injection grows with temperature"),
+            number("log_likelihood", "1", "logarithm of the likelihood of the drift"),
+        ),
+    ),
+    Table(
         ("lifetime/holds.csv",),
         "One guess of the rates and one hold voltage, at the end of the life.",
         (

@@ -27,7 +27,7 @@ from workflow.run.pads import load_model, points_of_job
 with job(snakemake) as run:
     settings = settings_from_job(MeasurementsSettings, snakemake.params.settings)
     contact = contact_settings(snakemake.params.contact, snakemake)
-    tables = [load_measurements(table, snakemake.input[table.kind]) for table in settings.tables]
+    tables = [load_measurements(table, snakemake.input[table.kind]) for table in settings.of_inputs]
     prior = from_rows(load_csv(snakemake.input.priors))
     rows = [row for path in snakemake.input.cycles for row in load_csv(path)]
     voltages = {}

@@ -8,6 +8,11 @@ from mesoscale.errors import InputError
 from mesoscale.settings import MeasurementTable
 
 CURVE = "specimen,separation_nm,force_nN,separation_error_nm\n"
+DRIFT = "hold_V,time_s,shift_V,shift_error_V\n60,1,0.2,0.05\n60,10,0.4,0.05\n70,10,1.1,0.05\n"
+WEATHER = (
+    "hold_V,time_min,shift_mV,shift_error_V,rest_h,temperature_C,humidity_percent\n"
+    "60,1,200,0.05,9,20,50\n70,1,400,0.05,0,40,10\n"
+)
 POINTS = "".join(f"a,{40 - k},{200 * 1.5**k},0.1\n" for k in range(6))
 
 
@@ -24,6 +29,15 @@ def test_units_are_converted(tmp_path):
     curve = load(tmp_path, "closing_curves", "# by hand\n" + CURVE + POINTS)
     assert len(curve) == 6
     assert curve.columns["separation"][0] == 40
+
+
+def test_a_drift_is_read_with_its_conditions(tmp_path):
+    data = load(tmp_path, "drift", WEATHER)
+    assert data.columns["time"] == pytest.approx([60.0, 60.0])
+    assert data.columns["shift"] == pytest.approx([0.2, 0.4])
+    assert data.columns["rest"] == pytest.approx([32400.0, 0.0])
+    assert data.columns["humidity"] == pytest.approx([0.5, 0.1])
+    assert set(load(tmp_path, "drift", DRIFT).columns) == {"hold", "time", "shift", "shift_error"}
 
 
 def test_rows_without_specimen_are_surfaces_of_their_own(tmp_path):
@@ -54,6 +68,16 @@ def test_rows_without_specimen_are_surfaces_of_their_own(tmp_path):
         ),
         ("pull_in", "pull_in_V,pull_in_error_V\n0.1,60\n", "swapped"),
         ("modulus", "e_star_error_GPa,e_star_GPa\n91,3\n", "swapped"),
+        ("drift", DRIFT.replace("60,1", "70,1"), "one voltage does not tell"),
+        ("drift", DRIFT.replace("70,10,", "70,-10,"), "a time is not below zero"),
+        ("drift", DRIFT.replace("70,10,", "-70,10,"), "a hold is above 0 V"),
+        ("drift", DRIFT.replace(",0.05", ",0"), "an error is positive"),
+        ("drift", DRIFT.replace("time_s", "time"), "no unit"),
+        ("drift", DRIFT.replace("time_s", "time_years"), "unknown unit"),
+        ("drift", "hold_V,shift_V,shift_error_V\n60,1,0.1\n70,1,0.1\n", "no column time"),
+        ("drift", WEATHER.replace("20,50", "-300,50"), "above -273.15"),
+        ("drift", WEATHER.replace("20,50", "20,150"), "0 to 100 percent"),
+        ("drift", WEATHER.replace("9,20", "-9,20"), "a time is not below zero"),
         ("closing_curves", CURVE + "a,30,200,0.1\na,29,400,0.1\n", "2 points"),
         (
             "closing_curves",

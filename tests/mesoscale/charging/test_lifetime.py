@@ -224,7 +224,7 @@ def test_a_life_of_devices_has_its_rows():
         for thick in (3.9, 4.0, 4.05)
     ]
     devices = tuple(life for life, _ in lives)
-    all_lives = Lives(devices[1], devices, (), SETTINGS)
+    all_lives = Lives(devices[1], devices, (), SETTINGS, guesses(SETTINGS))
     rows = list(life_rows(all_lives))
     assert len(rows) == 3 * (times_s(SETTINGS).size + 1)
     assert rows[-1]["time_s"] == pytest.approx(10.0 * YEAR_S)
