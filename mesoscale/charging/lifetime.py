@@ -366,6 +366,10 @@ def summary(lives: Lives, holds: Sequence[dict[str, Any]]) -> dict[str, Any]:
             "tried_V": max(row["hold_V"] for row in rows),
             "volts_a_decade": volts_a_decade(rows, central.hold_V),
         }
+    cycles = {}
+    if lives.settings.period_s is not None:
+        names = ("period_s", "duty", "other_polarity")
+        cycles["cycles"] = {name: getattr(lives.settings, name) for name in names}
     return {
         "years": lives.settings.years,
         "hold_V": central.hold_V,
@@ -378,4 +382,5 @@ def summary(lives: Lives, holds: Sequence[dict[str, Any]]) -> dict[str, Any]:
         "devices": len(lives.devices),
         "refused": list(lives.refused),
         "guesses": by_guess,
+        **cycles,
     }
