@@ -31,6 +31,7 @@ from mesoscale.settings import ContactSettings
 from mesoscale.switch import switch_of
 
 OTHER_CELLS = 64
+RESAMPLES = 4000
 OTHERS = 500_000
 """Number of the first surfaces that no answer has."""
 
@@ -146,6 +147,7 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
             shown[f"{scene}_bias"] = f"{apart.mean():+.2f} V"
             shown[f"{scene}_median_apart"] = f"{np.median(np.abs(apart)):.2f} V"
             shown[f"{scene}_stated"] = f"{np.sqrt(np.nanmean(errors**2)):.2f} V"
+            shown[f"{scene}_over_stated"] = _over_stated(apart, errors)
         shown |= {
             f"{scene}_worst_{n}": (
                 f"{by['answer'][k]:.2f}, {by['other'][k]:.2f}, {by['many'][k]:.2f} V"
@@ -161,6 +163,17 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
                 )
                 shown[f"{scene}_{kind}"] = f"{said}, {release.size} points"
     return shown
+
+
+def _over_stated(apart: np.ndarray, errors: np.ndarray) -> str:
+    """Root mean square of differences over that of stated errors, and its 90 % interval by other
+    draws of the points.
+    """
+    picks = np.random.default_rng(0).integers(apart.size, size=(RESAMPLES, apart.size))
+    true, stated = (np.sqrt(np.nanmean(values[picks] ** 2, axis=1)) for values in (apart, errors))
+    low, high = np.quantile(true / stated, (0.05, 0.95))
+    ratio = np.sqrt(np.mean(apart**2) / np.nanmean(errors**2))
+    return f"{ratio:.1f} [{low:.1f}, {high:.1f}]"
 
 
 def _by_point(

@@ -79,13 +79,13 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
                 and float(row["share_of_step"]) == 1.0
                 and (float(row["release_V"]) < NEAR_STICKING * float(row["pull_in_V"])) == near
             ]
-            for share in ("1.0", "0.5"):
+            for share, words in (("1", "usual"), ("0.5", "half")):
                 changes = [
                     release[scene, number, "0.25"] - release[scene, number, share]
                     for number in numbers
                 ]
                 if changes:
-                    name = f"{scene}_{'near' if near else 'other'}_{share.replace('.', '')}"
+                    name = f"{scene}_{'near' if near else 'other'}_{words}"
                     largest = max(changes, key=abs)
                     found[name] = f"{np.median(changes):+.2f} V, at most {largest:+.2f} V"
     return found

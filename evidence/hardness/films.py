@@ -221,10 +221,10 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         found[f"{OTHER}_{thickness:g}".replace(".", "_")] = stresses
     dioxide = points_of(rows, DIOXIDE)
     for body, thickness in dioxide_bodies(dioxide).items():
-        ratios = over_flat(points, dioxide.take(thickness))
-        found[f"{DIOXIDE}_{body}"] = (
-            f"{np.mean(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
-        )
+        if ratios := over_flat(points, dioxide.take(thickness)):
+            found[f"{DIOXIDE}_{body}"] = (
+                f"{np.mean(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
+            )
     for scene in sorted({row["scene"] for row in rows}):
         runs = {
             (row["seed"], row["film_nm"]): row

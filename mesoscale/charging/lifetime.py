@@ -408,6 +408,10 @@ def summary(lives: Lives, holds: Sequence[dict[str, Any]]) -> dict[str, Any]:
             "tried_V": max(row["hold_V"] for row in rows),
             "volts_a_decade": volts_a_decade(rows, central.hold_V),
         }
+    cycles = {}
+    if lives.settings.period_s is not None:
+        names = ("period_s", "duty", "other_polarity")
+        cycles["cycles"] = {name: getattr(lives.settings, name) for name in names}
     ageing = {}
     if central.ageing is not None:
         from mesoscale.charging.ageing import ageing_summary
@@ -425,5 +429,6 @@ def summary(lives: Lives, holds: Sequence[dict[str, Any]]) -> dict[str, Any]:
         "devices": len(lives.devices),
         "refused": list(lives.refused),
         "guesses": by_guess,
+        **cycles,
         **ageing,
     }

@@ -17,9 +17,17 @@ from mesoscale.studies.driver import RELEASE, Array, Choice, Knob, Progress, Stu
 
 SWITCHES = 4
 SHARES, PLACES = "shares of a lost field", "separations of the electrode"
+PEELING = "separations of places about to peel off"
+CLASSES = "classes of gaps"
+SPACINGS_NM = (8.0, 4.0, 2.0, 1.0, 0.5)
+"""Of classes; the last is that of `GAPS_NM`."""
+FINEST_NM = 0.0625
 STRIDES = (16, 4, 2, 1)
 COUNTS = (1, 3, SEPARATIONS, 15)
-BEST_COUNT = 60
+PEELING_SHARE = 0.03
+"""Of the pull; their separations spread over hundreds of nanometres."""
+PEELING_COUNTS = (0, 1, 2, 4, 8)
+BEST_PEELING = 32
 
 
 def accuracy_points(
@@ -40,18 +48,24 @@ def accuracy_points(
         (number, model.central if not number else model.points[number - 1]) for number in numbers
     ]
 
-    def gaps_by(count: int) -> list[HeldGaps]:
-        return [held_gaps(solved, contact, surfaces_of(k), count) for k, solved in switches]
+    def gaps_by(pull_shares: Array) -> list[HeldGaps]:
+        return [held_gaps(solved, contact, surfaces_of(k), pull_shares) for k, solved in switches]
 
-    usual = gaps_by(SEPARATIONS)
+    usual = gaps_by(_pull_shares(SEPARATIONS, 0))
     finest = _finer(LOST)
     samples = f"{len(switches)} switches"
 
     def by_shares(lost: Array) -> Array:
         return _shifts(switches, usual, settings, lost)
 
-    def by_count(count: int) -> Array:
-        return _shifts(switches, gaps_by(count), settings, LOST)
+    def by_spacing(spacing_nm: float) -> Array:
+        return _shifts(switches, usual, settings, LOST, _classes_nm(spacing_nm))
+
+    def by_count(count: int, peeling: int) -> Array:
+        return _shifts(switches, gaps_by(_pull_shares(count, peeling)), settings, LOST)
+
+    best_count = partial(by_count, SEPARATIONS, BEST_PEELING)
+    best = f"{SEPARATIONS + BEST_PEELING} separations"
 
     yield from rows_of(
         [
@@ -68,17 +82,54 @@ def accuracy_points(
                 samples,
             ),
             Knob(
+                CLASSES,
+                [RELEASE],
+                [
+                    Choice(_classes_nm(spacing).size, partial(by_spacing, spacing))
+                    for spacing in SPACINGS_NM
+                ],
+                GAPS_NM.size,
+                f"{_classes_nm(FINEST_NM).size} classes",
+                partial(by_spacing, FINEST_NM),
+                samples,
+            ),
+            Knob(
                 PLACES,
                 [RELEASE],
-                [Choice(count, partial(by_count, count)) for count in COUNTS],
+                [Choice(count, partial(by_count, count, 0)) for count in COUNTS],
                 SEPARATIONS,
-                f"{BEST_COUNT} separations",
-                partial(by_count, BEST_COUNT),
+                best,
+                best_count,
+                samples,
+            ),
+            Knob(
+                PEELING,
+                [RELEASE],
+                [
+                    Choice(peeling, partial(by_count, SEPARATIONS, peeling))
+                    for peeling in PEELING_COUNTS
+                ],
+                0,
+                best,
+                best_count,
                 samples,
             ),
         ],
         progress,
     )
+
+
+def _pull_shares(count: int, peeling: int) -> Array:
+    """Equal shares of the pull, of which the last part is divided among places about to peel."""
+    if not peeling:
+        return np.full(count, 1.0 / count)
+    held = np.full(count, (1.0 - PEELING_SHARE) / count)
+    return np.concatenate([held, np.full(peeling, PEELING_SHARE / peeling)])
+
+
+def _classes_nm(spacing_nm: float) -> Array:
+    """Classes of gaps in other steps than `GAPS_NM`."""
+    return np.concatenate([[0.0], np.arange(0.5 * spacing_nm, GAPS_NM[-1] + 0.25, spacing_nm)])
 
 
 def _finer(lost: Array) -> Array:
@@ -92,6 +143,7 @@ def _shifts(
     gaps: Sequence[HeldGaps],
     settings: LifetimeSettings,
     lost: Array,
+    classes_nm: Array = GAPS_NM,
 ) -> Array:
     """Shift (V) of each switch at the end of its life, shape (switches, 1)."""
     end = held_s(times_s(settings)[-1:], settings)
@@ -100,6 +152,6 @@ def _shifts(
     for (_, solved), of_switch in zip(switches, gaps, strict=True):
         assert solved.states is not None
         hold_V = solved.point.device.hold_voltage_V or solved.states.pull_in_V
-        places = shifts_V(hold_V, GAPS_NM, end, of_switch.device, settings, rates, lost)
-        shifts.append(of_switch.mean_V(places))
+        places = shifts_V(hold_V, classes_nm, end, of_switch.device, settings, rates, lost)
+        shifts.append(of_switch.shares_at(classes_nm)[:-1] @ places)
     return np.array(shifts)

@@ -5,6 +5,7 @@ import pytest
 from workflow.report.stages.lifetime import (
     NARROWED,
     _allowed,
+    _drive,
     of_ageing,
     of_drift,
     three_sentences,
@@ -58,6 +59,14 @@ def test_a_measured_drift_is_named_and_doubted():
     assert "No rates give this drift" in of_drift({**drift, "probability": 0.0})
     narrowed = three_sentences(life((8.0, 9.0, 11.0), (90.0, 60.0, None)), ROWS, NARROWED)
     assert "since a measured drift leaves the rates so far open" in narrowed
+
+
+def test_the_drive_is_told():
+    assert _drive({}) == "The electrode is held at one voltage from first closing on."
+    cycles = {"period_s": 1e-3, "duty": 0.5, "other_polarity": 0.1}
+    words = _drive({"cycles": cycles})
+    assert "cycles of 0.001 s, of which the electrode is held for 0.5;" in words
+    assert "Of the hold 0.1 is of the other polarity." in words
 
 
 def test_ageing_is_said_by_effect_with_its_range():

@@ -7,7 +7,7 @@ import pytest
 from scipy.constants import elementary_charge
 from scipy.integrate import solve_ivp
 
-from mesoscale.charging.gaps import EDGES_NM, GAPS_NM, RISES_NM, HeldGaps
+from mesoscale.charging.gaps import EDGES_NM, GAPS_NM, RISES_NM, HeldGaps, standing_for
 from mesoscale.charging.lifetime import (
     TELLING,
     YEAR_S,
@@ -39,6 +39,7 @@ SETTINGS = LifetimeSettings(years=10.0)
 BARRIER_EV = 4.33
 ALL = Rates(1e-9, BARRIER_EV, 1e18)
 TEN_YEARS_S = 3.15e8
+TEN = np.array([10.0])
 CASES = list(hard_cases())
 
 
@@ -143,6 +144,28 @@ def test_gaps_are_counted_from_the_surfaces():
     exact = (each.clip(0.0) * DEVICE.permittivity + DEVICE.dielectric_nm) ** -1
     factor = 1.0 / (DEVICE.dielectric_nm * exact.mean())
     assert gaps.contact_factor == pytest.approx(factor, rel=2e-3)
+
+
+def test_errors_fall_with_finer_classes_of_gaps():
+    gaps = made_up_gaps(DEVICE)
+    exact, *coarse = (
+        (gaps.shares_at(classes)[:-1] @ shifts_V(70.0, classes, TEN, DEVICE, SETTINGS, ALL)).item()
+        for classes in (
+            np.concatenate([[0.0], np.arange(0.5 * step, 60.0, step)])
+            for step in (0.0625, 4.0, 2.0, 1.0, 0.5)
+        )
+    )
+    errors = np.abs(np.array(coarse) - exact)
+    assert (errors[1:] < 0.5 * errors[:-1]).all()
+    assert errors[-1] < 1e-3 * exact
+
+
+def test_a_share_of_the_pull_is_at_the_separation_in_its_middle():
+    separation = np.array([30.0, 10.0, 12.0, 500.0])
+    pulls = np.array([2.0, 50.0, 45.0, 3.0])
+    shares = np.array([0.5, 0.45, 0.025, 0.025])
+    assert standing_for(separation, pulls, shares) == pytest.approx([10.0, 12.0, 30.0, 500.0])
+    assert standing_for(separation, pulls, np.ones(1)) == pytest.approx([10.0])
 
 
 def test_one_class_of_gap_is_charged_evenly():

@@ -48,9 +48,8 @@ def describe(results: Results) -> Iterator[Block]:
         front=True,
     )
     yield (
-        "The electrode is held at one voltage from first closing on. Charge enters where it"
-        " touches, and by emission through narrow gaps; it lowers the field that brings it. The"
-        " largest field"
+        f"{_drive(life)} Charge enters where it touches, and by emission through narrow gaps; it"
+        " lowers the field that brings it. The largest field"
         f" at a gap that just closes is {show(life['largest_field_V_nm'])} V/nm: a film breaks down"
         " below 1 V/nm, so that the fastest charge there is a bound."
         f" {'' if narrowed else SETTLED} {_allowed(life)}"
@@ -124,6 +123,21 @@ def three_sentences(life: dict[str, Any], rows: list[CsvRow], why: str = UNKNOWN
         f" is {show(life['contact_factor'])} times below that of full contact."
         f" {costs}; {PUBLISHED}."
     )
+
+
+def _drive(life: dict[str, Any]) -> str:
+    """How the electrode is driven."""
+    cycles = life.get("cycles")
+    if not cycles:
+        return "The electrode is held at one voltage from first closing on."
+    words = (
+        f"The drive comes in cycles of {cycles['period_s']:g} s, of which the electrode is held"
+        f" for {cycles['duty']:.3g}; charge leaks in the rests by a power law, whose exponent is"
+        " assumed or measured."
+    )
+    if cycles["other_polarity"]:
+        words += f" Of the hold {cycles['other_polarity']:.3g} is of the other polarity."
+    return words
 
 
 def _allowed(life: dict[str, Any]) -> str:
