@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from mesoscale.answer.switches import PadModel, Solved, surfaces_of
+from mesoscale.charging.cycles import PER_DECADE, cycled_V
 from mesoscale.charging.gaps import GAPS_NM, SEPARATIONS, HeldGaps, held_gaps
 from mesoscale.charging.lifetime import times_s
 from mesoscale.charging.rates import LOST, guesses, held_s, shifts_V
@@ -23,6 +24,9 @@ SPACINGS_NM = (8.0, 4.0, 2.0, 1.0, 0.5)
 """Of classes; the last is that of `GAPS_NM`."""
 FINEST_NM = 0.0625
 STRIDES = (16, 4, 2, 1)
+CYCLES = "known cycles a decade"
+PER_DECADES = (5, 10, PER_DECADE, 40)
+BEST_PER_DECADE = 160
 COUNTS = (1, 3, SEPARATIONS, 15)
 PEELING_SHARE = 0.03
 """Of the pull; their separations spread over hundreds of nanometres."""
@@ -117,6 +121,34 @@ def accuracy_points(
         ],
         progress,
     )
+    if settings.period_s is None:
+        return
+    end = times_s(settings)[-1:]
+    rates = guesses(settings)["central"]
+
+    def by_cycles(per_decade: int) -> Array:
+        shifts = []
+        for (_, solved), of_switch in zip(switches, usual, strict=True):
+            device = of_switch.device
+            hold_V = _hold_V(solved)
+            places = cycled_V(hold_V, GAPS_NM, end, device, settings, rates, per_decade)
+            shifts.append(of_switch.mean_V(places))
+        return np.array(shifts)
+
+    yield from rows_of(
+        [
+            Knob(
+                CYCLES,
+                [RELEASE],
+                [Choice(count, partial(by_cycles, count)) for count in PER_DECADES],
+                PER_DECADE,
+                f"{BEST_PER_DECADE} a decade",
+                partial(by_cycles, BEST_PER_DECADE),
+                samples,
+            )
+        ],
+        progress,
+    )
 
 
 def _pull_shares(count: int, peeling: int) -> Array:
@@ -150,8 +182,11 @@ def _shifts(
     rates = guesses(settings)["central"]
     shifts = []
     for (_, solved), of_switch in zip(switches, gaps, strict=True):
-        assert solved.states is not None
-        hold_V = solved.point.device.hold_voltage_V or solved.states.pull_in_V
-        places = shifts_V(hold_V, classes_nm, end, of_switch.device, settings, rates, lost)
+        places = shifts_V(_hold_V(solved), classes_nm, end, of_switch.device, settings, rates, lost)
         shifts.append(of_switch.shares_at(classes_nm)[:-1] @ places)
     return np.array(shifts)
+
+
+def _hold_V(solved: Solved) -> float:
+    assert solved.states is not None
+    return solved.point.device.hold_voltage_V or solved.states.pull_in_V
