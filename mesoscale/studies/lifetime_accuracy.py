@@ -10,7 +10,14 @@ import numpy as np
 
 from mesoscale.answer.switches import PadModel, Solved, surfaces_of
 from mesoscale.charging.cycles import PER_DECADE, cycled_V
-from mesoscale.charging.gaps import GAPS_NM, SEPARATIONS, HeldGaps, held_gaps
+from mesoscale.charging.gaps import (
+    GAPS_NM,
+    PEELING,
+    SEPARATIONS,
+    HeldGaps,
+    held_gaps,
+    shares_of_pull,
+)
 from mesoscale.charging.lifetime import times_s
 from mesoscale.charging.rates import LOST, guesses, held_s, shifts_V
 from mesoscale.settings import ContactSettings, LifetimeSettings
@@ -18,7 +25,7 @@ from mesoscale.studies.driver import RELEASE, Array, Choice, Knob, Progress, Stu
 
 SWITCHES = 4
 SHARES, PLACES = "shares of a lost field", "separations of the electrode"
-PEELING = "separations of places about to peel off"
+PEELED = "separations of places about to peel off"
 CLASSES = "classes of gaps"
 SPACINGS_NM = (8.0, 4.0, 2.0, 1.0, 0.5)
 """Of classes; the last is that of `GAPS_NM`."""
@@ -28,8 +35,6 @@ CYCLES = "known cycles a decade"
 PER_DECADES = (5, 10, PER_DECADE, 40)
 BEST_PER_DECADE = 160
 COUNTS = (1, 3, SEPARATIONS, 15)
-PEELING_SHARE = 0.03
-"""Of the pull; their separations spread over hundreds of nanometres."""
 PEELING_COUNTS = (0, 1, 2, 4, 8)
 BEST_PEELING = 32
 
@@ -55,7 +60,7 @@ def accuracy_points(
     def gaps_by(pull_shares: Array) -> list[HeldGaps]:
         return [held_gaps(solved, contact, surfaces_of(k), pull_shares) for k, solved in switches]
 
-    usual = gaps_by(_pull_shares(SEPARATIONS, 0))
+    usual = gaps_by(shares_of_pull())
     finest = _finer(LOST)
     samples = f"{len(switches)} switches"
 
@@ -66,7 +71,7 @@ def accuracy_points(
         return _shifts(switches, usual, settings, LOST, _classes_nm(spacing_nm))
 
     def by_count(count: int, peeling: int) -> Array:
-        return _shifts(switches, gaps_by(_pull_shares(count, peeling)), settings, LOST)
+        return _shifts(switches, gaps_by(shares_of_pull(count, peeling)), settings, LOST)
 
     best_count = partial(by_count, SEPARATIONS, BEST_PEELING)
     best = f"{SEPARATIONS + BEST_PEELING} separations"
@@ -100,20 +105,20 @@ def accuracy_points(
             Knob(
                 PLACES,
                 [RELEASE],
-                [Choice(count, partial(by_count, count, 0)) for count in COUNTS],
+                [Choice(count, partial(by_count, count, PEELING)) for count in COUNTS],
                 SEPARATIONS,
                 best,
                 best_count,
                 samples,
             ),
             Knob(
-                PEELING,
+                PEELED,
                 [RELEASE],
                 [
                     Choice(peeling, partial(by_count, SEPARATIONS, peeling))
                     for peeling in PEELING_COUNTS
                 ],
-                0,
+                PEELING,
                 best,
                 best_count,
                 samples,
@@ -149,14 +154,6 @@ def accuracy_points(
         ],
         progress,
     )
-
-
-def _pull_shares(count: int, peeling: int) -> Array:
-    """Equal shares of the pull, of which the last part is divided among places about to peel."""
-    if not peeling:
-        return np.full(count, 1.0 / count)
-    held = np.full(count, (1.0 - PEELING_SHARE) / count)
-    return np.concatenate([held, np.full(peeling, PEELING_SHARE / peeling)])
 
 
 def _classes_nm(spacing_nm: float) -> Array:
