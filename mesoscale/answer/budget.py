@@ -21,8 +21,10 @@ from mesoscale.theory.charging import charge_shift
 HERE = "this scene's points"
 ANCHORS = ("anchor_um_per_N", "anchor_rad_per_uN_m")
 """Properties of which `of_own` is a share of what the beam itself has."""
-KEYS = {f"contact.{name}" for name in ContactSettings.model_fields} | {
-    f"device.{name}" for name in DeviceSettings.model_fields
+KEYS = {
+    *(f"contact.{name}" for name in ContactSettings.model_fields),
+    *(f"device.{name}" for name in DeviceSettings.model_fields),
+    "hardness.material",
 }
 """Keys of a scene that can state an effect."""
 SETTLE = {"common": "measure it", "each": "control it from device to device"}
@@ -64,7 +66,7 @@ class Effect(Settings):
         if self.changes and self.changes not in DeviceSettings.model_fields:
             raise ValueError(f"changes = {self.changes}: no property of the device")
         if self.stated_as and self.stated_as not in KEYS:
-            raise ValueError(f"stated_as = {self.stated_as}: no key of contact or device")
+            raise ValueError(f"stated_as = {self.stated_as}: no key that stands for an effect")
         if self.of_own and self.changes not in ANCHORS:
             raise ValueError(f"of_own is of {' and '.join(ANCHORS)}, not of {self.changes}")
         ways = [
@@ -111,6 +113,8 @@ NUMERICAL = "finite elements and grid"
 """The effect of the numerical choices."""
 TWIN = "potential with half its energies"
 """The effect whose factor twins of the closing runs tell."""
+OF_RUNS = (TWIN, "titanium dioxide in place of silica")
+"""Effects of a hardness that closing runs tell."""
 
 
 def with_twins(

@@ -5,6 +5,8 @@ STATED_OF_SWITCH = [
     for name in sorted(getattr(SCENE, section).model_fields_set)
     if getattr(getattr(SCENE, section), name) is not None
 ]
+if "material" in SCENE.hardness.model_fields_set:
+    STATED_OF_SWITCH.append("hardness.material")
 
 
 rule answer:

@@ -8,7 +8,7 @@ answer/rough_pad.va, answer/rough_pad.sub.
 from pathlib import Path
 
 from asperity.guards.foreign_yaml import load_mapping
-from mesoscale.answer.budget import TWIN, budget, effects_of, left_open, with_twins
+from mesoscale.answer.budget import OF_RUNS, budget, effects_of, left_open, with_twins
 from mesoscale.answer.other_devices import release_by_hardness
 from mesoscale.answer.release import switch_on_pad
 from mesoscale.answer.reserve import central_reserve, freed_by_surface
@@ -43,7 +43,7 @@ with job(snakemake) as run:
     if computed := snakemake.input.get("hardness"):
         effects = with_twins(effects, load_json(computed)["twins"])
     else:
-        effects.pop(TWIN)
+        effects = {name: effect for name, effect in effects.items() if name not in OF_RUNS}
     factors = [effect.hardness for effect in effects.values() if effect.hardness is not None]
     central = model.central.point
     releases = release_by_hardness(central, points.on_grid, settings.point_cells, factors)
