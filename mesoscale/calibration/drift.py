@@ -96,8 +96,10 @@ class DriftModel:
             place = np.interp(rates["barrier_eV"][:, 0], self.barriers_eV, np.arange(last + 1.0))
             below = np.minimum(place.astype(int), max(last - 1, 0))
             above = np.minimum(below + 1, last)
-            part = (place - below)[:, None, None]
-            emitted = self.emitted_V[below] + part * (self.emitted_V[above] - self.emitted_V[below])
+            share = (place - below)[:, None, None]
+            emitted = self.emitted_V[below] + share * (
+                self.emitted_V[above] - self.emitted_V[below]
+            )
             shift += np.einsum("g,mgr->mr", self.shares, np.minimum(emitted, full[:, :, None]))
         left = (1.0 + self.rests) ** -rates["recovery_exponent"]
         return left * shift - self.contactless_V
@@ -124,9 +126,9 @@ def drift_model(
     for volts, celsius in set(zip(felt_V.tolist(), temperatures.tolist(), strict=True)):
         rows = (felt_V == volts) & (temperatures == celsius)
         at_temperature = device.model_copy(update={"temperature_C": celsius})
-        least = Rates(1.0, settings.barrier_eV[0], ALL_TRAPS_E_CM2)
+        injecting = Rates(1.0, settings.barrier_eV[0], ALL_TRAPS_E_CM2)
         injected[rows] = shifts_V(
-            volts, GAPS_NM[:1], INJECTED_C_M2, at_temperature, settings, least
+            volts, GAPS_NM[:1], INJECTED_C_M2, at_temperature, settings, injecting
         )
     low, high = settings.barrier_eV
     barriers = np.unique(np.linspace(low, high, BARRIERS))

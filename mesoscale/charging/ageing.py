@@ -123,13 +123,15 @@ class Ageing:
     def acting(self) -> tuple[Effect, ...]:
         """Beam and bonds, as far as they act at all."""
         aged = stated(self.settings)
-        asked: tuple[tuple[Effect, object], ...] = (
+        switched_on: tuple[tuple[Effect, object], ...] = (
             ("beam", aged.beam),
             ("bonds", aged.bonds_mJ_m2),
         )
         end = np.array([self.end_s])
         acting: list[Effect] = [
-            effect for effect, wanted in asked if wanted and self.strength(effect, end, "most")[0]
+            effect
+            for effect, value in switched_on
+            if value and self.strength(effect, end, "most")[0]
         ]
         return tuple(acting)
 
@@ -163,22 +165,22 @@ class Ageing:
             relaxation = laws.coble_relaxation_s(self.kelvin, grain_nm, self.modulus_GPa)
             return np.minimum(laws.relaxed_share(held, relaxation), MOST_RELAXED)
         # strain that comes and goes fast relaxes as its mean
-        most = self.settings.duty * _guessed(aged.relaxing, guess)
+        largest = self.settings.duty * _guessed(aged.relaxing, guess)
         if aged.beam == "aluminium":
-            most *= float(laws.aluminium_share(self.strain))
-        return laws.relaxed_share(times, laws.gold_relaxation_s(self.kelvin), most)
+            largest *= float(laws.aluminium_share(self.strain))
+        return laws.relaxed_share(times, laws.gold_relaxation_s(self.kelvin), largest)
 
     def age(self, effects: Sequence[Effect], times: Array, guess: str) -> Array:
         """Mean of the strengths of effects over those at the end; of one effect over the strength
         of the guess that ages most.
         """
-        whole = guess if len(effects) > 1 else "most"
+        reference = guess if len(effects) > 1 else "most"
         end = np.array([self.end_s])
-        parts = [
-            self.strength(effect, times, guess) / self.strength(effect, end, whole)[0]
+        relative = [
+            self.strength(effect, times, guess) / self.strength(effect, end, reference)[0]
             for effect in effects
         ]
-        return np.mean(parts, axis=0)
+        return np.mean(relative, axis=0)
 
     def times_of(self, effects: Sequence[Effect], guess: str) -> Array:
         """Times (s) of `AGES`."""
@@ -198,13 +200,13 @@ class Ageing:
         chosen = self.effects if effects is None else effects
         pull_in = np.zeros_like(times)
         release = np.zeros_like(times)
-        parts = []
+        contributions = []
         together: tuple[Effect, ...] = tuple([effect for effect in self.acting if effect in chosen])
         if together:
-            parts.append((self.moved[together][guess], self.age(together, times, guess)))
+            contributions.append((self.moved[together][guess], self.age(together, times, guess)))
         if "tops" in chosen and self.tops is not None:
-            parts.append((self.tops, self.strength("tops", times, guess)))
-        for moved, ages in parts:
+            contributions.append((self.tops, self.strength("tops", times, guess)))
+        for moved, ages in contributions:
             closes, lets_go = moved.squares_V2(ages)
             pull_in = pull_in + closes
             release = release + lets_go
@@ -217,11 +219,11 @@ def stated(settings: LifetimeSettings) -> AgeingSettings:
     return settings.ageing
 
 
-def _guessed(ends: tuple[float, float], guess: str) -> float:
+def _guessed(bounds: tuple[float, float], guess: str) -> float:
     """The value of a guess between the one that ages least and the one that ages most."""
-    least, most = ends
+    low, high = bounds
     share = GUESSES.index(guess) / (len(GUESSES) - 1)
-    return float(least ** (1.0 - share) * most**share)
+    return float(low ** (1.0 - share) * high**share)
 
 
 def held_device(device: DeviceSettings, hold_V: float) -> DeviceSettings:
@@ -263,10 +265,10 @@ def ageing_of(
         end_s,
         tops=shared.tops,
     )
-    asked: set[tuple[Effect, ...]] = {ageing.acting} if ageing.acting else set()
+    combinations: set[tuple[Effect, ...]] = {ageing.acting} if ageing.acting else set()
     if apart:
         for effect in ageing.acting:
-            asked.add((effect,))
+            combinations.add((effect,))
     states = switch_of(felt).states(curves)
 
     @cache  # guesses may agree
@@ -285,7 +287,7 @@ def ageing_of(
             voltages.append(voltages_at(strengths.get("beam", 0.0), strengths.get("bonds", 0.0)))
         return _moved(voltages, np.array([0.0, *AGES]))
 
-    for effects in asked:
+    for effects in combinations:
         if len(effects) == 1:
             ageing.moved[effects] = dict.fromkeys(GUESSES, solved(effects, "most"))
         else:
@@ -319,16 +321,16 @@ def surroundings_of(
     if aged.tops is None:
         return Surroundings(tops_GPa, None)
     most_c = HistorySettings(creep_strength=aged.tops[1])
-    most = 1.0 - float(hardness_factor(end_s * settings.duty, most_c))
+    most_lost = 1.0 - float(hardness_factor(end_s * settings.duty, most_c))
     felt = held_device(point.device, hold_V)
     fresh = switch_of(felt).states(central.pressed.curves)
     voltages = [(fresh.pull_in_V, fresh.release_V)]
     for share in TOPS_AGES:
-        softer = harder(point, 1.0 - share * most)
+        softer = harder(point, 1.0 - share * most_lost)
         pad = press_pad(softer, contact, central.pressed.count, surfaces_of(0))
         states = switch_of(felt).states(pad.curves)
         voltages.append((states.pull_in_V, states.release_V))
-    return Surroundings(tops_GPa, _moved(voltages, most * np.array([0.0, *TOPS_AGES])))
+    return Surroundings(tops_GPa, _moved(voltages, most_lost * np.array([0.0, *TOPS_AGES])))
 
 
 def held_by(solved: Solved) -> float:

@@ -82,7 +82,7 @@ def lost_in_hold(
 def gained_in_cycle(
     shift: float,
     drive: Array,
-    most: float,
+    full_traps_V: float,
     edges: Array,
     log_rates: Array,
     log_times: Array,
@@ -93,7 +93,7 @@ def gained_in_cycle(
     Parameters
     ----------
     drive : voltage (V), that of the table, time of the hold and of that of the other polarity (s).
-    most : shift (V) of full traps.
+    full_traps_V : shift of full traps.
     """
     voltage, table_V, hold_s, other_s = drive
     first = 0.0
@@ -105,8 +105,8 @@ def gained_in_cycle(
         share = max(1.0 - (voltage - before) / table_V, 0.0)
         lost, slope = lost_in_hold(share, seconds, edges, log_rates, log_times)
         more = table_V * lost
-        if before + more >= most:
-            more = most - before
+        if before + more >= full_traps_V:
+            more = full_traps_V - before
             slope = 0.0
         gain += sign * more
         growth *= slope
@@ -117,20 +117,20 @@ def gained_in_cycle(
 
 
 @njit(cache=True)
-def rested_weights(cycles: Array, rest: float, exponent: float) -> Array:
+def rested_weights(cycles: Array, rest_ratio: float, exponent: float) -> Array:
     """What is left before a cycle of gains of 1 in the earlier ones, by the cycles at which gains
     are known; between two of them gains are straight. Shape (cycles, cycles).
 
     Parameters
     ----------
     cycles : numbers of cycles, rising from 1.
-    rest : of a cycle, over the time at which the power law begins.
+    rest_ratio : rest of a cycle, over the time at which the power law begins.
     """
     count = cycles.size
     weights = np.zeros((count, count))
     for row in range(1, count):
         now = cycles[row]
-        weights[row, 0] += (1.0 + (now - 1.0) * rest) ** -exponent
+        weights[row, 0] += (1.0 + (now - 1.0) * rest_ratio) ** -exponent
         for place in range(row):
             before = cycles[place]
             span = cycles[place + 1] - before
@@ -144,14 +144,14 @@ def rested_weights(cycles: Array, rest: float, exponent: float) -> Array:
                 length = end - ago + 1.0
                 for point in range(POINTS.size):
                     rests = ago - 0.5 + 0.5 * length * (1.0 + POINTS[point])
-                    part = 0.5 * length * WEIGHTS[point]
+                    weight = 0.5 * length * WEIGHTS[point]
                     if ago < ONE_BY_ONE:
                         rests = ago
-                        part = 1.0 / POINTS.size
-                    part *= (1.0 + rests * rest) ** -exponent
+                        weight = 1.0 / POINTS.size
+                    weight *= (1.0 + rests * rest_ratio) ** -exponent
                     later = (now - rests - before) / span
-                    weights[row, place] += part * (1.0 - later)
-                    weights[row, place + 1] += part * later
+                    weights[row, place] += weight * (1.0 - later)
+                    weights[row, place + 1] += weight * later
                 if end >= longest:
                     break
                 ago = end + 1.0
@@ -162,7 +162,7 @@ def rested_weights(cycles: Array, rest: float, exponent: float) -> Array:
 def shifts_of_place(
     weights: Array,
     drive: Array,
-    most: float,
+    full_traps_V: float,
     edges: Array,
     log_rates: Array,
     log_times: Array,
@@ -172,13 +172,13 @@ def shifts_of_place(
     Parameters
     ----------
     weights : see `rested_weights`.
-    drive, most : see `gained_in_cycle`.
+    drive, full_traps_V : see `gained_in_cycle`.
     edges, log_rates, log_times : see `lost_in_hold`.
     """
     count = weights.shape[0]
     gains = np.empty(count)
-    ends = np.empty(count)
-    highest = min(drive[0], most)
+    held_shifts = np.empty(count)
+    highest = min(drive[0], full_traps_V)
     lowest = 0.0
     if drive[3] > 0.0:
         lowest = -highest
@@ -192,7 +192,9 @@ def shifts_of_place(
         high = highest
         shift = min(max(shift, low), high)
         for _ in range(MOST_STEPS):
-            _, gain, slope = gained_in_cycle(shift, drive, most, edges, log_rates, log_times)
+            _, gain, slope = gained_in_cycle(
+                shift, drive, full_traps_V, edges, log_rates, log_times
+            )
             excess = shift - left - same_cycle * gain
             if excess > 0.0:
                 high = shift
@@ -206,7 +208,7 @@ def shifts_of_place(
             shift = nearer
             if moved <= 1e-13 * highest:
                 break
-        first, gain, _ = gained_in_cycle(shift, drive, most, edges, log_rates, log_times)
+        first, gain, _ = gained_in_cycle(shift, drive, full_traps_V, edges, log_rates, log_times)
         gains[row] = gain
-        ends[row] = shift + first
-    return ends
+        held_shifts[row] = shift + first
+    return held_shifts

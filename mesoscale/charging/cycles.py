@@ -84,15 +84,15 @@ def cycled_V(
         return shifts
     held = settings.duty * period_s
     other_s = min(settings.other_polarity, 1.0 - settings.other_polarity) * held
-    table_V = (
-        2.0 * voltage if other_s else voltage
-    )  # a place that the other hold has charged feels more
+    table_V = voltage
+    if other_s:  # a place that the other hold has charged feels more
+        table_V = 2.0 * voltage
     drive = np.array([voltage, table_V, held - other_s, other_s])
-    most = most_V(device, rates)
-    whole = times >= period_s
-    cycles = known_cycles(times[whole] / period_s, per_decade)
-    rest = (1.0 - settings.duty) * period_s / settings.recovery_s
-    weights = _weights(tuple(cycles.tolist()), rest, rates.recovery_exponent)
+    full_traps_V = most_V(device, rates)
+    completed = times >= period_s
+    cycles = known_cycles(times[completed] / period_s, per_decade)
+    rest_ratio = (1.0 - settings.duty) * period_s / settings.recovery_s
+    weights = _weights(tuple(cycles.tolist()), rest_ratio, rates.recovery_exponent)
     edges = np.concatenate([[0.0], LOST])
     log_cycles = np.log(cycles)
     for places, current, start, lowering in charged_places(
@@ -102,26 +102,28 @@ def cycled_V(
         log_rates = np.log(lowering / start)[:, None] - slowness
         rows = shifts[places]
         for row, rates_of, times_of in zip(rows, log_rates, log_times, strict=True):
-            ends = shifts_of_place(weights, drive, most, edges, rates_of, times_of)
-            row[whole] = np.interp(np.log(times[whole] / period_s), log_cycles, ends)
-            for place in np.flatnonzero(~whole):
+            held_shifts = shifts_of_place(weights, drive, full_traps_V, edges, rates_of, times_of)
+            row[completed] = np.interp(np.log(times[completed] / period_s), log_cycles, held_shifts)
+            for place in np.flatnonzero(~completed):
                 begun = np.array([voltage, table_V, min(times[place], drive[2]), 0.0])
-                row[place], _, _ = gained_in_cycle(0.0, begun, most, edges, rates_of, times_of)
+                row[place], _, _ = gained_in_cycle(
+                    0.0, begun, full_traps_V, edges, rates_of, times_of
+                )
         shifts[places] = rows
     return shifts
 
 
-def known_cycles(asked: Array, per_decade: int) -> Array:
-    """Numbers of the cycles at which gains are known: the first ones, those asked for, and between
+def known_cycles(numbers: Array, per_decade: int) -> Array:
+    """Numbers of the cycles at which gains are known: the first ones, some `numbers`, and between
     them in steps that grow geometrically.
     """
     first = np.arange(1.0, FIRST_CYCLES + 1.0)
-    last = max(float(asked.max(initial=1.0)), FIRST_CYCLES)
+    last = max(float(numbers.max(initial=1.0)), FIRST_CYCLES)
     count = int(np.ceil(per_decade * np.log10(last / FIRST_CYCLES)))
     later = FIRST_CYCLES * 10.0 ** (np.arange(count + 1) / per_decade)
-    return np.unique(np.concatenate([first, np.rint(later), np.rint(asked)]))
+    return np.unique(np.concatenate([first, np.rint(later), np.rint(numbers)]))
 
 
 @lru_cache(maxsize=64)
-def _weights(cycles: tuple[float, ...], rest: float, exponent: float) -> Array:
-    return rested_weights(np.array(cycles), rest, exponent)
+def _weights(cycles: tuple[float, ...], rest_ratio: float, exponent: float) -> Array:
+    return rested_weights(np.array(cycles), rest_ratio, exponent)

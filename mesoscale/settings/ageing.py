@@ -42,9 +42,11 @@ class AgeingSettings(Settings):
     @model_validator(mode="after")
     def _rising(self) -> "AgeingSettings":
         for name in GUESSED:
-            ends = getattr(self, name)
-            if ends is not None and ends[0] > ends[1]:
-                raise ValueError(f"{name} = [{ends[0]:g}, {ends[1]:g}]: give the least value first")
+            bounds = getattr(self, name)
+            if bounds is not None and bounds[0] > bounds[1]:
+                raise ValueError(
+                    f"{name} = [{bounds[0]:g}, {bounds[1]:g}]: give the least value first"
+                )
         if not (self.beam or self.tops or self.bonds_mJ_m2):
             raise ValueError("nothing ages: give beam, tops or bonds_mJ_m2, or leave ageing out")
         return self

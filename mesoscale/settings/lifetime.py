@@ -88,14 +88,16 @@ class LifetimeSettings(Settings):
     @model_serializer(mode="wrap")
     def _without_ageing(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Ageing that nobody asks for is left out, so that results without it stay as they were."""
-        return {name: of for name, of in dump(self).items() if (name, of) != ("ageing", None)}
+        return {
+            name: value for name, value in dump(self).items() if (name, value) != ("ageing", None)
+        }
 
     @model_validator(mode="after")
     def _rising(self) -> "LifetimeSettings":
         for name in RANGES:
-            least, largest = getattr(self, name)
-            if least > largest:
-                raise ValueError(f"{name} = [{least:g}, {largest:g}]: give the least value first")
+            low, high = getattr(self, name)
+            if low > high:
+                raise ValueError(f"{name} = [{low:g}, {high:g}]: give the least value first")
         if self.other_polarity == 0.5:
             raise ValueError(
                 "other_polarity = 0.5: the polarities sum to nothing, so that nothing is left to"

@@ -77,8 +77,8 @@ def coble_relaxation_s(temperature: ArrayLike, grain: ArrayLike, modulus: float)
     return np.exp(np.minimum(log_time, LARGEST_EXPONENT))
 
 
-def relaxed_share(time: ArrayLike, relaxation: ArrayLike, most: ArrayLike = 1.0) -> Array:
-    """Share of its stress that a held strain has lost: most (1 - exp(-t / relaxation)).
+def relaxed_share(time: ArrayLike, relaxation: ArrayLike, largest: ArrayLike = 1.0) -> Array:
+    """Share of its stress that a held strain has lost: largest (1 - exp(-t / relaxation)).
 
     Raises
     ------
@@ -86,7 +86,7 @@ def relaxed_share(time: ArrayLike, relaxation: ArrayLike, most: ArrayLike = 1.0)
     """
     with np.errstate(over="ignore"):  # of a time that is endless beside the relaxation
         passed = _times(time) / np.asarray(relaxation, float)
-    return np.asarray(-np.asarray(most, float) * np.expm1(-passed))
+    return np.asarray(-np.asarray(largest, float) * np.expm1(-passed))
 
 
 def aluminium_share(strain: ArrayLike) -> Array:

@@ -218,19 +218,19 @@ def _beside(heights: Array, axis: int, summands: Summands) -> Summands:
     """Summands of sums along an axis, on the device of the heights."""
     xp = namespace(heights)
     device = heights.device
-    there = []
+    placed = []
     for source, weight in summands:
         weight = np.expand_dims(weight, 1 - axis)
-        there.append((xp.asarray(source, device=device), xp.asarray(weight, device=device)))
-    return there
+        placed.append((xp.asarray(source, device=device), xp.asarray(weight, device=device)))
+    return placed
 
 
 def _sums(field: Array, summands: list[Summands]) -> Array:
     """Weighted sums of the rows of a field, then of its columns."""
     xp = namespace(field)
-    for axis, ((source, weight), *others) in enumerate(summands):
+    for axis, ((source, weight), *remaining) in enumerate(summands):
         total = weight * xp.take(field, source, axis=axis)
-        for source, weight in others:
+        for source, weight in remaining:
             total += weight * xp.take(field, source, axis=axis)
         field = total
     return field

@@ -65,7 +65,7 @@ def describe(results: Results) -> Iterator[Block]:
         yield of_drift(narrowed)
         yield table(
             "Rates before and after the measured drift, median and 5 to 95 %",
-            [{"rate": name, **of} for name, of in narrowed["rates"].items()],
+            [{"rate": name, **row} for name, row in narrowed["rates"].items()],
             {
                 "rate": lambda row: f"{RATES[row['rate']]} ({row['unit']})",
                 "before": lambda row: spread(row, "prior_q50", "prior_q05", "prior_q95"),
@@ -109,7 +109,7 @@ def three_sentences(life: dict[str, Any], rows: list[CsvRow], why: str = UNKNOWN
     low, middle, high = (
         volts(float(last[guess]["release_q50_V"])) for guess in ("least", "central", "most")
     )
-    decades = [of["volts_a_decade"] for of in life["guesses"].values() if of["volts_a_decade"]]
+    decades = [row["volts_a_decade"] for row in life["guesses"].values() if row["volts_a_decade"]]
     costs = "How fast it charges does not depend on the hold voltage here"
     if decades:
         span = " to ".join(
@@ -157,13 +157,15 @@ def _allowed(life: dict[str, Any]) -> str:
 
 def of_ageing(ageing: dict[str, Any], rows: list[CsvRow]) -> str:
     """What creep and bonds do by the end of the life, and that menisci are there before."""
-    ends = {(row["effect"], row["guess"]): float(row["release_V"]) for row in rows}
+    final_V = {(row["effect"], row["guess"]): float(row["release_V"]) for row in rows}
     fresh = volts(float(rows[0]["release_V"]))
-    said = []
+    changes = []
     for effect in ageing["strengths"]:
-        low, middle, high = (volts(ends[effect, guess]) for guess in ("most", "central", "least"))
-        said.append(f"{EFFECTS[effect]} it goes to {middle} ({low} to {high})")
-    words = "; by ".join(said) if said else "no effect acts here"
+        low, middle, high = (
+            volts(final_V[effect, guess]) for guess in ("most", "central", "least")
+        )
+        changes.append(f"{EFFECTS[effect]} it goes to {middle} ({low} to {high})")
+    words = "; by ".join(changes) if changes else "no effect acts here"
     return (
         f"Without charge the central switch lets go at {fresh} at first. By {words}. Ranges of"
         " relaxing shares, grains, hardness and bonds are assumptions. Menisci form within"
