@@ -70,6 +70,18 @@ class Solved:
         return self.pad
 
     @property
+    def held_V(self) -> float:
+        """Voltage that holds it: as stated, or that of its pull-in.
+
+        Raises
+        ------
+        InputError : it has no answer.
+        """
+        if self.states is None:
+            raise InputError(self.refused)
+        return self.point.device.hold_voltage_V or self.states.pull_in_V
+
+    @property
     def outcome(self) -> str:
         """What the switch does, in words."""
         if self.states is None:

@@ -191,13 +191,6 @@ class Drift:
     x: Array
     probability: float
 
-    @property
-    def reasons(self) -> list[str]:
-        """Why there is no posterior."""
-        if self.chain.converged:
-            return []
-        return [f"the chain has not converged: {self.chain.reason}"]
-
 
 def narrow_rates(
     data: Measurements,
@@ -274,8 +267,7 @@ def rates_by_drift(
     InputError : the switch has no answer.
     """
     gaps = held_gaps(solved, contact, surfaces_of(0))
-    device = solved.point.device
-    before_V = shift_V(device)
+    before_V = shift_V(solved.point.device)
     humidity = contact.air.humidity if contact.air else 0.0
     drift = narrow_rates(
         data,
@@ -283,12 +275,9 @@ def rates_by_drift(
         settings,
         progress=progress,
     )
-    if drift.reasons:
+    if drift.chain.reasons:
         return drift, {}
-    assert solved.states is not None
-    felt_V = solved.states.pull_in_V - before_V
-    if device.hold_voltage_V is not None:
-        felt_V = device.hold_voltage_V - before_V
+    felt_V = solved.held_V - before_V
     return drift, telling_rates(drift.x, gaps, felt_V, float(times_s(settings)[-1]), settings)
 
 
@@ -321,7 +310,7 @@ def drift_json(drift: Drift, guesses: Mapping[str, Rates]) -> dict[str, Any]:
         for guess, rates in guesses.items()
     }
     return {
-        "gate": {"passed": not drift.reasons, "reasons": drift.reasons},
+        "gate": {"passed": not drift.chain.reasons, "reasons": drift.chain.reasons},
         "file": drift.data.file,
         "source": drift.data.source,
         "rows": len(drift.data),

@@ -193,13 +193,6 @@ class Calibration:
     x: Array
     error_share: Mapping[str, float]
 
-    @property
-    def reasons(self) -> list[str]:
-        """Why there is no posterior."""
-        if self.chain.converged:
-            return []
-        return [f"the chain has not converged: {self.chain.reason}"]
-
 
 def calibrate(
     tables: Sequence[Measurements],

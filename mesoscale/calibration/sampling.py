@@ -70,6 +70,13 @@ class Chain:
         """Whether the draws are those of the posterior."""
         return not self.reason
 
+    @property
+    def reasons(self) -> list[str]:
+        """Why there is no posterior."""
+        if self.converged:
+            return []
+        return [f"the chain has not converged: {self.reason}"]
+
 
 def sample(
     log_likelihood: Callable[[Array], Array],

@@ -160,7 +160,7 @@ def posterior_json(result: Calibration, agreement: dict[str, dict[str, Any]]) ->
         "steps": chain.steps,
     }
     return {
-        "gate": {"passed": not result.reasons, "reasons": result.reasons},
+        "gate": {"passed": not result.chain.reasons, "reasons": result.chain.reasons},
         "remarks": _remarks(result, tables) if chain.converged else [],
         "chain": sampler,
         "cycles": len(result.model.cycles.x),

@@ -18,7 +18,6 @@ from mesoscale.answer.other_devices import harder
 from mesoscale.answer.switches import Solved, press_pad, surfaces_of
 from mesoscale.charging.rates import GUESSES, ZERO_C_K
 from mesoscale.contact.cycle import run_cycle
-from mesoscale.errors import InputError
 from mesoscale.history.creep import hardness_factor
 from mesoscale.pad.curves import PadCurves, bonded
 from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LifetimeSettings
@@ -313,7 +312,7 @@ def surroundings_of(
     InputError : the central switch has no answer.
     """
     point = central.point
-    hold_V = held_by(central)
+    hold_V = central.held_V
     aged = stated(settings)
     tops_GPa = np.nan
     if aged.bonds_mJ_m2:
@@ -331,18 +330,6 @@ def surroundings_of(
         states = switch_of(felt).states(pad.curves)
         voltages.append((states.pull_in_V, states.release_V))
     return Surroundings(tops_GPa, _moved(voltages, most_lost * np.array([0.0, *TOPS_AGES])))
-
-
-def held_by(solved: Solved) -> float:
-    """Voltage that holds a switch: as stated, or that of its pull-in.
-
-    Raises
-    ------
-    InputError : it has no answer.
-    """
-    if solved.states is None:
-        raise InputError(solved.refused)
-    return solved.point.device.hold_voltage_V or solved.states.pull_in_V
 
 
 def _tops_GPa(central: Solved, contact: ContactSettings) -> float:

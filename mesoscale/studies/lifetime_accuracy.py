@@ -135,7 +135,7 @@ def accuracy_points(
         shifts = []
         for (_, solved), of_switch in zip(switches, usual, strict=True):
             device = of_switch.device
-            hold_V = _hold_V(solved)
+            hold_V = solved.held_V
             places = cycled_V(hold_V, GAPS_NM, end, device, settings, rates, per_decade)
             shifts.append(of_switch.mean_V(places))
         return np.array(shifts)
@@ -179,11 +179,6 @@ def _shifts(
     rates = guesses(settings)["central"]
     shifts = []
     for (_, solved), of_switch in zip(switches, gaps, strict=True):
-        places = shifts_V(_hold_V(solved), classes_nm, end, of_switch.device, settings, rates, lost)
+        places = shifts_V(solved.held_V, classes_nm, end, of_switch.device, settings, rates, lost)
         shifts.append(of_switch.shares_at(classes_nm)[:-1] @ places)
     return np.array(shifts)
-
-
-def _hold_V(solved: Solved) -> float:
-    assert solved.states is not None
-    return solved.point.device.hold_voltage_V or solved.states.pull_in_V

@@ -244,7 +244,7 @@ def _tiny_error(bench: Bench) -> list[str]:
     result = bench.calibrated(values_of("modulus", [93.0], 1e-3))
     e_star = bench.column(result, "e_star")
     if not result.chain.converged:
-        return _unless(says_so=result.reasons)
+        return _unless(says_so=result.chain.reasons)
     return _unless(at_the_datum=abs(e_star.mean() - 93.0) < 1e-3, as_narrow=e_star.std() < 2e-3)
 
 
@@ -324,7 +324,7 @@ def _doubtful_model(bench: Bench) -> list[str]:
 
 def _short(bench: Bench) -> list[str]:
     result = bench.calibrated(values_of("hardness", [4.0, 4.0], 1e-5), steps=50)
-    return _unless(no_posterior=not result.chain.converged, says_why=result.reasons)
+    return _unless(no_posterior=not result.chain.converged, says_why=result.chain.reasons)
 
 
 def _correlated(bench: Bench) -> list[str]:
