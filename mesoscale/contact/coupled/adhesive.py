@@ -65,7 +65,7 @@ class AdhesiveContact(CoupledContact):
 
     REVERSIBLE = False
     # each step of the iteration solves anew, and needs no other sites for it
-    DENSE_TIMES_PIXELS = 2**20
+    DENSE = 2048
     FORCE_TOLERANCE = 1e-4
     SMALLEST_STEP = 1e-4
     LONGEST_GUESS = math.inf  # but one step is taken at most
