@@ -258,7 +258,9 @@ def press(
     else:
         states = _way(surface, periodic, steps, by_load, inputs, settings)
     forces, separations, pulls = (np.zeros(steps.size) for _ in range(3))
-    pressures, gaps = (np.empty((steps.size, *surface.shape)) for _ in range(2))
+    pressures = gaps = np.empty(0)
+    if steps.size > 1:
+        pressures, gaps = (np.empty((steps.size, *surface.shape)) for _ in range(2))
     converged = True
     with announced():
         for number, state in enumerate(states):
@@ -442,7 +444,7 @@ def _way(
     """The map at each load or approach, from one to the next in steps of separation."""
     lowest = float(surface.min())
     engine = CoupledContact if periodic else FreeContact
-    contact = engine(surface, inputs, settings)
+    contact = engine(surface.copy(), inputs, settings)  # which lowers what has flowed
     flows = contact.flows
     force_steps = NUMERICS.force_steps if flows else 1
     if by_load:
@@ -527,7 +529,7 @@ def surface_of_maps(
         check_periodic(surface)
     if contact_at == "highest":
         return -surface, spacing
-    return surface.copy(), spacing
+    return surface, spacing
 
 
 def _check_memory(shape: tuple[int, int], periodic: bool, loads: int, few: bool) -> None:

@@ -128,7 +128,7 @@ def test_a_pressed_map_is_drawn_and_says_what_it_is():
         (False, {"h_macro": 5.0, "h_prime": 1.0}, "0.00944"),
         (True, {"h_macro": 5.0}, "0.000819"),
         (True, {}, "0.000819"),
-        (False, {}, "0.00229"),
+        (False, {}, "0.00147"),
     ],
 )
 def test_a_map_beyond_memory_is_refused(monkeypatch, periodic, hardness, needed):

@@ -87,22 +87,20 @@ class Base(ABC):
     def displacement(self, pressure: Array) -> Array:
         """Displacement (nm) of all sites by their pressures (GPa), shape (nx, ny), in the
         precision of the pressures, and on their device.
+
+        NumPy's in single precision stand until the next ones, which take their memory.
         """
         self.transforms += 1
         if not is_numpy(pressure):
             return self._displacement_there(pressure)
         if pressure.dtype == np.float32:
-            compliance = self.single_compliance
-            room = self.room
-        else:
-            compliance = self.compliance()
-            room = np.empty(compliance.size, np.complex128)
-        columns = len(compliance)
-        rows = np.arange(self.shape[0])
-        if columns > self.shape[1]:
-            pressure = np.pad(pressure, ((0, 0), (0, columns - self.shape[1])))
-        moved = half_space.convolve(pressure, rows, compliance, room, rows)
-        return np.ascontiguousarray(moved[:, : self.shape[1]])
+            return half_space.convolve_map(pressure, self.single_compliance, self.room)
+        compliance = self.compliance()
+        room = np.empty(compliance.size, np.complex128)
+        moved = half_space.convolve_map(pressure, compliance, room)
+        if room.nbytes > 2 * moved.nbytes:
+            return moved.copy()  # without the room of a map alone
+        return moved
 
     def _displacement_there(self, pressure: Any) -> Any:
         """By the transforms of another library."""

@@ -217,7 +217,11 @@ class Search(ABC):
         """Size of misfits in a range."""
 
     @abstractmethod
-    def level(self, sites: Array, closing: Array) -> None:
+    def choose(self, sites: Array) -> None:
+        """Take the sites whose pressures are sought next."""
+
+    @abstractmethod
+    def level(self, closing: Array) -> None:
         """Take from a step of the pressures what it may not change."""
 
     @abstractmethod
@@ -258,13 +262,15 @@ class Search(ABC):
             if worst <= tolerance * largest:
                 if self.exact() and ROUNDED * self.drift <= tolerance:
                     return True
+                del state  # it holds the last gaps
                 self.follow()
                 continue
+            self.choose(sites)
             bound = self.steps.bind(*state, MEMBER_SHARE, self.factor(carried), self.change)
             if bound > UNSEEN * tolerance * largest:
                 self._step_ahead(sites, length)
                 self.gap += self._moved(self.change)
-                self._drift(self._total(self.xp.abs(self.change)))
+                self._drift(self.steps.size_of_all(self.change))
             goal = GOAL_SHARE * tolerance * largest * self.base.spring
             share = FACE_SHARE if moved else SINGLE_SHARE
             length = self._close_gaps(sites, goal, share)
@@ -279,7 +285,7 @@ class Search(ABC):
         self.misfit[:] = 0.0
         unit = self.steps.take_misfit(sites, self.gap, self.closed(sites), self.misfit)
         closing = self.stiffness.close(sites, self.misfit)
-        self.level(sites, closing)
+        self.level(closing)
         self.steps.join(sites, length * unit, closing, self.change, self.pressure)
 
     def _close_gaps(self, sites: Array, goal: float, share: float) -> float:
@@ -301,7 +307,7 @@ class Search(ABC):
             if left <= max(goal / max(unit, goal), share):
                 break
             closing = self.stiffness.close(sites, misfit)
-            self.level(sites, closing)
+            self.level(closing)
             gained = self.steps.gain(sites, misfit, closing)
             self.steps.turn(sites, closing, gained / last, change)
             last = gained
@@ -314,12 +320,12 @@ class Search(ABC):
                 *self.steps.advance(sites, length, unit, change, moved, misfit, self.pressure)
             )
             self.steps.add(length * unit, moved, self.gap)
-            del moved  # the next one takes its memory
             self._drift(length * unit * self.steps.size(sites, change))
         return length
 
     def pressed(self, settled: bool) -> Pressed:
         """The answer."""
+        self.change = self.misfit = self._zeros(0)  # frees their memory
         self.steps.bounded(self.pressure, self.gap, self.separation, self.hardness)
         return Pressed(
             self.xp.reshape(self.pressure, self.shape),
@@ -335,7 +341,6 @@ class OneLoad(Search):
 
     def __init__(self, heights: Array, load_nN: float, base: Base, guess: Array):
         self.load = float(load_nN / base.site_area)
-        self.lifting: tuple[Array, Array] = (None, None)
         xp = namespace(heights)
         share = self.load / float(xp.sum(guess, dtype=xp.float64))
         super().__init__(heights, base, xp.asarray(guess, dtype=xp.float64) * share)
@@ -356,15 +361,17 @@ class OneLoad(Search):
         """Half of the range: a change of the separation takes the rest."""
         return 0.5 * (highest - lowest)
 
-    def level(self, sites: Array, closing: Array) -> None:
+    def choose(self, sites: Array) -> None:
+        """Pressures that lift all sites alike."""
+        everywhere = self.change  # which the next step writes anew
+        everywhere[:] = 0.0
+        everywhere[sites] = 1.0
+        self.lifting = self.stiffness.close(sites, everywhere)
+
+    def level(self, closing: Array) -> None:
         """Take the load off a step, by pressures that lift all sites alike."""
-        if self.lifting[0] is not sites:
-            everywhere = self._zeros(math.prod(self.shape))
-            everywhere[sites] = 1.0
-            self.lifting = (sites, self.stiffness.close(sites, everywhere))
-        lifting = self.lifting[1]
-        share = self._total(closing) / self._total(lifting)
-        closing -= share * lifting
+        share = self._total(closing) / self._total(self.lifting)
+        closing -= share * self.lifting
 
     def exact(self) -> bool:
         """Scale the pressures to the load."""
@@ -403,7 +410,10 @@ class OneSeparation(Search):
         """The largest."""
         return max(highest, -lowest)
 
-    def level(self, sites: Array, closing: Array) -> None:
+    def choose(self, sites: Array) -> None:
+        """Any may change their pressures."""
+
+    def level(self, closing: Array) -> None:
         """A step may change the load."""
 
     def exact(self) -> bool:

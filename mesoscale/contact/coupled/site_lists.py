@@ -143,6 +143,15 @@ def size(sites, change):
 
 
 @njit(cache=True)
+def size_of_all(change):
+    """Sum of the sizes of the changes of all sites."""
+    total = 0.0
+    for k in range(change.size):
+        total += abs(change[k])
+    return total
+
+
+@njit(cache=True)
 def advance(sites, step, unit, change, moved, misfit, pressure):
     """Go a step along a change of pressures; the range of the misfits that are left."""
     highest = -np.inf

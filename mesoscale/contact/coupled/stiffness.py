@@ -49,6 +49,7 @@ class Stiffness:
         self.factors = np.zeros((patterns, len(BEFORE) + 1), np.float32)
         self.made = np.zeros(patterns, np.bool_)
         self.excess = self._excess(base)
+        self.base = base
         self.sites: Array | None = None
 
     def _excess(self, base: Base) -> Array:
@@ -69,20 +70,25 @@ class Stiffness:
         return (share * (1.0 / soft - near)).astype(np.float32)
 
     def close(self, sites: Array, gap: Array) -> Array:
-        """Pressures of some sites, rising, from the gaps of all (nx * ny,), 0 elsewhere."""
+        """Pressures of some sites, rising, from the gaps of all (nx * ny,), 0 elsewhere.
+
+        It works in the room of the half-space, whose last displacements are lost.
+        """
         columns = self.columns[0].size
+        room = self.base.room.view(np.float32)[: gap.size]
         if sites is not self.sites:
             self.sites = sites
             self.first = np.searchsorted(sites, np.arange(self.rows[0].size + 1) * columns)
-            self.patterns = touching_before(sites, self.first, columns, self.repeats)
+            touches = room.view(np.bool_)[: gap.size]
+            self.patterns = touching_before(sites, self.first, columns, self.repeats, touches)
             make_factors(self.patterns, self.near, self.factors, self.made)
         long = np.zeros(self.shape, np.float32)
         pool(sites, self.first, gap, *self.rows, *self.columns, long)
         spectrum = np.asarray(fft.rfft2(long))
         spectrum *= self.excess
         long = np.asarray(fft.irfft2(spectrum, s=long.shape, overwrite_x=True))
-        near = spread_near(sites, self.first, self.patterns, self.factors, gap, columns)
-        return spread_long(sites, self.first, near, *self.rows, *self.columns, long)
+        spread_near(sites, self.first, self.patterns, self.factors, gap, columns, room)
+        return spread_long(sites, self.first, room, *self.rows, *self.columns, long)
 
 
 def _between(sites: int, coarse: int) -> tuple[Array, Array]:
@@ -101,12 +107,15 @@ def place_before(row, column, rows, columns, place):
 
 
 @njit(cache=True)
-def touching_before(sites, first, columns, repeats):
-    """Patterns of the sites that touch before each one; beyond the edge none, unless it repeats."""
+def touching_before(sites, first, columns, repeats, touches):
+    """Patterns of the sites that touch before each one; beyond the edge none, unless it repeats.
+
+    Which sites touch (nx * ny,) is written for it.
+    """
     rows = first.size - 1
-    touches = np.zeros(rows * columns, np.uint8)
+    touches[:] = False
     for site in sites:
-        touches[site] = 1
+        touches[site] = True
     place = np.empty(BEFORE.shape[0], np.int64)
     patterns = np.empty(sites.size, np.uint16)
     for row in range(rows):
@@ -195,13 +204,14 @@ def pool(sites, first, gap, row_before, down_share, column_before, over_share, l
 
 
 @njit(cache=True, fastmath=dense.FAST)
-def spread_near(sites, first, patterns, factors, gap, columns):
-    """Pressures of all sites (nx * ny,) from the gaps of those that touch: the factor, then its
-    transpose.
+def spread_near(sites, first, patterns, factors, gap, columns, pressure):
+    """Write pressures (nx * ny,) of the sites that touch from their gaps: the factor, then its
+    transpose. Elsewhere nothing that means anything is written.
     """
     rows = first.size - 1
     place = np.empty(BEFORE.shape[0], np.int64)
-    pressure = np.zeros(gap.size, np.float32)
+    for site in sites:
+        pressure[site] = 0.0
     for row in range(rows):
         for k in range(first[row], first[row + 1]):
             site = sites[k]
@@ -226,7 +236,6 @@ def spread_near(sites, first, patterns, factors, gap, columns):
                 for bit in range(place.size):
                     pressure[place[bit]] += factor[bit] * total
             pressure[site] += factor[12] * total
-    return pressure
 
 
 @njit(cache=True, fastmath=dense.FAST)

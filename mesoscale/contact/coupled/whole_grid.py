@@ -137,6 +137,11 @@ def product(sites: Array, change: Array, moved: Array) -> float:
 
 def size(sites: Array, change: Array) -> float:
     """Sum of the sizes of the changes of some sites."""
+    return size_of_all(change)
+
+
+def size_of_all(change: Array) -> float:
+    """Sum of the sizes of the changes of all sites."""
     return _total(namespace(change).abs(change))
 
 
