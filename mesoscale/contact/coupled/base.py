@@ -95,6 +95,7 @@ class Base(ABC):
             return self._displacement_there(pressure)
         if pressure.dtype == np.float32:
             return half_space.convolve_map(pressure, self.single_compliance, self.room)
+        vars(self).pop("room", None)  # this one needs its memory
         compliance = self.compliance()
         room = np.empty(compliance.size, np.complex128)
         moved = half_space.convolve_map(pressure, compliance, room)

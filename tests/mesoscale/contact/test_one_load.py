@@ -1,6 +1,7 @@
 """One load without the way there: the same contact as the engine's, which knows another way."""
 
 import math
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from mesoscale.contact.coupled.grid import Grid
 from mesoscale.contact.coupled.stiffness import Stiffness
 from mesoscale.contact.path import trace
 from mesoscale.inputs.contact import ContactInputs
+from mesoscale.memory import SITE_MB
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import MaterialSettings
 
@@ -181,6 +183,22 @@ def test_an_oversampled_map_needs_few_transforms():
         counts.append(one_load.press(heights, 2000.0, base).transforms)
     assert max(counts) <= 30
     assert counts[2] <= counts[0] + 5
+
+
+@pytest.mark.parametrize("load", [400.0, 1e5])
+@pytest.mark.parametrize(
+    ("periodic", "key"), [(True, "one load"), (False, "one load on a map alone")]
+)
+def test_a_load_takes_the_memory_that_is_stated(periodic, key, load):
+    """Beside the map. Nothing that is compiled or imported for the first time is counted."""
+    heights = rough(2, 512)
+    asp.press(heights[:96, :96], SIDE, load, E_STAR, periodic=periodic)
+    tracemalloc.start()
+    pressed = asp.press(heights, SIDE, load, E_STAR, periodic=periodic)
+    taken = tracemalloc.get_traced_memory()[1] / heights.size
+    tracemalloc.stop()
+    assert pressed.converged
+    assert taken <= 1e6 * SITE_MB[key]
 
 
 def test_a_heavy_load_on_a_map_alone_needs_few_transforms():
