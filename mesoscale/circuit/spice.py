@@ -187,8 +187,8 @@ def _bending(lumps: Lumps, k: int, moved: str) -> list[str]:
     others = np.arange(n) != k
     moments = lumps.springs[n + k]
     lines += [f"Rturn{k} turn{k} 0 1", f"Rlean{k} lean{k} 0 1"]
-    own = against_moment[k] * TURN_PER_V
-    lines += _currents(f"turn{k} 0", "bent", moments[:n] * NM / own)
+    per_slope = against_moment[k] * TURN_PER_V
+    lines += _currents(f"turn{k} 0", "bent", moments[:n] * NM / per_slope)
     lines += _currents(f"turn{k} 0", "turn", moments[n:] * others / against_moment[k])
     lines += _currents(f"lean{k} 0", "lean", moments[n:] * others / against_moment)
     passing = lumps.pulled[n + k] / LEAN_PER_V
