@@ -28,9 +28,8 @@ Array = NDArray[np.float64]
 
 SAMPLES, REPEATS = 2000, 16
 """Points of each level of subset simulation, and its independent runs: a probability of 1e-6 beyond
-a plane is then known to 11 %. Outside a circle a run alone errs by 80 % and more, mostly to the low
-side. Of eight such runs the mean and its scatter are too small together (python -m evidence
-failure.limits).
+a plane is then known to 11 %. Outside a circle single runs scatter by as much as their mean. There
+a mean of eight that is low states a small scatter, too (python -m evidence failure.limits).
 """
 CONFIDENCE = 0.95
 LEAST = 1e-10
