@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 SAMPLES, REPEATS = 2000, 16
 """Points of each level of subset simulation, and its independent runs: a probability of 1e-6 beyond
-a plane is then known to 11 %. Outside a circle single runs scatter by as much as their mean. There
+a plane is then known to 12 %. Outside a circle single runs scatter by as much as their mean. There
 a mean of eight that is low states a small scatter, too (python -m evidence failure.limits).
 """
 CONFIDENCE = 0.95
