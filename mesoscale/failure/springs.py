@@ -54,15 +54,15 @@ class Sprung:
         self._stiffest = max(self._stiffest, logarithm)
         weights = 1.0 / self.chance
         most = allowed / self.by_response * len(weights)
-        told = [self._told(k, logarithm, times) for k in range(len(weights))]
-        failing = float(sum(weights[k] for k, failed in enumerate(told) if failed))
-        untold = [k for k, failed in enumerate(told) if failed is None]
-        open_weight = float(weights[untold].sum())
+        outcomes = [self._foretold(k, logarithm, times) for k in range(len(weights))]
+        failing = float(sum(weights[k] for k, failed in enumerate(outcomes) if failed))
+        undecided = [k for k, failed in enumerate(outcomes) if failed is None]
+        open_weights = float(weights[undecided].sum())
         points = self._points(logarithm)
-        for k in untold:
-            if failing > most or failing + open_weight <= most:
+        for k in undecided:
+            if failing > most or failing + open_weights <= most:
                 break
-            open_weight -= float(weights[k])
+            open_weights -= float(weights[k])
             if self._solved(k, points[k], logarithm, times):
                 failing += float(weights[k])
         return failing > most
@@ -74,7 +74,7 @@ class Sprung:
         )
         return replace(self.population, settings=changed).points(self.z, self.hold_V)
 
-    def _told(self, k: int, logarithm: float, times: float) -> bool | None:
+    def _foretold(self, k: int, logarithm: float, times: float) -> bool | None:
         """Whether a switch fails, by what is known of it; None where that does not tell."""
         if logarithm >= self._refused[k]:
             return True
