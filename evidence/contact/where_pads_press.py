@@ -51,7 +51,7 @@ SMOOTH = replace(MIDDLE, rms=2.0, q0=0.015)
 SMOOTH_CELL = {"length_nm": 1000.0, "q1_per_nm": 0.1}
 CHOICES = (  # the first is the reference
     *((CoupledContact, "GRID_TOLERANCE", value) for value in (1e-10, 1e-8, 1e-7, 5e-7, 1e-6, 1e-5)),
-    *((CoupledContact, "DENSE_TIMES_PIXELS", value) for value in (0, 2**18, 2**20, 2**22)),
+    *((CoupledContact, "DENSE", value) for value in (0, 512, 1024, 2048)),
     *((grid, "DIRECT_PER_PIXEL", value) for value in (0, 2, 4)),
     *((grid, "TABLE_SHARE", value) for value in (0.0, 0.5, 3.0)),
     (grid.Grid, "stencil", np.eye(9)[4]),  # conjugate gradients without preconditioner

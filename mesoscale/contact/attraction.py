@@ -197,25 +197,27 @@ class Attraction:
 
 
 @njit(cache=True)
-def attracting(sites, place, pressure, pixels, touching):
-    """How many sites' areas attract with the gap of each of some sites.
+def attracting(count, rank, sites, place, pressure, pixels, touching):
+    """How many sites' areas attract with the gap of each of so many sites, which `rank` numbers.
 
     Without `touching` sites under pressure do not, but for the strip along their edges where there
     is no contact: it counts with the gap of the site beyond the edge. `place` holds the position of
     each site of the cell in the list that `pressure` belongs to, or -1.
     """
-    weight = np.ones(sites.size)
+    weight = np.ones(count)
     if touching:
         return weight
     for k in range(sites.size):
-        entry = place[sites[k]]
-        if entry >= 0 and pressure[entry] > 0.0:
-            weight[k] = 0.0
+        if not pressure[k] > 0.0:
             continue
+        if rank[sites[k]] < count:
+            weight[rank[sites[k]]] = 0.0
         for beside in _beside(sites[k], pixels):
-            other = place[beside]
-            if other >= 0 and pressure[other] > 0.0:
-                weight[k] += EXCESS
+            number = rank[beside]
+            if not 0 <= number < count:
+                continue
+            if place[beside] < 0 or not pressure[place[beside]] > 0.0:
+                weight[number] += EXCESS
     return weight
 
 

@@ -16,6 +16,8 @@ from mesoscale.contact.coupled import free, half_space
 from mesoscale.contact.coupled.devices import is_numpy, namespace
 from mesoscale.settings.contact import Body
 
+NEAR = 5  # sites a side of the table of displacements by near sites
+
 Array = np.ndarray
 
 
@@ -46,12 +48,12 @@ class Base(ABC):
         """Compliance (nm/GPa) of the waves of the transformed grid; made anew, for its memory."""
 
     @abstractmethod
-    def near(self) -> Array:
-        """Displacement (nm/GPa) of a site by the pressure on another, 0 to 2 sites away, (3, 3)."""
+    def _near(self) -> Array:
+        """Make `near`."""
 
     @abstractmethod
     def coarser(self, shape: tuple[int, int]) -> "Base":
-        """The same half-space below so many sites, about every second one a side."""
+        """The same half-space below so many sites, about half as many a side."""
 
     @abstractmethod
     def long_waves(self, shape: tuple[int, int]) -> Array:
@@ -65,12 +67,12 @@ class Base(ABC):
     @cached_property
     def spring(self) -> float:
         """Displacement of a site by its own pressure, nm/GPa."""
-        return float(self.near()[0, 0])
+        return float(self.near[0, 0])
 
     @cached_property
-    def stencil(self) -> Array:
-        """Pressures (GPa) on nine sites that move the middle one alone by 1 nm, shape (9,)."""
-        return half_space.stiffness_between_neighbours(self.near())
+    def near(self) -> Array:
+        """Displacement (nm/GPa) of a site by the pressure on another, 0 to 4 sites away, (5, 5)."""
+        return self._near()
 
     @cached_property
     def single_compliance(self) -> Array:
@@ -142,12 +144,12 @@ class Repeated(Base):
         """Of the waves of the map."""
         return half_space.wave_compliance(self.shape[0], self.length, self.e_star, self.bodies)
 
-    def near(self) -> Array:
-        """From the sum of the waves at nine sites."""
+    def _near(self) -> Array:
+        """From the sum of the waves at these sites."""
         compliance = self.compliance()
         pixels = self.shape[0]
         compliance[:, 1 : (pixels + 1) // 2] *= 2.0  # the other half of the waves
-        angle = 2.0 * np.pi / pixels * np.arange(3)
+        angle = 2.0 * np.pi / pixels * np.arange(NEAR)
         row_waves = np.cos(angle[:, None] * np.arange(pixels))
         column_waves = np.cos(angle[:, None] * np.arange(pixels // 2 + 1))
         return row_waves @ compliance @ column_waves.T / pixels**2
@@ -176,13 +178,13 @@ class Alone(Base):
         waves = np.asarray(fft.dctn(table, type=1, overwrite_x=True))
         return waves[np.minimum(np.arange(pixels), pixels - np.arange(pixels))]
 
-    def near(self) -> Array:
+    def _near(self) -> Array:
         """Love's pressed square; its influence knows no size of a grid."""
-        few = 4
+        few = 2 * (NEAR - 1)
         return few * self.spacing / self.e_star * free.free_influence(few)
 
     def coarser(self, shape: tuple[int, int]) -> "Alone":
-        """Every second site."""
+        """Sites twice as wide."""
         return Alone(shape, 2.0 * self.spacing, self.e_star)
 
     def long_waves(self, shape: tuple[int, int]) -> Array:

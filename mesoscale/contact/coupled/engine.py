@@ -15,7 +15,7 @@ import numpy as np
 
 from mesoscale.contact.attraction import attracting
 from mesoscale.contact.changes import undo
-from mesoscale.contact.coupled import clusters, dense, grid, half_space, layers, validity
+from mesoscale.contact.coupled import clusters, dense, grid, half_space, layers, split, validity
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.pressed import Contact, State
 from mesoscale.inputs.contact import ContactInputs
@@ -40,11 +40,13 @@ class CoupledContact(Contact):
     SETTLED = 1e-6  # demanded
     # tolerances to which pressures are solved while hardness still changes with the clusters
     COARSER = 100.0
-    # Bounds of the sites that a dense matrix holds: over the pixels of a side, and times these.
-    # Beyond, transforms of the whole grid cost less: pads of 128^2 sites take 0.8 of the time with
-    # 4 or 8 per pixel instead of 16.
+    # Bounds of the sites that a dense matrix holds: over the pixels of a side, and as such, or one
+    # to a pixel. Beyond, transforms of the whole grid cost less: pads of 128^2 sites take 0.8 of
+    # the time with 4 or 8 per pixel instead of 16, and light loads of 1024^2 0.4 with 1024 sites
+    # instead of 256. Rough and smooth, light and heavy, 256^2 to 2048^2, elastic and plastic: half
+    # and twice as many are as fast or slower by up to 1.4 and 2.
     DENSE_PER_PIXEL = 8
-    DENSE_TIMES_PIXELS = 2**18
+    DENSE = 1024
     LONGEST_GUESS = 2.0  # over the last step: so far pressures are taken to go on as in it
     # D0, and largest displacements: sites nearer than both count with their displacement in the
     # attraction, the others without. Errs by at most 1.2 % at a single step (128^2 and 256^2,
@@ -57,6 +59,10 @@ class CoupledContact(Contact):
     NEAR_LIQUID = 0.1
     # pairs of sites for each of the cell that take as long as a transform there and back
     TRANSFORM_PAIRS = 8
+    # pairs of sites that take as long as a mesh, and as a transform in single precision: at all,
+    # for each site of the cell, for each displaced, and for each pressed site
+    MESH_COSTS = np.array([3e4, 0.3, 8.0, 700.0])
+    SINGLE_COSTS = np.array([3e4, 3.5, 1.0, 0.0])
     AIMS_AT_END = True
     ROUNDS = 40
     FALLING_ROUNDS = 10  # from here on hardness may only fall, so that the rounds come to an end
@@ -80,10 +86,12 @@ class CoupledContact(Contact):
         # displacement is 0
         self.rise = -self.scale * float(self.table.min()) / self.site_area
         self.dense = min(
-            self.DENSE_PER_PIXEL * self.n, self.DENSE_TIMES_PIXELS // self.n, self.heights.size - 1
+            self.DENSE_PER_PIXEL * self.n, max(self.DENSE, self.n), self.heights.size - 1
         )
         self.matrix = np.empty((0, 0))
         self.place = np.full(self.heights.size, -1, np.int32)
+        self.rank = np.full(self.heights.size, -1, np.int32)  # of the sites in `order`
+        self.ranked = 0
         self.mean = self.offset
         self.roughness = validity.roughness(surface, self.length, self.bodies)
         self._forget()
@@ -127,6 +135,8 @@ class CoupledContact(Contact):
     def adopt_changes(self) -> None:
         """Leave contact and take the surface as flow has left it for the original one."""
         super().adopt_changes()
+        self.rank[:] = -1
+        self.ranked = 0
         self.mean = float(self.heights.mean())
 
     def back(self) -> None:
@@ -453,7 +463,6 @@ class CoupledContact(Contact):
             return law.around(
                 self.heights, separation, self.grid.field, self.sites, self.place, self.pressure
             )
-        known = self.sites.size
         raised = self.rise * self.force + 2.0 * law.bin_width
         moved = self.NEAR_DISPLACEMENTS * self.displacement.max(initial=0.0)
         near = max(self.NEAR_CUTOFFS * law.cutoff, moved, raised)
@@ -462,18 +471,52 @@ class CoupledContact(Contact):
         if self.force == 0.0 or law.share_before(wet) > self.NEAR_LIQUID:
             wet, wet_edge = far, edge
         self._sort_to(min(wet_edge + law.bin_width, self.highest))
-        count = (
-            int(np.searchsorted(self.order_heights, wet_edge))
-            if wet < len(law.moments)
-            else self.heights.size
-        )
-        sites = self.order[: max(count, known)]
-        displacement = np.zeros(sites.size)
+        count = self.heights.size
+        if wet < len(law.moments):
+            count = int(np.searchsorted(self.order_heights, wet_edge))
+        sites = self.order[:count]
+        self._rank(count)
+        gap = (self.heights[sites] if self.flows else self.order_heights[:count]) + separation
         if self.force > 0.0:
-            displacement[:known] = self.displacement
-            self._displace(sites[known:count], displacement[known:count])
-        gap = self.heights[sites[:count]] + separation + displacement[:count]
-        return law.deformed(gap, self._weight(sites[:count]), separation, wet)
+            gap += self._displacement_of(sites)
+        around = (self.sites, self.place, self.pressure)
+        weight = attracting(count, self.rank, *around, self.n, law.touching)
+        return law.deformed(gap, weight, separation, wet)
+
+    def _rank(self, count: int) -> None:
+        """Have the places in `order` known of its first sites."""
+        if count > self.ranked:
+            self.rank[self.order[self.ranked : count]] = np.arange(
+                self.ranked, count, dtype=np.int32
+            )
+            self.ranked = count
+
+    def _displacement_of(self, sites: np.ndarray) -> np.ndarray:
+        """Displacement (nm) of the first sites of `order`; where there are many, to some 1e-3 of
+        the largest at those that cannot touch.
+        """
+        exact = min(self.sites.size, sites.size)
+        pressed = self.pressure > 0.0
+        pressing = int(np.count_nonzero(pressed))
+        amounts = (1.0, self.heights.size, sites.size, pressing)
+        meshed = self.MESH_COSTS @ amounts
+        transformed = self.SINGLE_COSTS @ amounts
+        if sites.size * pressing <= min(meshed, transformed):
+            displacement = np.zeros(sites.size)
+            self._displace(sites[exact:], displacement[exact:])
+        else:
+            if meshed < transformed:
+                mesh = split.afar(self.n, self.length, self.bodies)
+                strain = self.pressure[pressed] / self.e_star
+                displacement = mesh.displacement(self.sites[pressed], strain, sites, self.rank)
+            else:
+                pressure = self.pressure.astype(np.float32)
+                displacement = self.whole.displacement_by(self.sites, pressure)[sites]
+            # a step that is undone leaves further sites known, and shall leave no other trace
+            can_touch = np.searchsorted(self.order_heights, self._highest(self.force))
+            exact = min(exact, int(can_touch))
+        displacement[:exact] = self.displacement[:exact]
+        return displacement
 
     def _displace(self, targets: np.ndarray, displacement: np.ndarray) -> None:
         """Add the displacements (nm) of other sites by the pressures: of many pairs of sites by a
@@ -488,7 +531,3 @@ class CoupledContact(Contact):
         clusters.displace(
             self.table, self.scale, self.n, self.sites, self.pressure, targets, displacement
         )
-
-    def _weight(self, sites: np.ndarray) -> np.ndarray:
-        touching = self.adhesion is not None and self.adhesion.touching
-        return attracting(sites, self.place, self.pressure, self.n, touching)

@@ -22,8 +22,8 @@ def mean_gap(pressure, gap):
 
 
 @njit(cache=True)
-def classify(pressure, gap, separation, stiffness, hardness):
-    """Sites that touch and do not yield, by pressure and gap together.
+def classify(pressure, gap, separation, stiffness, hardness, share):
+    """Sites that touch and do not yield, by pressure and a share of the gap together.
 
     A site does not yield before its pressure as an elastic one is beyond the hardness: by its gap
     alone it may yield and part in turns.
@@ -41,14 +41,16 @@ def classify(pressure, gap, separation, stiffness, hardness):
     moved = 0
     for k in range(gap.size):
         site_pressure = pressure[k]
-        expected = max(site_pressure - stiffness * (gap[k] + separation), 0.0)
-        new_pressure = min(expected, hardness)
+        lacking = -stiffness * (gap[k] + separation)
+        new_pressure = min(max(site_pressure + lacking, 0.0), hardness)
         worst = max(worst, abs(site_pressure - new_pressure))
         largest = max(largest, site_pressure)
+        expected = site_pressure + share * lacking
+        touches = expected > 0.0
         yielding = site_pressure >= hardness and expected >= hardness
-        came = (new_pressure > 0.0) != (site_pressure != 0.0)
+        came = touches != (site_pressure != 0.0)
         moved += came or site_pressure > hardness or (site_pressure == hardness and not yielding)
-        if new_pressure > 0.0 and not yielding:
+        if touches and not yielding:
             sites[count] = k
             count += 1
             carried += max(site_pressure, 0.0)
@@ -56,14 +58,14 @@ def classify(pressure, gap, separation, stiffness, hardness):
 
 
 @njit(cache=True)
-def bind(pressure, gap, separation, stiffness, hardness, factor, change):
+def bind(pressure, gap, separation, stiffness, hardness, share, factor, change):
     """Take the pressures off all sites that do not touch, and give the hardness to those that
     yield; the largest change.
     """
     largest = 0.0
     for k in range(gap.size):
         site_pressure = pressure[k]
-        expected = site_pressure - stiffness * (gap[k] + separation)
+        expected = site_pressure - share * stiffness * (gap[k] + separation)
         new = 0.0
         if min(site_pressure, expected) >= hardness:
             new = hardness

@@ -11,7 +11,7 @@ import numpy as np
 
 from mesoscale.contact.coupled.base import Base
 from mesoscale.contact.coupled.devices import namespace
-from mesoscale.contact.coupled.stiffness import Stiffness
+from mesoscale.contact.coupled.stiffness import BEFORE, Stiffness, make_factors
 
 Array = Any
 Summands = list[tuple[Array, Array]]
@@ -45,17 +45,24 @@ def mean_gap(pressure: Array, gap: Array) -> float:
 
 
 def classify(
-    pressure: Array, gap: Array, separation: float, stiffness: float, hardness: float
+    pressure: Array,
+    gap: Array,
+    separation: float,
+    stiffness: float,
+    hardness: float,
+    share: float,
 ) -> tuple[Array, float, float, float, int]:
-    """Sites that touch and do not yield; the largest residual and pressure, the sum of the
-    pressures that stay, and how many sites came or went.
+    """Sites that touch and do not yield, by a share of the gap; the largest residual and pressure,
+    the sum of the pressures that stay, and how many sites came or went.
     """
     xp = namespace(gap)
-    expected = _positive(pressure - stiffness * (gap + separation))
+    new = _positive(pressure - stiffness * (gap + separation))
+    new = xp.where(new < hardness, new, hardness)
+    worst = float(xp.max(xp.abs(pressure - new)))
+    del new  # a large map needs its memory
+    expected = pressure - share * stiffness * (gap + separation)
     yielding = (pressure >= hardness) & (expected >= hardness)
     touching = expected > 0.0
-    new = xp.where(expected < hardness, expected, hardness)
-    worst = float(xp.max(xp.abs(pressure - new)))
     came = touching != (pressure != 0.0)
     past = (pressure >= hardness) & ~((pressure == hardness) & yielding)
     moved = int(xp.count_nonzero(came | past))
@@ -71,6 +78,7 @@ def bind(
     separation: float,
     stiffness: float,
     hardness: float,
+    share: float,
     factor: float,
     change: Array,
 ) -> float:
@@ -78,7 +86,7 @@ def bind(
     yield; the largest change.
     """
     xp = namespace(gap)
-    expected = pressure - stiffness * (gap + separation)
+    expected = pressure - share * stiffness * (gap + separation)
     new = xp.where(expected > 0.0, factor * _positive(pressure), 0.0)
     yielding = (pressure >= hardness) & (expected >= hardness)
     new = xp.where(yielding | (new > hardness), hardness, new)
@@ -170,8 +178,14 @@ class GridStiffness(Stiffness):
 
     def __init__(self, base: Base, heights: Array):
         super().__init__(base)
+        xp = namespace(heights)
         self.fine_shape = base.shape
-        self.excess = namespace(heights).asarray(self.excess, device=heights.device)
+        self.excess = xp.asarray(self.excess, device=heights.device)
+        patterns = np.arange(len(self.factors), dtype=np.uint16)
+        make_factors(patterns, self.near, self.factors, self.made)
+        columns = [xp.asarray(column, device=heights.device) for column in self.factors.T.copy()]
+        self.middle = columns.pop()
+        self.before = list(zip(BEFORE.tolist(), columns, strict=True))
         self.to_coarse: list[Summands] = []
         self.to_fine: list[Summands] = []
         for axis, (before, share) in enumerate((self.rows, self.columns)):
@@ -185,17 +199,45 @@ class GridStiffness(Stiffness):
         """Pressures of some sites from the gaps of all (nx * ny,), which are 0 elsewhere."""
         xp = namespace(gap)
         gap = xp.reshape(gap, self.fine_shape)
+        touches = xp.reshape(sites, self.fine_shape)
+        if sites is not self.sites:
+            self.sites = sites
+            self.patterns = self._patterns(touches)
         spectrum = xp.fft.rfftn(_sums(gap, self.to_coarse), axes=(0, 1))
         spectrum *= self.excess
         long = xp.fft.irfftn(spectrum, s=self.shape, axes=(0, 1))
         pressure = _sums(long, self.to_fine)
-        corner, side, _, _, centre = self.stencil.tolist()[:5]
-        beside = _neighbours(gap, 0)
-        pressure += corner * _neighbours(beside, 1)
-        beside += _neighbours(gap, 1)
-        pressure += side * beside
-        pressure += centre * gap
-        return xp.where(sites, xp.reshape(pressure, (-1,)), 0.0)
+        factored = self._factor(self.middle) * gap
+        for (row, column), factors in self.before:
+            factored += self._factor(factors) * xp.roll(gap, (-row, -column), axis=(0, 1))
+        factored = xp.where(touches, factored, 0.0)
+        pressure += self._factor(self.middle) * factored
+        for (row, column), factors in self.before:
+            pressure += xp.roll(self._factor(factors) * factored, (row, column), axis=(0, 1))
+        return xp.reshape(xp.where(touches, pressure, 0.0), (-1,))
+
+    def _patterns(self, touches: Array) -> Array:
+        """Patterns of the sites that touch before each one; beyond the edge none, unless it
+        repeats.
+        """
+        xp = namespace(touches)
+        columns = self.fine_shape[1]
+        touches = xp.astype(touches, xp.int32)
+        patterns = xp.zeros_like(touches)
+        for bit, (row, column) in enumerate(BEFORE.tolist()):
+            before = xp.roll(touches, (-row, -column), axis=(0, 1))
+            if not self.repeats:
+                before[:-row, :] = 0
+                before[:, : max(-column, 0)] = 0
+                before[:, columns - max(column, 0) :] = 0
+            patterns += before * 2**bit
+        return patterns
+
+    def _factor(self, factors: Array) -> Array:
+        """One of the factors of each site."""
+        xp = namespace(factors)
+        taken = xp.take(factors, xp.reshape(self.patterns, (-1,)))
+        return xp.reshape(taken, self.fine_shape)
 
 
 def _summands(target: np.ndarray, source: np.ndarray, weight: np.ndarray) -> Summands:
@@ -234,9 +276,3 @@ def _sums(field: Array, summands: list[Summands]) -> Array:
             total += weight * xp.take(field, source, axis=axis)
         field = total
     return field
-
-
-def _neighbours(field: Array, axis: int) -> Array:
-    """Sum of the sites before and after each one."""
-    xp = namespace(field)
-    return xp.roll(field, 1, axis=axis) + xp.roll(field, -1, axis=axis)

@@ -12,13 +12,14 @@ from scipy.integrate import quad
 from evidence.contact import half_space, plain_coupled
 from evidence.contact.draws import draw_inputs
 from mesoscale import theory
-from mesoscale.contact import ContactInputs, run_cycle
-from mesoscale.contact.coupled import dense, grid, validity
+from mesoscale.contact import ContactInputs, attraction, run_cycle
+from mesoscale.contact.coupled import dense, grid, split, validity
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.energy import dissipated_energy
 from mesoscale.contact.numerics import Numerics
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
+from mesoscale.settings.contact import MaterialSettings
 from mesoscale.topography.synthesis import synthesize
 
 INPUTS = ContactInputs(
@@ -26,6 +27,10 @@ INPUTS = ContactInputs(
 )
 FILM = replace(INPUTS, h_prime=0.0, h_film=8.0, t_film=2.0, k_film=0.24, m_film=1.2)
 MODELS = ("elastic", "nonlinear", "plastic")
+SOFT_FILM = (
+    MaterialSettings(young_GPa=72.0, poisson=0.17, thickness_nm=2.5),
+    MaterialSettings(young_GPa=250.0, poisson=0.25),
+)
 # of a square lattice of charges in their neutralising background: sum 1/r - integral
 LATTICE = 3.900264920001956
 
@@ -463,6 +468,62 @@ def test_split_influences_are_those_of_the_whole_grid(pixels):
     everywhere = np.arange(pixels**2, dtype=np.int32)
     whole.split.forget()
     assert not whole.split.know(everywhere, everywhere)  # all pairs cost more than a transform
+
+
+@pytest.mark.parametrize("bodies", [(), (SOFT_FILM,)])
+@pytest.mark.parametrize("pixels", [90, 128])
+def test_few_sites_press_many_as_the_whole_grid_says(pixels, bodies):
+    rng = np.random.default_rng(4)
+    length = 1.5 * pixels
+    sites = rng.choice(pixels**2, 60, replace=False).astype(np.int32)
+    targets = rng.choice(pixels**2, 2000, replace=False).astype(np.int32)
+    place = rng.integers(2000, 3000, pixels**2)  # others may have places beyond
+    place[targets] = np.arange(targets.size)
+    strain = rng.random(sites.size)
+    moved = split.afar(pixels, length, bodies).displacement(sites, strain, targets, place)
+    everywhere = np.zeros(pixels**2)
+    everywhere[sites] = strain
+    exact = grid.Grid(pixels, length, 1.0, bodies).displacement(everywhere)[targets]
+    np.testing.assert_allclose(moved, exact, atol=4e-3 * np.abs(exact).max())
+
+
+@pytest.mark.parametrize(("cheapest", "error"), [("MESH_COSTS", 1e-3), ("SINGLE_COSTS", 1e-6)])
+@pytest.mark.parametrize("model", ["elastic", "plastic"])
+def test_attraction_is_the_same_however_near_sites_are_displaced(
+    model, cheapest, error, monkeypatch
+):
+    settings = ContactSettings(mechanics="coupled", pixels=256, model=model)
+    contact = CoupledContact(random_surface(INPUTS, settings, 2), INPUTS, settings)
+    for name in ("MESH_COSTS", "SINGLE_COSTS"):
+        monkeypatch.setattr(contact, name, np.full(4, np.inf))
+    for separation in contact.touching_separation - INPUTS.rms * np.arange(0.02, 0.4, 0.06):
+        contact.move_to(separation, contact.flows)
+        assert contact.grid is None, "the whole grid is summed anyway"
+        by_table = contact.attraction(separation)
+        with monkeypatch.context() as patch:
+            patch.setattr(contact, cheapest, np.zeros(4))
+            assert contact.attraction(separation) == pytest.approx(by_table, rel=error)
+        assert by_table != 0.0
+
+
+@pytest.mark.parametrize("touching", [True, False])
+def test_sites_attract_as_counted_one_by_one(touching):
+    """Edges of contacts lie across the edge of the cell, and beside sites without a number."""
+    pixels = 12
+    rng = np.random.default_rng(6)
+    order = rng.permutation(pixels**2).astype(np.int32)
+    rank = np.full(pixels**2, -1, np.int32)
+    rank[order[:100]] = np.arange(100)
+    sites = order[:60]
+    place = np.full(pixels**2, -1, np.int32)
+    place[sites] = np.arange(60)
+    pressure = np.maximum(rng.standard_normal(60), 0.0)
+    pressed = np.zeros((pixels, pixels), bool)
+    pressed.ravel()[sites[pressure > 0.0]] = True
+    edges = sum(np.roll(pressed, step, axis) for step in (-1, 1) for axis in (0, 1))
+    counted = np.where(pressed, 0.0, 1.0 + attraction.EXCESS * edges).ravel()[order[:80]]
+    weight = attraction.attracting(80, rank, sites, place, pressure, pixels, touching)
+    np.testing.assert_allclose(weight, np.ones(80) if touching else counted, rtol=1e-12)
 
 
 def test_changes_of_pressure_are_followed_to_their_rounding():

@@ -213,7 +213,7 @@ def test_a_machine_without_a_gpu_says_so(monkeypatch):
         asp.press(rough(1, 16), SIDE, 10.0, E_STAR, device="cuda")
 
 
-@pytest.mark.parametrize(("periodic", "needed"), [(True, "0.0294"), (False, "0.0632")])
+@pytest.mark.parametrize(("periodic", "needed"), [(True, "0.0317"), (False, "0.0686")])
 def test_a_map_beyond_the_memory_of_the_gpu_is_refused(monkeypatch, periodic, needed):
     install(monkeypatch, cupy=library_with(gpu=True, bytes_there=10**6))
     with pytest.raises(

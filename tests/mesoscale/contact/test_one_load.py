@@ -12,6 +12,7 @@ from mesoscale.contact.coupled.base import Alone, Base, Repeated
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.coupled.free import FreeContact
 from mesoscale.contact.coupled.grid import Grid
+from mesoscale.contact.coupled.stiffness import Stiffness
 from mesoscale.contact.path import trace
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
@@ -180,6 +181,35 @@ def test_an_oversampled_map_needs_few_transforms():
         counts.append(one_load.press(heights, 2000.0, base).transforms)
     assert max(counts) <= 30
     assert counts[2] <= counts[0] + 5
+
+
+def test_a_heavy_load_on_a_map_alone_needs_few_transforms():
+    """Its edge carries most. Grids whose edges do not lie on it tilt the first pressures."""
+    heights = rough(9, 256)
+    base = Alone(heights.shape, SIDE / 256, E_STAR)
+    pressed = one_load.press(heights, 1e5, base)
+    assert pressed.settled
+    assert (pressed.pressure > 0.0).mean() > 0.3
+    assert pressed.transforms <= 30
+
+
+@pytest.mark.parametrize("repeats", [True, False])
+def test_few_sites_near_each_other_are_closed_at_once(repeats):
+    """The factor holds all of them, also across the seam of a map that repeats."""
+    corner = [0, 1] if repeats else [7, 8]
+    base = (Repeated if repeats else Alone)((24, 24), 2.0, E_STAR)
+    stiffness = Stiffness(base)
+    stiffness.excess[:] = 0.0
+    touching = np.zeros((24, 24), bool)
+    touching[np.ix_([10, 11, 12], [23, *corner] if repeats else [6, *corner])] = True
+    touching[11, 0 if repeats else 7] = False
+    sites = np.flatnonzero(touching).astype(np.int32)
+    gap = np.zeros(touching.size, np.float32)
+    gap[sites] = np.arange(sites.size) - 3.0
+    pressure = np.zeros(touching.shape)
+    pressure.flat[sites] = stiffness.close(sites, gap)
+    moved = base.displacement(pressure)
+    np.testing.assert_allclose(moved.flat[sites], gap[sites], atol=1e-5)
 
 
 @pytest.mark.parametrize("shape", [(4, 4), (4, 9), (5, 3)])
