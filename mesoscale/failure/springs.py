@@ -57,12 +57,12 @@ class Sprung:
         outcomes = [self._foretold(k, logarithm, times) for k in range(len(weights))]
         failing = float(sum(weights[k] for k, failed in enumerate(outcomes) if failed))
         undecided = [k for k, failed in enumerate(outcomes) if failed is None]
-        open_weights = float(weights[undecided].sum())
+        undecided_weight = float(weights[undecided].sum())
         points = self._points(logarithm)
         for k in undecided:
-            if failing > most or failing + open_weights <= most:
+            if failing > most or failing + undecided_weight <= most:
                 break
-            open_weights -= float(weights[k])
+            undecided_weight -= float(weights[k])
             if self._solved(k, points[k], logarithm, times):
                 failing += float(weights[k])
         return failing > most
