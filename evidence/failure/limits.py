@@ -72,7 +72,7 @@ class Limited(Population):
         """The numbers themselves."""
         return np.column_stack([z, hold_V])
 
-    def reserves(self, z: Array, hold_V: float, pads: Any = None) -> Array:
+    def reserves(self, z: Array, hold_V: float, pads: Any = None, about: Any = None) -> Array:
         """Distances from the limit, in the steps of `mesoscale.switch.reserve`."""
         low, high = np.log(LEAST_TIMES), np.log(MOST_TIMES)
         step = (high - low) / 2.0 ** np.ceil(np.log2((high - low) / STEP))

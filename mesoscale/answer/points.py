@@ -45,6 +45,11 @@ class Point:
         settings = contact.model_copy(update={"gap_cutoff_nm": self.gap_cutoff_nm})
         return contact_of(self.values, settings)
 
+    def humidity(self, contact: ContactSettings) -> float:
+        """Relative humidity around it, of its inputs, else of the contact's air; 0: dry."""
+        usual = contact.air.humidity if contact.air else 0.0
+        return self.values.get("humidity", usual)
+
 
 @dataclass(frozen=True)
 class Design:

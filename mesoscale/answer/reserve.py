@@ -117,8 +117,7 @@ def freed_by_surface(
     cells : of each pad.
     """
     point = central.point
-    humidity = contact.air.humidity if contact.air else 0.0
-    humidity = point.values.get("humidity", humidity)
+    humidity = point.humidity(contact)
     for key, unit, value, end in (
         ("rms", "nm", point.values.get("rms", 0.0), FURTHEST * point.values.get("rms", 0.0)),
         ("humidity", "1", humidity, 0.0),

@@ -268,7 +268,7 @@ def rates_by_drift(
     """
     gaps = held_gaps(solved, contact, surfaces_of(0))
     before_V = shift_V(solved.point.device)
-    humidity = contact.air.humidity if contact.air else 0.0
+    humidity = solved.point.humidity(contact)
     drift = narrow_rates(
         data,
         drift_model(data, gaps, before_V, humidity, settings),

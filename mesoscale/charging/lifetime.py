@@ -151,7 +151,7 @@ def life_of(
         return life
     from mesoscale.charging.ageing import ageing_of
 
-    humidity = solved.point.values.get("humidity", contact.air.humidity if contact.air else 0.0)
+    humidity = solved.point.humidity(contact)
     end_s = float(times_s(settings)[-1])
     curves = solved.pressed.curves
     ageing = ageing_of(

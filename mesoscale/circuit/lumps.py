@@ -18,7 +18,8 @@ over s. A fringe of 2 / pi is that of a thin strip over a plane (Palmer, Trans. 
 Simulators integrate these equations (`mesoscale.circuit.spice`).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,10 +49,10 @@ class Lumps:
     ----------
     rest_nm, area_m2 : separation at rest and area of the lumps, from the ends to mid-span, shape
         (n,).
-    stiffness_N_m : K, forces that hold the lumps at small displacements, but for what they stretch,
-        shape (n, n).
-    drawn_m : D, twice the elongation of the beam (m) by the squares of heights (m), in 1/m, shape
-        (n, n).
+    springs : forces (N) and moments (N m) at the lumps by their heights (m) and slopes, but for
+        what these stretch. Those of heights stand first, then those of slopes; shape (n + m, n + m).
+        A beam has m = n, a plate no slopes.
+    pulled : twice the elongation of the beam (m) by the squares of heights and slopes, as `springs`.
     height_nm : z0, height at rest over the anchors, shape (n,).
     stretching_N_m : S.
     width_m, dielectric_nm : of the electrode; thickness of the dielectric over its permittivity.
@@ -66,8 +67,8 @@ class Lumps:
 
     rest_nm: Array
     area_m2: Array
-    stiffness_N_m: Array
-    drawn_m: Array
+    springs: Array
+    pulled: Array
     height_nm: Array
     stretching_N_m: float
     width_m: float
@@ -84,6 +85,36 @@ class Lumps:
         """Number of lumps."""
         return self.rest_nm.size
 
+    @cached_property
+    def stiffness_N_m(self) -> Array:
+        """K, forces that hold the lumps at small displacements, but for what they stretch, shape
+        (n, n).
+        """
+        return self._folded(self.springs)
+
+    @cached_property
+    def drawn_m(self) -> Array:
+        """D, twice the elongation of the beam (m) by the squares of heights (m), in 1/m, shape
+        (n, n).
+        """
+        return self._folded(self.pulled)
+
+    @cached_property
+    def slowest_Pa_m(self) -> float:
+        """Pressure over way of the softest motion from rest."""
+        pulled = self.drawn_m @ self.height_nm * NM
+        at_rest = self.stiffness_N_m + self.stretching_N_m * np.outer(pulled, pulled)
+        per_area = at_rest / np.sqrt(np.outer(self.area_m2, self.area_m2))
+        return float(np.linalg.eigvalsh(per_area)[0])
+
+    def _folded(self, quadratic: Array) -> Array:
+        """Of heights alone. Slopes follow them as they do at rest, without what stretches."""
+        n = self.count
+        follow = -np.linalg.solve(self.springs[n:, n:], self.springs[n:, :n])
+        joined = np.vstack([np.eye(n), follow])
+        folded = joined.T @ quadratic @ joined
+        return 0.5 * (folded + folded.T)
+
 
 def lumps_of(settings: DeviceSettings, count: int) -> Lumps:
     """So many lumps of the electrode, without its tilt, with the loss of the assumed quality.
@@ -95,26 +126,25 @@ def lumps_of(settings: DeviceSettings, count: int) -> Lumps:
     beam = lumped_beam(settings.level, count)
     area = 2.0 * beam.width_m * beam.weights_m[:count, 0]
     heights_m = beam.rest_nodal[1 : count + 1, 0]
-    stiffness, drawn = _paired_stiffness(beam)
-    mass = 1e3 * settings.density_g_cm3 * 1e-6 * settings.thickness_um
-    at_rest = stiffness + beam.stretching_N_m * np.outer(drawn @ heights_m, drawn @ heights_m)
-    slowest = np.linalg.eigvalsh(at_rest / np.sqrt(np.outer(area, area)))[0] / mass
-    return Lumps(
-        beam.rest_m[:count, 0] / NM,
-        area,
-        stiffness,
-        drawn,
-        heights_m / NM,
-        beam.stretching_N_m,
-        settings.width_um * 1e-6,
-        settings.dielectric_gap_nm,
-        mass,
-        1e3 * settings.gas_kPa,
-        1e6 / (CIRCUIT.quality * float(np.sqrt(slowest))),
-        settings.fringe,
-        shift_V(settings),
-        _uneven(settings, float(beam.rest_m.max()) / NM),
+    springs, pulled = _mirrored(beam)
+    lossless = Lumps(
+        rest_nm=beam.rest_m[:count, 0] / NM,
+        area_m2=area,
+        springs=springs,
+        pulled=pulled,
+        height_nm=heights_m / NM,
+        stretching_N_m=beam.stretching_N_m,
+        width_m=settings.width_um * 1e-6,
+        dielectric_nm=settings.dielectric_gap_nm,
+        mass_kg_m2=1e3 * settings.density_g_cm3 * 1e-6 * settings.thickness_um,
+        gas_Pa=1e3 * settings.gas_kPa,
+        loss_us=0.0,
+        fringe=settings.fringe,
+        shift_V=shift_V(settings),
+        uneven_V2=_uneven(settings, float(beam.rest_m.max()) / NM),
     )
+    slowest_rad_s = np.sqrt(lossless.slowest_Pa_m / lossless.mass_kg_m2)
+    return replace(lossless, loss_us=1e6 / (CIRCUIT.quality * slowest_rad_s))
 
 
 def _uneven(settings: DeviceSettings, farthest_nm: float) -> Array:
@@ -125,23 +155,25 @@ def _uneven(settings: DeviceSettings, farthest_nm: float) -> Array:
     return np.stack([separation_nm, uneven_V2(settings, separation_nm)])
 
 
-def _paired_stiffness(beam: Beam) -> tuple[Array, Array]:
-    """Stiffness and D of a lumped beam against equal displacements of its mirrored places, shape
-    (n, n) each.
+def _mirrored(beam: Beam) -> tuple[Array, Array]:
+    """`springs` and `pulled` of a lumped beam whose mirrored places move alike, shape (2 n, 2 n)
+    each.
 
-    Slopes follow the displacements as they do at rest, without what stretches the beam.
+    An element joins neighbours alone, so that few entries are not zero.
     """
-    drawn = assembled(beam.mechanics.pulled)[2:-2, 2:-2]
-    free = assembled(beam.mechanics.bending_N_m)[2:-2, 2:-2]
-    free = free + beam.tension_N * drawn
-    follow = -np.linalg.solve(free[1::2, 1::2], free[1::2, ::2])
-    joined = np.empty((len(free), len(follow)))
-    joined[::2] = np.eye(len(follow))
-    joined[1::2] = follow
-    half = len(follow) // 2
-    paired = joined @ np.vstack([np.eye(half), np.eye(half)[::-1]])
-    stiffness, folded = (paired.T @ of @ paired for of in (free, drawn))
-    return 0.5 * (stiffness + stiffness.T), 0.5 * (folded + folded.T)
+    pulled = assembled(beam.mechanics.pulled)[2:-2, 2:-2]
+    bending = assembled(beam.mechanics.bending_N_m)[2:-2, 2:-2]
+    places = len(pulled) // 2
+    half = places // 2
+    mirrored = np.zeros((2 * places, 2 * half))
+    for k in range(half):
+        across = places - 1 - k
+        mirrored[2 * k, k] = 1.0
+        mirrored[2 * across, k] = 1.0
+        mirrored[2 * k + 1, half + k] = 1.0
+        mirrored[2 * across + 1, half + k] = -1.0
+    springs = bending + beam.tension_N * pulled
+    return mirrored.T @ springs @ mirrored, mirrored.T @ pulled @ mirrored
 
 
 @dataclass(frozen=True)

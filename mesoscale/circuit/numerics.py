@@ -16,6 +16,10 @@ class CircuitNumerics:
     """Time constant with which the state of a pad follows its deepest closing: much shorter than
     any motion."""
 
+    settles_s: float = 5e-3
+    """Time in which the beam of a slow switch at rest forgets a push: short beside a sweep of
+    seconds, long beside what a pad takes to tear off."""
+
     leak: float = 1e-15
     """Conductance of the state over that of following: it falls by this share of itself per time
     constant."""

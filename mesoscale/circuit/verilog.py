@@ -79,6 +79,10 @@ def verilog_pressure(tables: Tables) -> str:
                 share = max(1.0 - (deepest - {depths[last]:.7g}) / {CIRCUIT.fade_nm:.1f}, 0.0);
                 push = push + share * repel{last}(risen);
                 pull = pull + share * attract{last}(risen);
+                if (deepest > {depths[last]:.7g}) begin
+                    push = push + (1.0 - share) * (closing_push(separation) - closing_push(deepest));
+                    pull = pull + (1.0 - share) * (closing_pull(separation) - closing_pull(deepest));
+                end
             end""")
     return f"""
 {"".join(functions)}
@@ -90,7 +94,7 @@ def verilog_pressure(tables: Tables) -> str:
             push = closing_push(deepest);
             pull = closing_pull(deepest);
             {" else ".join(between)}
-            flats = hamaker / (6.0 * `M_PI * pow(max(separation, 1.0) + offset, 3.0)) + {tables.floor_GPa:g};
+            flats = hamaker / (6.0 * `M_PI * pow(max(separation, {tables.closing[0].x[0]:.7g}) + offset, 3.0)) + {tables.floor_GPa:g};
             pressure = exp(push) - {tables.faint_GPa:.7g} - flats * exp(pull);
         end
     endfunction

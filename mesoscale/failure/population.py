@@ -186,15 +186,28 @@ class Population:
         rows = values_at(ndtr(z), self.table, self.settings, self.cutoffs_nm)
         return [point_of(row, self.table.names, held) for row in rows]
 
-    def reserves(self, z: Array, hold_V: float, pads: Sequence[Pressed] | None = None) -> Array:
+    def reserves(
+        self,
+        z: Array,
+        hold_V: float,
+        pads: Sequence[Pressed] | None = None,
+        about: Array | None = None,
+    ) -> Array:
         """Reserves of switches, shape (m,), on pads that are pressed where none are given; NaN
         where one cannot be.
+
+        Parameters
+        ----------
+        about : guesses of them, shape (m,), which spare tries and change no reserve.
         """
+        guesses: list[float | None] = [None] * len(z)
+        if about is not None:
+            guesses = about.tolist()
         reserves = np.full(len(z), np.nan)
         for k, point in enumerate(self.points(z, hold_V)):
             with suppress(InputError):
                 pad = self.press(point, 1, surfaces_number(z[k])) if pads is None else pads[k]
-                reserves[k] = self._quickly(point, pad.curves).reserve()
+                reserves[k] = self._quickly(point, pad.curves).reserve(about=guesses[k])
         return reserves
 
     def failed(self, z: Array, hold_V: float, times: float) -> NDArray[np.bool_]:

@@ -138,13 +138,18 @@ def learn(population: Population, tell: Tell, seed: int = 0) -> ReserveResponse:
     farther = np.where(np.arange(FAILURE.first) % 2, 1.0, FAILURE.wide)
     z = ndtri(first) * farther[:, None]
     batches = [(z[k :: FAILURE.voltages], batch_V) for k, batch_V in enumerate(curve_V)]
+    response = None
     rounds = 0
     while True:
         for batch_z, batch_V in batches:
             tell(0.2 * rounds / FAILURE.rounds, f"{len(reserves)} switches")
-            of_batch = population.columns(batch_z, np.full(len(batch_z), batch_V))
-            columns = np.concatenate([columns, of_batch])
-            reserves = np.concatenate([reserves, population.reserves(batch_z, batch_V)])
+            batch_columns = population.columns(batch_z, np.full(len(batch_z), batch_V))
+            about = None
+            if response is not None:
+                about, _ = response.process(batch_columns)
+            batch_reserves = population.reserves(batch_z, batch_V, about=about)
+            columns = np.concatenate([columns, batch_columns])
+            reserves = np.concatenate([reserves, batch_reserves])
         response = _learned(population, columns, reserves)
         if rounds == FAILURE.rounds:
             return response

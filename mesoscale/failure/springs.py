@@ -7,6 +7,7 @@ first: a stiff switch that pulls in above its hold voltage presses its pad harde
 weaker springs and all laws of attraction.
 """
 
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -44,24 +45,48 @@ class Sprung:
         self._pads: list[tuple[float, Pressed] | None] = [None] * len(chosen)
         self._known: list[list[tuple[float, float, bool]]] = [[] for _ in chosen]
         self._refused = [np.inf] * len(chosen)
+        self._stiffest = -np.inf
 
-    def probability(self, logarithm: float, times: float) -> float:
-        """That of a failure with a spring, by the logarithm of its share of the scene's."""
+    def fails_too_often(self, logarithm: float, times: float, allowed: float) -> bool:
+        """Whether more than allowed fail with a spring, by the logarithm of its share of the
+        scene's. Switches are solved only until that is decided.
+        """
+        self._stiffest = max(self._stiffest, logarithm)
+        weights = 1.0 / self.chance
+        most = allowed / self.by_response * len(weights)
+        outcomes = [self._foretold(k, logarithm, times) for k in range(len(weights))]
+        failing = float(sum(weights[k] for k, failed in enumerate(outcomes) if failed))
+        undecided = [k for k, failed in enumerate(outcomes) if failed is None]
+        undecided_weight = float(weights[undecided].sum())
+        points = self._points(logarithm)
+        for k in undecided:
+            if failing > most or failing + undecided_weight <= most:
+                break
+            undecided_weight -= float(weights[k])
+            if self._solved(k, points[k], logarithm, times):
+                failing += float(weights[k])
+        return failing > most
+
+    def _points(self, logarithm: float) -> list[Point]:
+        """The switches with another spring."""
         changed = self.population.settings.model_copy(
             update={self.population.spring: self.own_spring * float(np.exp(logarithm))}
         )
-        points = replace(self.population, settings=changed).points(self.z, self.hold_V)
-        failed = [self._fails(k, point, logarithm, times) for k, point in enumerate(points)]
-        return self.by_response * float(np.mean(failed / self.chance))
+        return replace(self.population, settings=changed).points(self.z, self.hold_V)
 
-    def _fails(self, k: int, point: Point, logarithm: float, times: float) -> bool:
+    def _foretold(self, k: int, logarithm: float, times: float) -> bool | None:
+        """Whether a switch fails, by what is known of it; None where that does not tell."""
+        if logarithm >= self._refused[k]:
+            return True
         for stiffness, attraction, failed in self._known[k]:
             if failed and stiffness >= logarithm and attraction <= times:
                 return True
             if not failed and stiffness <= logarithm and attraction >= times:
                 return False
-        if logarithm >= self._refused[k]:
-            return True
+        return None
+
+    def _solved(self, k: int, point: Point, logarithm: float, times: float) -> bool:
+        """Whether a switch fails, solved on its pad."""
         try:
             curves = self._pad(k, point, logarithm).curves
             failed = Attracted(point.device, curves, self.population.release_V).fails(times)
@@ -72,13 +97,21 @@ class Sprung:
         return failed
 
     def _pad(self, k: int, point: Point, logarithm: float) -> Pressed:
-        """The pad of a switch, pressed anew for a spring that is stiffer than any before."""
+        """The pad of a switch, pressed for the stiffest spring so far, or where that is too hard
+        for its own.
+        """
         remembered = self._pads[k]
+        if remembered is None and logarithm < self._stiffest:
+            with suppress(InputError):
+                stiffest = self._points(self._stiffest)[k]
+                remembered = (self._stiffest, self._pressed(k, stiffest))
         if remembered is None or remembered[0] < logarithm:
-            pad = self.population.press(point, 1, surfaces_number(self.z[k]))
-            remembered = (logarithm, pad)
-            self._pads[k] = remembered
+            remembered = (logarithm, self._pressed(k, point))
+        self._pads[k] = remembered
         return remembered[1]
+
+    def _pressed(self, k: int, point: Point) -> Pressed:
+        return self.population.press(point, 1, surfaces_number(self.z[k]))
 
 
 def least_spring(sprung: Sprung, times: float, allowed: float) -> float | None:
@@ -92,7 +125,7 @@ def least_spring(sprung: Sprung, times: float, allowed: float) -> float | None:
         return None
 
     def too_many(logarithm: float) -> bool:
-        return sprung.probability(logarithm, times) > allowed
+        return sprung.fails_too_often(logarithm, times, allowed)
 
     low, stiffest = np.log(FAILURE.springs).tolist()
     tried = np.linspace(stiffest, 0.0, FAILURE.stiff_springs).tolist()

@@ -63,17 +63,50 @@ class Attracted:
                 self.pad = deepened(self.pad)
                 self._still_closed = None
 
-    def reserve(self, step: float = STEP) -> float:
+    def reserve(self, step: float = STEP, about: float | None = None) -> float:
         """Logarithm of the factor on the attraction with which the switch just fails, known to half
         a step.
+
+        Parameters
+        ----------
+        about : where it is looked for first; a good guess spares half of the tries, a bad one
+            changes no reserve.
         """
-        low = np.log(LEAST_TIMES)
-        high = np.log(MOST_TIMES)
-        while high - low > step:
-            middle = 0.5 * (low + high)
+        low = float(np.log(LEAST_TIMES))
+        high = float(np.log(MOST_TIMES))
+        steps = 2 ** int(np.ceil(np.log2((high - low) / step)))
+        width = (high - low) / steps
+
+        def fails_at(number: int) -> bool:
             try:
-                failed = self.fails(float(np.exp(middle)))
+                return self.fails(float(np.exp(low + number * width)))
             except InputError:
-                failed = True
-            low, high = (low, middle) if failed else (middle, high)
-        return float(0.5 * (low + high))
+                return True
+
+        if about is None:
+            failing = _first_failing(fails_at, steps, steps // 2, steps // 4)
+        else:
+            guess = round((np.clip(about, low, high) - low) / width)
+            failing = _first_failing(fails_at, steps, min(max(guess, 1), steps - 1), 1)
+        return low + (failing - 0.5) * width
+
+
+def _first_failing(fails_at: Callable[[int], bool], last: int, guess: int, stride: int) -> int:
+    """First number that fails, where 0 does not and the last does.
+
+    Strides from a guess double until they enclose it, then halves are tried.
+    """
+    bearing = 0
+    failing = last
+    number = guess
+    while failing - bearing > 1:
+        if fails_at(number):
+            failing = number
+            number -= stride
+        else:
+            bearing = number
+            number += stride
+        stride *= 2
+        if not bearing < number < failing:
+            number = (bearing + failing) // 2
+    return failing

@@ -66,23 +66,31 @@ def likeliest(x: Array, y: Array) -> Likeliest:
     squares = (x[:, None, :] - x[None, :, :]) ** 2
     trend = np.column_stack([np.ones(len(x)), x])
     bounds = np.log([*[LENGTHS] * inputs, NOISES])
-    best = minimize(
-        lambda point: _cost(_at(point, squares, trend, y), squares),
-        np.log([*[START[0]] * inputs, START[1]]),
-        jac=True,
-        method="L-BFGS-B",
-        bounds=bounds,
-        options={"maxiter": MOST_STEPS, "ftol": 0.0, "gtol": 1e-3 * SETTLED},
-    )
-    point = np.asarray(best.x, float)
-    process = _at(point, squares, trend, y)
-    cost, slope = _cost(process, squares)
-    inwards = np.clip(point - slope, *bounds.T) - point  # zero at a bound that it presses against
-    if not np.abs(inwards).max() <= SETTLED:
-        raise InputError(
-            f"the Gaussian process through {len(y)} runs did not settle in {best.nit} steps; give"
-            " more points (pad.points), or narrow the inputs"
+    point = np.log([*[START[0]] * inputs, START[1]])
+    steps = 0
+    while True:
+        # it also ends where one step gains nothing by rounding; begun anew from there it goes on
+        best = minimize(
+            lambda point: _cost(_at(point, squares, trend, y), squares),
+            point,
+            jac=True,
+            method="L-BFGS-B",
+            bounds=bounds,
+            options={"maxiter": MOST_STEPS - steps, "ftol": 0.0, "gtol": 1e-3 * SETTLED},
         )
+        steps += best.nit
+        point = np.asarray(best.x, float)
+        process = _at(point, squares, trend, y)
+        cost, slope = _cost(process, squares)
+        # zero at a bound that it presses against
+        inwards = np.clip(point - slope, *bounds.T) - point
+        if np.abs(inwards).max() <= SETTLED:
+            break
+        if steps >= MOST_STEPS or not best.nit:
+            raise InputError(
+                f"the Gaussian process through {len(y)} runs did not settle in {steps} steps; give"
+                " more points (pad.points), or narrow the inputs"
+            )
     free = max(len(y) - trend.shape[1], 1)
     amplitude = deviation * float(np.sqrt(process.variance * len(y) / free))
     log_likelihood = -cost - len(y) * float(np.log(deviation))

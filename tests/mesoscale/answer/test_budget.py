@@ -222,7 +222,7 @@ def test_a_length_may_be_longer_or_shorter():
 
 
 def test_the_contact_potential_is_the_difference_of_two_work_functions():
-    """Michaelson (1977): aluminium 4.28 eV, gold 5.1 eV. It adds to the voltage as it is."""
+    """Michaelson (1977), from memory: aluminium 4.28 eV, gold 5.1 eV. It adds as it is."""
     assert SHIPPED["contact potential of the two metals"]["volts"] == pytest.approx(
         5.1 - 4.28, 0.05
     )

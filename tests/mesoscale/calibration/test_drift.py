@@ -1,16 +1,19 @@
 """Rates narrowed by a drift: the model beside the rates themselves, known truths found again."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from mesoscale.answer.points import Point
 from mesoscale.calibration.drift import (
     drift_json,
     drift_model,
     narrow_rates,
     prior_of_rates,
     rate_rows,
+    rates_by_drift,
     rates_of,
     telling_rates,
 )
@@ -19,7 +22,7 @@ from mesoscale.calibration.sampling import Sampling
 from mesoscale.charging.gaps import GAPS_NM
 from mesoscale.charging.rates import GUESSES, LOST, narrowed_guesses, shifts_V
 from mesoscale.errors import InputError
-from mesoscale.settings import DeviceSettings, LifetimeSettings
+from mesoscale.settings import ContactSettings, DeviceSettings, LifetimeSettings
 from mesoscale.studies.lifetime_stability import made_up_gaps
 
 DEVICE = DeviceSettings()
@@ -89,6 +92,27 @@ def test_rows_differ_by_temperature_humidity_and_rest():
         if row % 3 == 2:
             known *= 100.0 ** -draw[3]
         assert found == pytest.approx(known, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "humidity"), [({"humidity": 0.6}, 0.6), ({}, 0.3)], ids=["as an input", "of the air"]
+)
+def test_rates_hold_at_the_humidity_of_the_switch(monkeypatch, inputs, humidity):
+    """That of its inputs goes before that of the air, as in the life of a switch."""
+    models = []
+
+    def stopped(data, model, settings, progress):
+        models.append(model)
+        return SimpleNamespace(chain=SimpleNamespace(reasons=["stopped"]))
+
+    monkeypatch.setattr("mesoscale.calibration.drift.held_gaps", lambda *_: GAPS)
+    monkeypatch.setattr("mesoscale.calibration.drift.narrow_rates", stopped)
+    measured = np.tile([0.2, 0.8], 6)
+    switch = SimpleNamespace(point=Point(inputs, 0.2, DEVICE))
+    humid = ContactSettings(air={"humidity": 0.3})
+    data = table(0 * TIMES_S, humidity=measured)
+    assert rates_by_drift(data, switch, humid, SETTINGS)[1] == {}
+    assert models[0].wetter == pytest.approx(10.0 ** ((measured - humidity) / 0.6))
 
 
 @pytest.mark.parametrize("seed", [21, 22])

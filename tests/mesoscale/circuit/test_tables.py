@@ -144,16 +144,16 @@ def apart(net, pull):
 def by_spice(text, separation, deepest):
     """Pressure (GPa) of the SPICE subcircuit, by its tables alone."""
     (depth,) = set(re.findall(r"pwl\((\S+ - V\(near\)),", text))
-    at = {depth: deepest, "V(risen)": separation - deepest}
+    at = {depth: deepest, "V(risen)": separation - deepest, "V(s) + {rest}": separation}
 
     def logarithm(name):
         (sums,) = re.findall(rf"^B{name} 0 {name} I = (.*?)^R", text, re.M | re.S)
         nodes = [(of, [float(value) for value in row.replace("\n+", "").split(",")])
                  for of, row in re.findall(r"pwl\(([^,]*),(.*?)\)", sums, re.S)]  # fmt: skip
-        closing, *opening = [float(np.interp(at[of], row[::2], row[1::2])) for of, row in nodes]
-        return closing + sum(
-            weight * rise for weight, rise in zip(opening[1::3], opening[2::3], strict=True)
-        )
+        read = [float(np.interp(at[of], row[::2], row[1::2])) for of, row in nodes]
+        closing, *opening, back, here, there = read
+        risen = sum(weight * rise for weight, rise in zip(opening[::2], opening[1::2], strict=True))
+        return closing + risen + back * (here - there)
 
     ((*far, faint),) = re.findall(r"\+ (\S+), \S+\)\) - (\S+)\n", text)
     far += re.findall(r"\+ (\S+), \S+\)\)\)\n.ends", text)
@@ -161,11 +161,9 @@ def by_spice(text, separation, deepest):
         logarithm(name) + float(away) for name, away in zip(("push", "pull"), far, strict=True)
     )
     (hamaker,), (offset,) = re.findall(r"hamaker=(\S+)", text), re.findall(r"offset_nm=(\S+)", text)
-    return (
-        np.exp(push)
-        - float(faint)
-        - np.exp(pull) * Flats(float(hamaker), float(offset)).pull_GPa(separation)
-    )
+    (least,) = re.findall(r"pow\(max\(V\(s\) \+ {rest}, (\S+)\)", text)
+    flats = Flats(float(hamaker), float(offset)).pull_GPa(max(separation, float(least)))
+    return np.exp(push) - float(faint) - np.exp(pull) * flats
 
 
 @pytest.mark.parametrize("waves", [0.0, 0.2])
@@ -177,6 +175,46 @@ def test_the_tables_for_spice_hold_the_curves(waves):
         assert found == pytest.approx(
             wanted, abs=2.0 * (CIRCUIT.of_well * well(law) + CIRCUIT.of_net * abs(wanted))
         )
+
+
+HARDLY_NM = (33.5, 45.0)
+"""Deepest closings above all that were computed, and above the way over which openings fade."""
+
+
+@pytest.mark.parametrize("deepest", HARDLY_NM)
+def test_a_pad_that_was_hardly_closed_opens_as_it_closed(deepest):
+    """It kept what it was pushed with at its deepest closing, however far it rose."""
+    law = pad()
+    text = spice_pad(law, 256)
+    for separation in (deepest, 60.0, 75.0, 3000.0):
+        wanted = float(law.closing_GPa(separation))
+        assert by_spice(text, separation, deepest) == pytest.approx(
+            wanted, abs=CIRCUIT.of_well * well(law)
+        )
+
+
+@needs_openvaf
+@pytest.mark.parametrize("deepest", HARDLY_NM)
+def test_openvaf_opens_a_pad_that_was_hardly_closed_as_it_closed(tmp_path, deepest):
+    law = pad()
+    pressed = compiled(law, tmp_path)
+    for separation in (deepest, 60.0, 75.0):
+        wanted = float(law.closing_GPa(separation))
+        assert pressed(separation, deepest) == pytest.approx(
+            wanted, abs=CIRCUIT.of_well * well(law)
+        )
+
+
+def test_attraction_does_not_grow_below_the_deepest_closing():
+    """There a wild step of ngspice found a balance that no pad has, and the switch stuck."""
+    text = spice_pad(pad(), 256)
+    without = re.sub(r"hamaker=\S+", "hamaker=0", text)
+    last = pad().separation_nm[0]
+    attraction = [
+        by_spice(without, place, place) - by_spice(text, place, place)
+        for place in (last, last - 5.0, last - 10.0)
+    ]
+    assert attraction == pytest.approx([attraction[0]] * 3, rel=1e-6)
 
 
 @needs_ngspice

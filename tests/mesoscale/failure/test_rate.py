@@ -50,6 +50,24 @@ def test_the_reserve_is_the_attraction_with_which_the_switch_just_sticks(setting
     assert Attracted(settings, law, 2.0).reserve() <= reserve
 
 
+@pytest.mark.parametrize("missed", [-9.0, -0.6, -0.04, 0.0, 0.04, 0.6, 9.0])
+def test_a_guess_of_the_reserve_changes_nothing_and_a_good_one_spares_tries(missed):
+    class Counted(Attracted):
+        tried = 0
+
+        def fails(self, times):
+            self.tried += 1
+            return super().fails(times)
+
+    law = made_up_pad(40.0)
+    without = Counted(PLATE, law, 0.0, coarse=True)
+    reserve = without.reserve()
+    guessed = Counted(PLATE, law, 0.0, coarse=True)
+    assert guessed.reserve(about=reserve + missed) == pytest.approx(reserve, abs=1e-12)
+    if abs(missed) < FAILURE.step:
+        assert guessed.tried <= without.tried / 2
+
+
 def test_a_well_far_deeper_than_the_spring_and_none_at_all_reach_the_ends():
     assert (
         Attracted(PLATE, made_up_pad(1e6), 0.0, coarse=True).reserve() < np.log(0.1) + FAILURE.step

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize
 
 from mesoscale.errors import InputError
 from mesoscale.uncertainty import likeliest_process
@@ -127,6 +128,23 @@ def test_a_search_that_does_not_settle_is_refused(monkeypatch):
     monkeypatch.setattr(likeliest_process, "MOST_STEPS", 2)
     with pytest.raises(InputError, match="did not settle in 2 steps"):
         likeliest(*made_up())
+
+
+def test_a_search_that_ends_by_rounding_goes_on(monkeypatch):
+    """The first search is cut short, as L-BFGS-B is where one step gains nothing."""
+    sought = []
+
+    def cut_short(*arguments, options, **others):
+        sought.append(arguments[1])
+        if len(sought) == 1:
+            options = options | {"maxiter": 3}
+        return minimize(*arguments, options=options, **others)
+
+    whole = likeliest(*made_up())
+    monkeypatch.setattr("scipy.optimize.minimize", cut_short)
+    again = likeliest(*made_up())
+    assert len(sought) == 2
+    assert again.log_likelihood == pytest.approx(whole.log_likelihood, abs=1e-4)
 
 
 def test_random_functions_all_settle():
