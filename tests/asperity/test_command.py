@@ -16,7 +16,7 @@ def test_the_version_is_the_packages(capsys):
     with pytest.raises(SystemExit) as ended:
         main(["--version"])
     assert ended.value.code == 0
-    assert capsys.readouterr().out == "asperity 0.2.0\n"
+    assert capsys.readouterr().out == "asperity 0.3.0\n"
 
 
 def test_every_scene_is_listed_with_a_line_on_it(capsys):
