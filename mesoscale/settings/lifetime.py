@@ -38,7 +38,7 @@ class LifetimeSettings(Settings):
     barrier_eV: Range = key(
         (4.33, 5.15),
         "barrier of emission through gaps; titanium to nickel (Michaelson, J. Appl. Phys. 48 (1977)"
-        " 4729; values from memory, not checked against the paper)",
+        " 4729; values from memory, not checked against the publication)",
         "eV",
     )
     traps_e_cm2: Range = key(
