@@ -241,21 +241,12 @@ def _beside(site, pixels):
     return up, down, left, right
 
 
-@njit(cache=True)
-def all_attracting(size, sites, place, pressure, touching):
-    """`attracting` of all sites of a cell, of which few are under pressure."""
-    weight = np.ones(size)
-    if touching:
-        return weight
-    pixels = int(np.sqrt(size) + 0.5)
-    for k in range(sites.size):
-        if not pressure[k] > 0.0:
-            continue
-        weight[sites[k]] = 0.0
-        for beside in _beside(sites[k], pixels):
-            if place[beside] < 0 or not pressure[place[beside]] > 0.0:
-                weight[beside] += EXCESS
-    return weight
+def all_attracting(
+    size: int, sites: np.ndarray, place: np.ndarray, pressure: np.ndarray, touching: bool
+) -> np.ndarray:
+    """`attracting` of all sites of a cell, of which few are under pressure, (N^2,)."""
+    rank = np.arange(size, dtype=np.int32)
+    return attracting(size, rank, sites, place, pressure, math.isqrt(size), touching)
 
 
 @njit(cache=True, inline="always")

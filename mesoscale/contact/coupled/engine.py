@@ -44,7 +44,7 @@ class CoupledContact(Contact):
     # to a pixel. Beyond, transforms of the whole grid cost less: pads of 128^2 sites take 0.8 of
     # the time with 4 or 8 per pixel instead of 16, and light loads of 1024^2 0.4 with 1024 sites
     # instead of 256. Rough and smooth, light and heavy, 256^2 to 2048^2, elastic and plastic: half
-    # and twice as many are as fast or slower by up to 1.4 and 2.
+    # as many take up to 1.7 times as long, twice as many 0.7 to 1.4 times.
     DENSE_PER_PIXEL = 8
     DENSE = 1024
     LONGEST_GUESS = 2.0  # over the last step: so far pressures are taken to go on as in it
